@@ -127,7 +127,7 @@ fn an_effect_takes_the_place_of_those_it_contains() {
 fn what_cannot_be_added_leaves_no_file() {
     let desk = Desk::with(vec![joint("boom")]);
     let refused = desk.refusal("add dead_bnd log.csv --model boom.toml");
-    assert!(refused.contains("nearest is `dead_band`"), "{refused}");
+    assert!(refused.contains("did you mean `dead_band`?"), "{refused}");
     assert!(desk.refusal("add dead_band log.csv --write log.csv").contains("log.csv"));
     assert!(desk.refusal("add dead_band log.csv --write no/where.toml").contains("no/where.toml"));
     let missing = desk.refusal("add dead_band log.csv --model none.toml --write boom.toml");

@@ -138,5 +138,5 @@ fn an_effect_is_added_to_the_trials_of_a_condition_by_hand() {
     let text = std::fs::read_to_string(&model).unwrap();
     assert!(text.contains("kind = \"dead_band[full]\""), "{text}");
     let (_, errors) = tauscope(&["add", "deadband[full]", path(&data), "-m", path(&model), "-q"]);
-    assert!(errors.contains("nearest is `dead_band`"), "{errors}");
+    assert!(errors.contains("did you mean `dead_band`?"), "{errors}");
 }

@@ -457,7 +457,7 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
     desk.write("late.toml", late);
     let cases = [
         ("--levels 1", "expected two levels or more"),
-        ("--trials 0", "expected a whole number from 1 on"),
+        ("--trials 0", "expected a whole number from 1 up"),
         ("--hold 2,1", "expected two numbers, the lower one first"),
         ("--output-range=-1,1", "give --model or a log"),
         ("--dead-band avoid", "no model has it"),
@@ -467,7 +467,7 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
         ("--model boom.toml --joint bucket", "not in the model file, which has boom"),
         ("--separate dead_band --model boom.toml", "expected two effects"),
         ("--separate dead_band,dead_band --model boom.toml", "there twice"),
-        ("--separate dead_band,stictoin --model boom.toml", "the nearest is `stiction`"),
+        ("--separate dead_band,stictoin --model boom.toml", "did you mean `stiction`?"),
         ("--separate dead_band,stiction", "give a log, or --model"),
         ("--separate dead_band,stiction --model plain.toml", "has neither dead_band nor stiction"),
         ("--separate leakage,stiction --model boom.toml", "has neither leakage nor stiction"),

@@ -152,14 +152,14 @@ fn an_effect_of_the_model_file_takes_part() {
     assert!((number(&most["value"]) - 0.9).abs() < 4.0 * number(&most["std_error"]), "{most}");
     assert_eq!(boom["commands"], json!(["tauscope add cap log.csv --model mine.toml"]));
     let refused = desk.refusal("explain log.csv --model mine.toml --effects capp");
-    assert!(refused.contains("`capp`") && refused.contains("nearest is `cap`"), "{refused}");
+    assert!(refused.contains("`capp`") && refused.contains("did you mean `cap`?"), "{refused}");
 }
 
 #[test]
 fn what_cannot_be_used_is_refused() {
     let desk = Desk::with(vec![joint("boom")]);
     let refused = desk.refusal("explain log.csv --effects dead_band,stictoin");
-    for part in ["--effects", "`stictoin`", "nearest is `stiction`", "tauscope effects"] {
+    for part in ["--effects", "`stictoin`", "did you mean `stiction`?", "tauscope effects"] {
         assert!(refused.contains(part), "no `{part}` in: {refused}");
     }
     assert!(!desk.has("model.toml"));

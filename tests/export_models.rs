@@ -486,7 +486,7 @@ fn what_cannot_be_written_is_refused_and_leaves_nothing() {
     for (arguments, why) in [
         (vec!["--joint", "boom", "boom.txt"], ".c, .h, .py, .m, .fmu"),
         (vec!["--joint", "boom", "my boom.py"], "is not a name in Python"),
-        (vec!["--joint", "bom", "boom.c"], "the nearest is `boom`"),
+        (vec!["--joint", "bom", "boom.c"], "did you mean `boom`?"),
         (vec!["boom.c"], "`--joint` takes one of arm, boom"),
         (vec!["--joint", "arm", "arm.c"], "effect `variable_delay` cannot be exported"),
     ] {

@@ -163,7 +163,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
 fn what_cannot_be_used_is_refused() {
     let desk = Desk::with(vec![joint("boom")]);
     let refused = desk.refusal("improve log.csv --effects dead_band,stictoin");
-    assert!(refused.contains("nearest is `stiction`"), "{refused}");
+    assert!(refused.contains("did you mean `stiction`?"), "{refused}");
     assert!(desk.refusal("improve log.csv --max-effects few").contains("--max-effects"));
     assert!(!desk.has("model.toml"));
 }

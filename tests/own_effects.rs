@@ -221,8 +221,8 @@ fn what_is_wrong_with_a_definition_is_said() {
         (
             joint_text(&own("mine", "input", "signal + sgnal", k)),
             "mine.toml, joint `boom`: effect `mine`: the expression cannot be computed: column 10 of \
-             `signal + sgnal`: `sgnal` is not known; the nearest of signal, position, velocity, \
-             time, dt, others, radians, k, pi is `signal`",
+             `signal + sgnal`: `sgnal` is not known (did you mean `signal`?); known: signal, position, \
+             velocity, time, dt, others, radians, k, pi",
         ),
         (
             joint_text(&own("mine", "input", "signal + ", k)),
@@ -298,7 +298,7 @@ fn what_is_wrong_with_the_use_of_one_is_said() {
             "expected a number, or a table like",
         ),
         (joint_text(&catalogue("kne", "")), "there is no effect `kne`"),
-        (knee.clone() + &joint_text(&catalogue("kne", "")), "the nearest is `knee`"),
+        (knee.clone() + &joint_text(&catalogue("kne", "")), "did you mean `knee`?"),
         (knee.clone() + &knee, "candidate: effect `knee` has an id that another one has"),
         (
             knee.clone() + &joint_text(&own("knee", "input", "signal", "")),

@@ -19,7 +19,7 @@ use rerun::external::re_log_encoding::DecoderApp;
 use rerun::log::{Chunk, LogMsg};
 use tauscope::batch::Threads;
 use tauscope::delay::{
-    Condition, Decision, Doubt, FineDelay, FirstLast, Method, Settings, Verdict, Word,
+    Condition, Decision, Doubt, FineDelay, FirstLast, Method, ReviewerVerdict, Settings, Verdict,
 };
 use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::recording::{Detail, RecordError, Recording, write_recording};
@@ -276,7 +276,8 @@ fn a_breakpoint_that_a_reviewer_moved_is_drawn_beside_the_programs() {
     let (p, found) = (decision.input_step.sample, decision.program_delay().unwrap());
     let (note, reviewer) = (String::new(), "Ann".to_owned());
     let said = Some(found + 10.0);
-    decision.word = Some(Box::new(Word { accepted: true, delay: said, note, reviewer }));
+    decision.reviewer_verdict =
+        Some(Box::new(ReviewerVerdict { accepted: true, delay: said, note, reviewer }));
     let back = recorded.read_back(Detail::Full);
     let [program, person] = [found, found + 10.0].map(|delay| samples(delay) + whole(p));
     let names = back.rows("/boom/drawing/names", "Points2D:labels", |cell| {

@@ -53,7 +53,7 @@ fn numbers_and_options_arrive_in_the_plant() {
 fn what_makes_no_sense_is_refused_in_one_message_and_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let cases = [
-        ("--effect dead_bnd", "did you mean `dead_band`"),
+        ("--effect dead_bnd", "did you mean `dead_band`?"),
         ("--effect dead_band:lowr=1", "unknown field `lowr`, expected `lower` or `upper`"),
         ("--effect dead_band:lower=-1", "missing field `upper`"),
         ("--effect dead_band:lower=1,upper=2", "`effect.dead_band.lower` is 1.0; allowed"),

@@ -11,7 +11,7 @@ use tauscope::Joint;
 use tauscope::batch::Threads;
 use tauscope::delay::Settings;
 use tauscope::design::{
-    Logged, Plan, RandomSteps, TestRig, Uncertain, Wishes, plan, random_steps, reach,
+    Logged, Plan, PlanRequest, RandomSteps, TestRig, Uncertain, plan, random_steps, reach,
 };
 use tauscope::fit::{Horizon, Split};
 use tauscope::study::{Mode, Protocol, estimate_joints, know_joints};
@@ -107,9 +107,9 @@ pub(crate) fn examine(seed: u64, beside: Beside) -> anyhow::Result<Judged> {
     let start = logged.settled().unwrap_or(0.5 * (within.0 + within.1));
     let rig = rig(&log, range, start)?;
     let known = known(&log)?;
-    let wishes = Wishes { duration_s, seed, ..Wishes::default() };
+    let request = PlanRequest { duration_s, seed, ..PlanRequest::default() };
     let effects = known.model.components().iter().map(|c| c.effect().spec().id).collect();
-    let planned = plan(&wishes, &rig, Some(&known), Some(&logged), 0);
+    let planned = plan(&request, &rig, Some(&known), Some(&logged), 0);
     let design_s = begun.elapsed().as_secs_f64();
     let integrator_leaves = match &planned {
         Ok(plan) if beside == Beside::Integrator => {

@@ -20,7 +20,6 @@ mod failure;
 mod output;
 mod program;
 mod run;
-mod similar;
 mod viewer;
 
 pub use console::Hosting;

@@ -50,7 +50,7 @@ use crate::experiment::Trial;
 use crate::numerics::LowPass;
 use crate::numerics::NoiseModel;
 use crate::numerics::RunningLine;
-use crate::numerics::{autocovariances, median, quantile};
+use crate::numerics::{autocovariances, median, quantile, to_digits};
 use crate::units::ceil_to_index;
 
 /// Which settings are chosen from the record.
@@ -73,7 +73,7 @@ impl Automatic {
 
 /// What settings were chosen from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Grounds {
+pub struct RecordStatistics {
     /// The delay that nine of ten exceed, samples.
     pub short_delay: Option<f64>,
     /// Standard deviation of the noise, output units.
@@ -90,7 +90,7 @@ pub struct Chosen {
     /// Which settings.
     pub automatic: Automatic,
     /// What the record showed.
-    pub grounds: Grounds,
+    pub statistics: RecordStatistics,
 }
 
 /// `settings` with those that are `automatic` chosen from the trials of a joint, and from
@@ -110,26 +110,26 @@ pub struct Chosen {
 /// let (settings, chosen) = choose(&made.joints[0].trials, &Settings::default(), all);
 /// assert!((10..20).contains(&settings.alpha), "a short delay: {}", settings.alpha);
 /// assert!(settings.low_pass.is_some_and(|filter| filter.cutoff_hz < 5.0));
-/// assert!((chosen.grounds.noise.unwrap_or(0.0) - 0.4).abs() < 0.02);
+/// assert!((chosen.statistics.noise.unwrap_or(0.0) - 0.4).abs() < 0.02);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn choose(trials: &[Trial], settings: &Settings, automatic: Automatic) -> (Settings, Chosen) {
     let mut chosen = settings.clone();
     let record = Record::of(trials, settings);
-    let grounds = record.grounds();
-    if let Some(delay) = grounds.short_delay.filter(|_| automatic.alpha) {
+    let statistics = record.statistics();
+    if let Some(delay) = statistics.short_delay.filter(|_| automatic.alpha) {
         chosen = chosen.with_alpha(ceil_to_index(delay).max(1).into());
     }
     if automatic.passband {
         let smooths = settings.method.spec().low_pass.is_some();
-        let low_pass = || record.low_pass(settings.low_pass, grounds.motion_ends_hz);
+        let low_pass = || record.low_pass(settings.low_pass, statistics.motion_ends_hz);
         chosen.low_pass = if smooths { low_pass() } else { None };
     }
     if automatic.beta && settings.method.spec().has_rows {
         let beta = if chosen.low_pass.is_some() { 1 } else { record.blur() };
         chosen = chosen.with_beta(beta.into());
     }
-    (chosen, Chosen { automatic, grounds })
+    (chosen, Chosen { automatic, statistics })
 }
 
 /// What broken lines show of a joint.
@@ -245,7 +245,7 @@ impl<'a> Record<'a> {
         median(&powers).unwrap_or(0.0)
     }
 
-    fn grounds(&self) -> Grounds {
+    fn statistics(&self) -> RecordStatistics {
         let samples: usize = self.quiet.iter().map(Vec::len).sum();
         let covariances = autocovariances(&self.quiet, 1);
         let correlation =
@@ -253,7 +253,7 @@ impl<'a> Record<'a> {
         let freedom = samples.saturating_sub(LINE * self.quiet.len());
         let sum = covariances.first().map(|power| power * samples as f64);
         let known = freedom > 0;
-        Grounds {
+        RecordStatistics {
             short_delay: self.short_delay(),
             noise: sum.filter(|_| known).map(|sum| (sum / freedom as f64).sqrt()),
             noise_correlation: correlation.filter(|c| known && c.is_finite()),
@@ -270,7 +270,7 @@ impl<'a> Record<'a> {
             return usual;
         };
         let slowest = 1.0 / (hold * self.period_s);
-        let cutoff_hz = two_digits(motion_ends_hz?.max(slowest));
+        let cutoff_hz = to_digits(motion_ends_hz?.max(slowest), 2);
         (cutoff_hz < TOP * 0.5 / self.period_s).then_some(LowPass { cutoff_hz, order })
     }
 
@@ -325,14 +325,6 @@ fn without_line(values: &[f64]) -> Option<(f64, Vec<f64>)> {
     let middle = 0.5 * (values.len() - 1) as f64;
     let samples = values.iter().enumerate();
     Some((slope, samples.map(|(k, value)| value - mean - slope * (k as f64 - middle)).collect()))
-}
-
-/// `value` to two digits, so that it can be said and typed.
-fn two_digits(value: f64) -> f64 {
-    let unit = 10_f64.powf(value.log10().floor() - 1.0);
-    let digits = (value / unit).round();
-    // Division by a whole power of ten rounds as the decimal number does.
-    if unit < 1.0 { digits / unit.recip().round() } else { digits * unit.round() }
 }
 
 /// The spectrum of second differences, by Welch's method.
@@ -455,7 +447,7 @@ mod tests {
             let (settings, chosen) = choose(&[trial(noise)], &Settings::default(), ALL);
             assert!((12..=14).contains(&settings.alpha), "{chosen:?}");
             assert_eq!(settings.beta, 1);
-            let found = chosen.grounds.noise.unwrap();
+            let found = chosen.statistics.noise.unwrap();
             assert!((found / (noise / 12.0_f64.sqrt()) - 1.0).abs() < 0.1, "{found} {noise}");
             settings.low_pass.unwrap().cutoff_hz
         };
@@ -498,12 +490,6 @@ mod tests {
         }
         let (settings, chosen) = choose(&[], &Settings::default(), ALL);
         assert_eq!((settings.alpha, settings.low_pass), (10, Settings::default().low_pass));
-        assert_eq!(chosen.grounds, Grounds::default());
-    }
-
-    #[test]
-    fn two_digits_are_kept() {
-        let shown = [8.593_75, 0.123_4, 12.34, 0.996, 104.0].map(|hz| two_digits(hz).to_string());
-        assert_eq!(shown, ["8.6", "0.12", "12", "1", "100"]);
+        assert_eq!(chosen.statistics, RecordStatistics::default());
     }
 }

@@ -5,11 +5,12 @@ use std::fmt;
 use super::checks::Checks;
 use super::condition::{Condition, nothing_happened};
 use super::interval::FineDelay;
+use super::reviewer_verdict::ReviewerVerdict;
 use super::search::{Candidate, Candidates};
 use super::segment::Segment;
 use super::settling::Response;
 use super::steps::InputStep;
-use super::word::Word;
+
 use crate::units::signed;
 
 /// The decision on one input step, with the evidence for it.
@@ -33,7 +34,7 @@ pub struct Decision {
     /// What was fitted to an output that settles; the lines of its candidates are chords of it.
     pub response: Option<Box<Response>>,
     /// What a reviewer said of it.
-    pub word: Option<Box<Word>>,
+    pub reviewer_verdict: Option<Box<ReviewerVerdict>>,
 }
 
 /// The best breakpoint of a segment, accepted or not.
@@ -78,8 +79,8 @@ impl Decision {
 
     /// What a reviewer said; where none did, [what the program says](Self::program_verdict).
     pub fn verdict(&self) -> Verdict {
-        match &self.word {
-            Some(word) if word.accepted => Verdict::Accepted,
+        match &self.reviewer_verdict {
+            Some(reviewer) if reviewer.accepted => Verdict::Accepted,
             Some(_) => Verdict::Rejected(Condition::Reviewer),
             None => self.program_verdict(),
         }
@@ -109,14 +110,14 @@ impl Decision {
     /// The delay in samples, accepted or not: a reviewer's where one was said, else
     /// [the program's](Self::program_delay).
     pub fn delay(&self) -> Option<f64> {
-        let said = self.word.as_ref().and_then(|word| word.delay);
+        let said = self.reviewer_verdict.as_ref().and_then(|reviewer| reviewer.delay);
         said.or_else(|| self.program_delay())
     }
 
     /// The delay that the program found, in samples, where a reviewer says another one.
     #[expect(clippy::float_cmp, reason = "another number is another delay")]
     pub(crate) fn delay_before_review(&self) -> Option<f64> {
-        let said = self.word.as_ref().and_then(|word| word.delay)?;
+        let said = self.reviewer_verdict.as_ref().and_then(|reviewer| reviewer.delay)?;
         self.program_delay().filter(|found| *found != said)
     }
 

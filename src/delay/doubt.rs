@@ -245,7 +245,7 @@ impl Decision {
         let found = [
             (Flag::Edge, is_edge && self.fine.is_none()),
             (Flag::Jump, is_jump && self.fine.is_none()),
-            (Flag::Stop, is_driven && stands(output, (behind, self.segment.last), range)),
+            (Flag::Stop, is_driven && is_at_one_end(output, (behind, self.segment.last), range)),
         ];
         found.into_iter().filter_map(|(flag, is_on)| is_on.then_some(flag)).collect()
     }
@@ -258,7 +258,7 @@ fn range(output: &[f64]) -> (f64, f64) {
 }
 
 /// Whether all samples `from ..= to` are at one end of the range of the output.
-fn stands(output: &[f64], (from, to): (usize, usize), (low, high): (f64, f64)) -> bool {
+fn is_at_one_end(output: &[f64], (from, to): (usize, usize), (low, high): (f64, f64)) -> bool {
     let end = END * (high - low);
     let part = output.get(from.saturating_sub(1)..to).unwrap_or_default();
     let all = |near: &dyn Fn(f64) -> bool| !part.is_empty() && part.iter().all(|y| near(*y));

@@ -3,6 +3,7 @@
 use super::condition::{Check, Condition};
 use super::decision::Decision;
 use super::settings::Settings;
+use crate::numerics::to_digits_by;
 
 /// The smallest change of a setting with which one condition would have been met, all else
 /// being as it was.
@@ -86,26 +87,19 @@ impl Decision {
     }
 }
 
+/// Digits of a limit that is proposed.
+const DIGITS: i32 = 6;
+
 /// A number of six digits that is `value` or just below.
 fn at_most(value: f64) -> f64 {
-    let rounded = scaled(value, f64::floor);
+    let rounded = to_digits_by(value, DIGITS, f64::floor);
     if rounded <= value { rounded } else { value }
 }
 
 /// A number of six digits just above `value`.
 fn above(value: f64) -> f64 {
-    let rounded = scaled(value, |digits| digits.floor() + 1.0);
+    let rounded = to_digits_by(value, DIGITS, |digits| digits.floor() + 1.0);
     if rounded > value { rounded } else { value.next_up() }
-}
-
-/// Rounds the sixth digit of `value`.
-fn scaled(value: f64, round: impl Fn(f64) -> f64) -> f64 {
-    const DIGITS: f64 = 5.0;
-    if value == 0.0 || !value.is_finite() {
-        return value;
-    }
-    let unit = 10_f64.powf(DIGITS - value.abs().log10().floor());
-    round(value * unit) / unit
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@
 //! - [`delay_scan`]: one delay for a whole record
 //! - [`RunnerUp`]: how near a verdict was
 //! - [`Doubt`]: how doubtful a decision is, from its own evidence
-//! - [`Word`]: what a reviewer says instead
+//! - [`ReviewerVerdict`]: what a reviewer says instead
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
 //! - [`DelayTable`]: the delays by kind of step and level
@@ -57,6 +57,7 @@ mod neutral;
 mod onsets;
 mod prepared;
 mod profile;
+mod reviewer_verdict;
 mod scan;
 mod search;
 mod segment;
@@ -73,11 +74,10 @@ mod tracking;
 mod transition;
 mod trial_estimate;
 mod typical;
-mod word;
 
 pub use crate::numerics::Line;
 pub use against::{AgainstOfKind, AgainstState, Correlation, Direction, StepState};
-pub use auto::{Automatic, Chosen, Grounds, choose};
+pub use auto::{Automatic, Chosen, RecordStatistics, choose};
 pub(crate) use beyond_holds::delay_beyond_holds;
 pub use broken_line::{
     BrokenLine, BrokenRegression, Stroke, broken_line, broken_regression, stroke,
@@ -101,6 +101,7 @@ pub use margin::RunnerUp;
 pub(crate) use method::end_at_the_next_step;
 pub use neutral::Neutral;
 pub use profile::DelayProfile;
+pub use reviewer_verdict::ReviewerVerdict;
 pub use scan::delay_scan;
 pub use search::{Candidate, Candidates};
 pub use segment::Segment;
@@ -119,4 +120,3 @@ pub(crate) use tracking::tracking;
 pub use transition::Transition;
 pub use trial_estimate::{EstimateError, TrialEstimate};
 pub use typical::TypicalDelay;
-pub use word::Word;

@@ -18,6 +18,8 @@ pub struct MethodSpec {
     pub summary: &'static str,
     /// Whether it compares candidates β samples apart; β means nothing to others.
     pub has_rows: bool,
+    /// Whether its segments end at the next step where they would hold the reaction to it, too.
+    pub cuts_segments: bool,
     /// Whether it gives each delay an interval.
     pub has_intervals: bool,
     /// What its decision on a step depends on.

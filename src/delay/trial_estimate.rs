@@ -3,10 +3,10 @@
 use super::decision::Decision;
 use super::lag::Lag;
 use super::profile::DelayProfile;
+use super::reviewer_verdict::ReviewerVerdict;
 use super::settings::{Interpolation, SettingsError};
 use super::settling::Settling;
 use super::tracking::Tracking;
-use super::word::Word;
 use crate::numerics::FilterError;
 
 /// Why a trial has no estimate.
@@ -56,14 +56,19 @@ pub struct TrialEstimate {
 }
 
 impl TrialEstimate {
-    /// Puts a reviewer's word above the decision on the step `number`; whether there is one. The
-    /// delay of every sample follows.
-    pub fn review(&mut self, number: usize, word: Word, between: Interpolation) -> bool {
+    /// Overrides the decision on the step `number` by a reviewer's verdict; whether there is one.
+    /// The delay of every sample follows.
+    pub fn review(
+        &mut self,
+        number: usize,
+        verdict: ReviewerVerdict,
+        between: Interpolation,
+    ) -> bool {
         let samples = self.profile.iter().len();
         let Some(decision) = self.decisions.iter_mut().find(|known| known.number == number) else {
             return false;
         };
-        decision.word = Some(Box::new(word));
+        decision.reviewer_verdict = Some(Box::new(verdict));
         self.profile = DelayProfile::of(&self.decisions, samples, between);
         true
     }

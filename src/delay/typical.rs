@@ -2,7 +2,7 @@
 
 use super::decision::{Decision, Verdict};
 use super::interval::FineDelay;
-use crate::numerics::{median, student_quantile};
+use crate::numerics::{median, student_quantile, to_nanoseconds};
 use crate::units::SamplePeriod;
 
 /// How often the interval of a median holds it.
@@ -117,17 +117,13 @@ impl TypicalDelay {
         };
         let interval_s = interval_s.map(of_all);
         Some(Self {
-            median_s: tidy(median(&delays)?),
-            interval_s: interval_s.map(|(low, high)| (tidy(causal(low)), tidy(high))),
-            min_s: tidy(least),
-            max_s: tidy(greatest),
+            median_s: to_nanoseconds(median(&delays)?),
+            interval_s: interval_s
+                .map(|(low, high)| (to_nanoseconds(causal(low)), to_nanoseconds(high))),
+            min_s: to_nanoseconds(least),
+            max_s: to_nanoseconds(greatest),
         })
     }
-}
-
-/// Seconds to the nanosecond: `0.07`, not `0.07000000000000001`.
-fn tidy(seconds: f64) -> f64 {
-    (seconds * 1e9).round() / 1e9
 }
 
 /// Student's interval of the mean.

@@ -48,7 +48,7 @@ pub use limits::Limits;
 pub use logged::{Logged, Settling};
 pub(crate) use plan::DURATION_S;
 pub use plan::plan;
-pub use planned::{Plan, Wishes};
+pub use planned::{Plan, PlanRequest};
 pub use power::{Distance, Expected};
 pub use predict::{Prediction, TestRig, Uncertain};
 pub use random::{RandomSteps, random_steps, transitions};

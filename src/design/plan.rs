@@ -2,7 +2,7 @@
 
 use super::levels::{default_hold_s, default_largest, default_levels, settling_hold_s};
 use super::logged::Logged;
-use super::planned::{Plan, Wishes};
+use super::planned::{Plan, PlanRequest};
 use super::predict::{TestRig, Uncertain};
 use super::random::{RandomSteps, random_steps};
 use super::refusal::PlanError;
@@ -24,24 +24,24 @@ pub(crate) const DURATION_S: f64 = 120.0;
 /// # Errors
 /// [`PlanError`].
 pub fn plan(
-    wishes: &Wishes,
+    request: &PlanRequest,
     rig: &TestRig,
     known: Option<&Uncertain>,
     logged: Option<&Logged>,
     index: usize,
 ) -> Result<Plan, PlanError> {
-    let planner = Planner { wishes, rig, known, logged };
+    let planner = Planner { request, rig, known, logged };
     let levels = planner.levels();
     if levels.len() < 2 {
         return Err(planner.settles_elsewhere().unwrap_or(PlanError::TooFewLevels));
     }
-    let duration_s = wishes.duration_s.unwrap_or(DURATION_S);
+    let duration_s = request.duration_s.unwrap_or(DURATION_S);
     let hold_s = planner.hold_s(&levels);
     if hold_s.0 > duration_s {
         return Err(PlanError::HoldTooLong { hold_s: hold_s.0, duration_s });
     }
     let (Some(range), Some(known)) = (rig.range, known) else {
-        let seed = wishes.seed;
+        let seed = request.seed;
         let steps = RandomSteps { levels, hold_s, duration_s, seed };
         let schedule = random_steps(&steps, rig, known, index);
         let prediction = known.map(|known| rig.prediction(known, &schedule));
@@ -55,10 +55,10 @@ pub fn plan(
     if start <= within.0 || start >= within.1 {
         return Err(PlanError::Start { start, range: within });
     }
-    let keeper = Keeper { wishes, rig, known, logged, index, duration_s };
+    let keeper = Keeper { request, rig, known, logged, index, duration_s };
     let tolerance = keeper.start_tolerance(range).unwrap_or(0.0);
     let planned = keeper.plan((within.0 + tolerance, within.1 - tolerance), &levels, hold_s);
-    let one_sign = one_sign(&levels).filter(|_| planned.is_err() && wishes.levels.is_none());
+    let one_sign = one_sign(&levels).filter(|_| planned.is_err() && request.levels.is_none());
     one_sign.map_or(planned, |is_positive| Err(PlanError::OneSign { range, is_positive }))
 }
 
@@ -71,7 +71,7 @@ fn one_sign(levels: &[f64]) -> Option<bool> {
 /// What random steps are made from.
 #[derive(Clone, Copy)]
 struct Planner<'a> {
-    wishes: &'a Wishes,
+    request: &'a PlanRequest,
     rig: &'a TestRig,
     known: Option<&'a Uncertain>,
     logged: Option<&'a Logged>,
@@ -80,7 +80,7 @@ struct Planner<'a> {
 impl Planner<'_> {
     /// The levels that suit the joint, or are asked for.
     fn levels(&self) -> Vec<f64> {
-        let Wishes { levels, largest, band, .. } = self.wishes;
+        let PlanRequest { levels, largest, band, .. } = self.request;
         let levels = levels.clone().unwrap_or_else(|| match (largest, self.logged) {
             (None, Some(logged)) => self.logged_levels(logged),
             (Some(_), Some(logged)) => self.levels_of_its_signs(logged),
@@ -116,7 +116,7 @@ impl Planner<'_> {
     fn settles_elsewhere(&self) -> Option<PlanError> {
         let (range, settling) = (self.rig.range?, self.logged?.settling.as_ref()?);
         let outputs = settling.outputs.clone();
-        (self.wishes.levels.is_none() && self.wishes.largest.is_none())
+        (self.request.levels.is_none() && self.request.largest.is_none())
             .then(|| PlanError::SettlesElsewhere { range, margin: self.bounded_margin(), outputs })
     }
 
@@ -131,7 +131,7 @@ impl Planner<'_> {
     fn largest(&self) -> f64 {
         let magnitude =
             |levels: &Vec<f64>| levels.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
-        let Wishes { levels, largest, .. } = self.wishes;
+        let PlanRequest { levels, largest, .. } = self.request;
         let logged = self.logged.map(Logged::largest).filter(|largest| *largest > 0.0);
         let given = levels.as_ref().map(magnitude).or(*largest).or(logged);
         given.unwrap_or_else(|| default_largest(self.model(), self.rig))
@@ -142,7 +142,7 @@ impl Planner<'_> {
         let usual = || default_hold_s(self.model(), self.rig, largest);
         let settling = self.logged.and_then(|logged| logged.settling.as_ref());
         let usual = || settling.map_or_else(usual, |settling| settling_hold_s(settling.time_s));
-        self.wishes.hold_s.unwrap_or_else(usual)
+        self.request.hold_s.unwrap_or_else(usual)
     }
 
     fn model(&self) -> Option<&crate::model::JointModel> {
@@ -164,8 +164,12 @@ mod tests {
         Uncertain { free_run, ..Uncertain::by_share(JointModel::integrator(10.0, 0.2), 0.0) }
     }
 
-    fn within(range: (f64, f64), per_second: f64, wishes: &Wishes) -> Result<Plan, PlanError> {
-        plan(wishes, &rig(Some(range)), Some(&known(per_second)), None, 0)
+    fn within(
+        range: (f64, f64),
+        per_second: f64,
+        request: &PlanRequest,
+    ) -> Result<Plan, PlanError> {
+        plan(request, &rig(Some(range)), Some(&known(per_second)), None, 0)
     }
 
     /// A line on what came of it: a plan has many numbers.
@@ -178,8 +182,8 @@ mod tests {
 
     #[test]
     fn a_plan_stays_in_the_range_goes_back_and_ends_at_rest_near_the_middle() {
-        let wishes = Wishes { duration_s: Some(60.0), seed: 4, ..Wishes::default() };
-        let made = within((-30.0, 30.0), 0.1, &wishes).unwrap();
+        let request = PlanRequest { duration_s: Some(60.0), seed: 4, ..PlanRequest::default() };
+        let made = within((-30.0, 30.0), 0.1, &request).unwrap();
         let prediction = made.prediction.unwrap();
         assert_eq!(prediction.kept_until((-30.0, 30.0)), None);
         assert!(prediction.output.last().unwrap().abs() < 15.0);
@@ -190,7 +194,7 @@ mod tests {
 
     #[test]
     fn what_one_trial_cannot_promise_several_do_and_each_starts_anew() {
-        let asked = Wishes { duration_s: Some(120.0), ..Wishes::default() };
+        let asked = PlanRequest { duration_s: Some(120.0), ..PlanRequest::default() };
         let made = within((-13.0, 13.0), 0.05, &asked).unwrap();
         let trials = made.schedule.trials();
         assert!(trials.len() > 1 && (made.schedule.duration_s() - 120.0).abs() < 0.02);
@@ -213,7 +217,7 @@ mod tests {
     #[test]
     fn no_trial_is_longer_than_the_runs_that_its_margin_is_made_of_allow() {
         // Nothing but the length of its runs, 10 s, speaks against 120 s in one.
-        let asked = Wishes { duration_s: Some(120.0), ..Wishes::default() };
+        let asked = PlanRequest { duration_s: Some(120.0), ..PlanRequest::default() };
         let made = within((-40.0, 40.0), 0.001, &asked).unwrap();
         let longest = made.schedule.trials().iter().map(Schedule::duration_s).fold(0.0, f64::max);
         let trusted_s = FreeRunError::growing(0.001).trusted_s();
@@ -222,21 +226,22 @@ mod tests {
 
     #[test]
     fn what_cannot_be_kept_is_refused_with_a_remedy_that_does() {
-        let asked = Wishes { duration_s: Some(20.0), trials: Some(1), ..Wishes::default() };
+        let asked =
+            PlanRequest { duration_s: Some(20.0), trials: Some(1), ..PlanRequest::default() };
         let refused = refusal(within((-9.0, 9.0), 0.2, &asked));
         let PlanError::NotKept { why, .. } = &refused else { panic!("{refused}") };
         assert!((why.margin.unwrap() - 8.0).abs() < 1e-9);
-        let shorter = Wishes { duration_s: why.shorter_s, ..asked.clone() };
+        let shorter = PlanRequest { duration_s: why.shorter_s, ..asked.clone() };
         assert!(why.shorter_s.is_some() && within((-9.0, 9.0), 0.2, &shorter).is_ok());
         assert!(within(why.wider.unwrap(), 0.2, &asked).is_ok());
         assert!(refused.to_string().contains("-9 to 9 cannot be kept for 20 s"), "{refused}");
-        let refused = refusal(within((-3.0, 3.0), 0.2, &Wishes::default()));
+        let refused = refusal(within((-3.0, 3.0), 0.2, &PlanRequest::default()));
         assert!(refused.to_string().contains("nor in trials of"), "{refused}");
     }
 
     #[test]
     fn the_length_of_one_trial_is_shortened_where_it_was_left_open() {
-        let one = Wishes { trials: Some(1), ..Wishes::default() };
+        let one = PlanRequest { trials: Some(1), ..PlanRequest::default() };
         let made = within((-13.0, 13.0), 0.2, &one).unwrap();
         assert_eq!((made.shortened_from_s, made.schedule.trial_count()), (Some(120.0), 1));
         assert!(made.schedule.duration_s() < 120.0);
@@ -249,7 +254,7 @@ mod tests {
         assert_eq!(reach((5.0, 60.0), Some(&logged)), Ok((5.0, 22.0)));
         assert!(matches!(reach((30.0, 60.0), Some(&logged)), Err(PlanError::Elsewhere { .. })));
         let near = TestRig { start: -20.0, ..rig(Some((-20.0, 20.0))) };
-        let refused = plan(&Wishes::default(), &near, Some(&known(0.1)), None, 0);
+        let refused = plan(&PlanRequest::default(), &near, Some(&known(0.1)), None, 0);
         assert!(matches!(refused, Err(PlanError::Start { .. })));
     }
 }

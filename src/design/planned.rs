@@ -6,7 +6,7 @@ use super::schedule::Schedule;
 
 /// What is asked of random steps; what is left open suits the joint.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Wishes {
+pub struct PlanRequest {
     /// The levels, as differences to rest.
     pub levels: Option<Vec<f64>>,
     /// The largest magnitude of a level.

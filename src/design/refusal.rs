@@ -1,5 +1,7 @@
 //! Why no random steps are planned, and what would do.
 
+use crate::numerics::{decimal_exponent, to_multiple};
+
 /// Why there are no such steps.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -111,10 +113,9 @@ impl std::fmt::Display for NotKept {
     }
 }
 
-/// `x` to four digits or so, as it is typed.
+/// `x` to four digits, as it is typed; whole digits are all kept.
 pub(crate) fn rounded(x: f64) -> f64 {
-    let scale = 10_f64.powf(3.0 - x.abs().max(f64::MIN_POSITIVE).log10().floor().clamp(-9.0, 3.0));
-    (x * scale).round() / scale
+    to_multiple(x, decimal_exponent(x.abs().max(f64::MIN_POSITIVE)).clamp(-9, 3) - 3)
 }
 
 fn with_margin(margin: f64) -> String {

@@ -3,7 +3,7 @@
 
 use super::free_run::FreeRunError;
 use super::logged::Logged;
-use super::planned::{Plan, Wishes};
+use super::planned::{Plan, PlanRequest};
 use super::predict::{Prediction, TestRig, Uncertain};
 use super::random::{Behind, RandomSteps, differ, random_steps_within};
 use super::refusal::{NotKept, PlanError, rounded};
@@ -59,7 +59,7 @@ struct Division {
 /// A joint that is to be kept in a range.
 #[derive(Clone, Copy)]
 pub(super) struct Keeper<'a> {
-    pub(super) wishes: &'a Wishes,
+    pub(super) request: &'a PlanRequest,
     pub(super) rig: &'a TestRig,
     pub(super) known: &'a Uncertain,
     pub(super) logged: Option<&'a Logged>,
@@ -81,7 +81,7 @@ impl Keeper<'_> {
     ) -> Result<Plan, PlanError> {
         let ways = self.ways(levels, hold_s);
         let divisions = self.divisions(&ways);
-        let is_open = self.wishes.duration_s.is_none();
+        let is_open = self.request.duration_s.is_none();
         let asked = |divisions: &[Division], range| self.divided(range, &ways, divisions);
         // A length that nobody asked for may be shortened.
         let wanted = |division: &Division| is_open || self.is_whole(*division);
@@ -116,15 +116,15 @@ impl Keeper<'_> {
     /// How the input may be divided, best first: the fewest trials that are no longer than what
     /// shows how far predictions are off, and then shorter inputs where there may be one trial only.
     fn divisions(&self, ways: &[(Vec<f64>, (f64, f64))]) -> Vec<Division> {
-        let Self { duration_s, wishes, known, .. } = *self;
+        let Self { duration_s, request, known, .. } = *self;
         let one = Division { trials: 1, trial_s: duration_s };
         let shortest_s = ways.iter().map(|(_, hold_s)| hold_s.0).fold(f64::INFINITY, f64::min);
         let is_bounded = known.free_run.as_ref().is_some_and(FreeRunError::is_bounded);
-        let others: Vec<Division> = if wishes.trials == Some(1) || is_bounded {
+        let others: Vec<Division> = if request.trials == Some(1) || is_bounded {
             let shorter = SHORTER.iter().map(|part| (part * duration_s).round());
             shorter.map(|trial_s| Division { trials: 1, trial_s }).collect()
         } else {
-            let most = wishes.trials.unwrap_or(if wishes.duration_s.is_some() {
+            let most = request.trials.unwrap_or(if request.duration_s.is_some() {
                 usize::MAX
             } else {
                 MOST_TRIALS
@@ -167,7 +167,7 @@ impl Keeper<'_> {
                 None => {}
             }
         }
-        partial.filter(|_| self.wishes.levels.is_none())
+        partial.filter(|_| self.request.levels.is_none())
     }
 
     /// The narrowest wider range that will do.
@@ -187,7 +187,7 @@ impl Keeper<'_> {
         /// Of shorter holds a fit sees little.
         const SHORTEST_S: f64 = 0.5;
         let mut holds = vec![hold_s];
-        if self.wishes.hold_s.is_none() {
+        if self.request.hold_s.is_none() {
             holds.push((hold_s.0, SHORT * hold_s.0));
             // The usual ones are twice as long as the response.
             let half = 0.5 * hold_s.0;
@@ -198,7 +198,7 @@ impl Keeper<'_> {
             [_, inner @ .., _] => inner.to_vec(),
             _ => Vec::new(),
         };
-        if self.wishes.levels.is_none() && smaller.len() > 2 {
+        if self.request.levels.is_none() && smaller.len() > 2 {
             sets.push(smaller);
         }
         let ways = sets.iter().flat_map(|levels| holds.iter().map(|hold| (levels.clone(), *hold)));
@@ -223,7 +223,7 @@ impl Keeper<'_> {
         let all = ways.first().map_or(&[][..], |(levels, _)| levels.as_slice());
         let mut found = Vec::new();
         for (levels, hold_s) in ways {
-            let seed = self.wishes.seed;
+            let seed = self.request.seed;
             let duration_s = division.trial_s;
             let steps = RandomSteps { levels: levels.clone(), hold_s: *hold_s, duration_s, seed };
             let Some((schedule, prediction)) = self.trials(&steps, range, division.trials) else {

@@ -33,7 +33,7 @@
 
 use super::input_edges::InputEdges;
 use super::local_misfit::LocalMisfit;
-use super::residual_size::{BEYOND_NOISE, ResidualSize, Says, independent, is_near_noise};
+use super::residual_size::{BEYOND_NOISE, ResidualSize, SizeVerdict, independent, is_near_noise};
 use super::shown_by::ShownBy;
 use crate::numerics::NoiseModel;
 use crate::numerics::fisher_tail;
@@ -114,9 +114,9 @@ pub fn lack_of_fit(columns: &TestColumns, shapes: impl Fn() -> Vec<Column>) -> O
     let noise_is_known = is_noise(columns.size.times_noise, misfit_share);
     // Step 4, and then step 5.
     let as_a_whole = match columns.size.verdict() {
-        Some(Says::Misfit(shown_by)) => Some(shown_by),
-        Some(Says::Noise) if noise_is_known => None,
-        Some(Says::Noise) | None => by_shapes.then_some(ShownBy::Shapes),
+        Some(SizeVerdict::Misfit(shown_by)) => Some(shown_by),
+        Some(SizeVerdict::Noise) if noise_is_known => None,
+        Some(SizeVerdict::Noise) | None => by_shapes.then_some(ShownBy::Shapes),
     };
     let is_uneven = columns.local.is_some_and(|local| local.is_shown());
     let shown_by = as_a_whole.or_else(|| is_uneven.then_some(ShownBy::FewWindows));

@@ -13,7 +13,7 @@ pub(crate) const NEAR_NOISE: f64 = 1.15;
 
 /// What the size of a residual says of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Says {
+pub(super) enum SizeVerdict {
     /// It is negligible.
     Noise,
     /// It is no noise.
@@ -50,13 +50,13 @@ impl ResidualSize {
     }
 
     /// What it says by itself; `None` where it may be noise or not.
-    pub(super) fn verdict(&self) -> Option<Says> {
+    pub(super) fn verdict(&self) -> Option<SizeVerdict> {
         match self.times_noise {
-            Some(times) if times > BEYOND_NOISE => Some(Says::Misfit(ShownBy::Size)),
+            Some(times) if times > BEYOND_NOISE => Some(SizeVerdict::Misfit(ShownBy::Size)),
             Some(times) if self.is_larger_unseen() && times > 0.0 => {
-                Some(Says::Misfit(ShownBy::UnseenPart))
+                Some(SizeVerdict::Misfit(ShownBy::UnseenPart))
             }
-            Some(times) if times <= NEAR_NOISE => Some(Says::Noise),
+            Some(times) if times <= NEAR_NOISE => Some(SizeVerdict::Noise),
             _ => None,
         }
     }
@@ -159,10 +159,10 @@ mod tests {
 
     #[test]
     fn what_is_larger_there_is_no_noise() {
-        let unseen = Some(Says::Misfit(ShownBy::UnseenPart));
+        let unseen = Some(SizeVerdict::Misfit(ShownBy::UnseenPart));
         assert!((0..20).all(|seed| size(0.95, seed, 1.6).verdict() == unseen));
         // Near the noise it does not matter.
         let near = ResidualSize { times_noise: Some(0.7), ..size(0.0, 1, 1.6) };
-        assert_eq!(near.verdict(), Some(Says::Noise));
+        assert_eq!(near.verdict(), Some(SizeVerdict::Noise));
     }
 }

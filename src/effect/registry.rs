@@ -8,6 +8,7 @@ use super::{
     OilColumn, PositionGain, RateLimit, Resonance, SpoolLag, Stiction, SupplyDroop, ThermalDrift,
     VariableDelay,
 };
+use crate::experiment::did_you_mean;
 
 /// Every built-in effect, in the order the documentation lists them.
 pub const REGISTRY: &[&dyn Effect] = &[
@@ -37,7 +38,7 @@ pub const REGISTRY: &[&dyn Effect] = &[
 
 /// No effect has this id.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no effect `{id}`; the nearest is `{nearest}`")]
+#[error("there is no effect `{id}`{}", did_you_mean(Some(nearest)))]
 pub struct UnknownEffect {
     /// What was asked for.
     pub id: String,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::joint::TrialError;
-use super::names::shown;
+use super::names::{did_you_mean, shown};
 
 /// Why a log, or one joint of it, could not be read.
 ///
@@ -210,7 +210,7 @@ pub enum ReadError {
     /// A column that is needed is not there.
     #[error(
         "{}{}: column `{column}` is missing{}; the columns are: {available}",
-        path.display(), header(*row), suggestion(nearest.as_deref())
+        path.display(), header(*row), did_you_mean(nearest.as_deref())
     )]
     MissingColumn {
         /// The log.
@@ -240,7 +240,7 @@ pub enum ReadError {
     /// A joint that was asked for is not in the log.
     #[error(
         "{}: no joint `{joint}`{}; the joints are: {available}",
-        path.display(), suggestion(nearest.as_deref())
+        path.display(), did_you_mean(nearest.as_deref())
     )]
     UnknownJoint {
         /// The log.
@@ -646,10 +646,6 @@ fn bytes(count: u64) -> String {
 /// Where a header stands, in a file that has lines.
 fn header(row: u64) -> String {
     if row == 0 { String::new() } else { format!(", row {row}") }
-}
-
-fn suggestion(nearest: Option<&str>) -> String {
-    nearest.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
 }
 
 fn number_hint(text: &str) -> &'static str {

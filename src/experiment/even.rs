@@ -2,6 +2,7 @@
 
 use super::clock::{Clock, ClockFault, Evenness, Run, filled_s, rate_changes};
 use super::sampling::{Fault, Grid, Part, Repair, is_uniform};
+use crate::numerics::as_written;
 use crate::units::SamplePeriod;
 
 /// Trials whose periods differ by less are of one rate: the tolerance of a uniform clock.
@@ -106,9 +107,8 @@ fn mean_period(clocks: &[&Clock]) -> f64 {
 
 /// `period` with as few digits as leave it right to a part `tolerance`.
 fn rounded(period: f64, tolerance: f64) -> f64 {
-    let of_digits = |digits: usize| format!("{period:.digits$e}").parse::<f64>().ok();
     let is_right = |rounded: &f64| (rounded / period - 1.0).abs() <= tolerance;
-    (0..9).filter_map(of_digits).find(is_right).unwrap_or(period)
+    (1..=9).map(|digits| as_written(period, digits)).find(is_right).unwrap_or(period)
 }
 
 /// The grid of a run.
@@ -310,14 +310,12 @@ fn duration(seconds: f64) -> String {
         1e-3.. => (seconds * 1e3, "ms"),
         _ => (seconds * 1e6, "µs"),
     };
-    let value: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    format!("{value} {unit}")
+    format!("{} {unit}", as_written(value, 4))
 }
 
 /// A percentage to two digits: `2.3`, `14`, `0.087`.
 fn two_digits(percent: f64) -> String {
-    let value: f64 = format!("{percent:.1e}").parse().unwrap_or(percent);
-    value.to_string()
+    as_written(percent, 2).to_string()
 }
 
 #[cfg(test)]

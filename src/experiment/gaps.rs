@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::joint::{Joint, Trial};
+use crate::numerics::to_digits_by;
 use crate::units::floor_to_index;
 
 /// The longest gap between two parts of a trial that was split, with a period to spare, to three
@@ -14,8 +15,7 @@ pub(crate) fn longest_gap_s(trials: &[Trial]) -> Option<f64> {
         (are_of_one(before, behind) && gap > 0.0).then(|| gap + before.period().seconds())
     };
     let longest = trials.windows(2).filter_map(gap).max_by(f64::total_cmp)?;
-    let digits = 10_f64.powf(2.0 - longest.log10().floor());
-    Some((longest * digits).ceil() / digits)
+    Some(to_digits_by(longest, 3, f64::ceil))
 }
 
 /// The longest gap of a joint whose input changes in gaps and nowhere else: a logger that pauses

@@ -14,6 +14,7 @@ use super::period::is_period;
 use super::sampling::{Fault, Grid, Piece, Repair, Signals};
 use super::table::{BadCell, Coarse, Column, Head, Table, TrialRows};
 use super::wrap::Wrap;
+use crate::numerics::to_digits_by;
 use crate::units::SamplePeriod;
 
 /// Memory of a sample of a signal: the number as it was read, on its grid and in its trial, and
@@ -615,10 +616,7 @@ enum Clock {
 
 /// A length of time to three digits, no longer one shorter: who fills gaps up to it fills this one.
 fn to_three_digits(seconds: f64) -> f64 {
-    let unit = 10_f64.powf(seconds.log10().floor() - 2.0);
-    let digits = (seconds / unit * (1.0 - 1e-9)).ceil();
-    // Division by a whole power of ten rounds as the decimal number does.
-    if unit < 1.0 { digits / unit.recip().round() } else { digits * unit.round() }
+    to_digits_by(seconds, 3, |digits| (digits * (1.0 - 1e-9)).ceil())
 }
 
 /// Names of the parts of a trial that was split: `a#1`, `a#2`, with as many marks as it

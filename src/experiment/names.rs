@@ -55,9 +55,24 @@ pub(crate) fn nearest_name<'a>(
     best.filter(|(similarity, _)| *similarity > SIMILAR).map(|(_, name)| name)
 }
 
+/// ` (did you mean `…`?)`, behind what was not found; nothing where no name is near.
+pub(crate) fn did_you_mean(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_a_name_that_is_alike_is_offered() {
+        let offered = |wanted, names: &[&'static str]| {
+            did_you_mean(nearest_name(wanted, names.iter().copied()))
+        };
+        assert_eq!(offered("bom", &["stick", "boom"]), " (did you mean `boom`?)");
+        assert_eq!(offered("jaw", &["stick", "boom"]), "");
+        assert_eq!(offered("jaw", &[]), "");
+    }
 
     #[test]
     fn a_name_is_one_line_that_no_terminal_obeys() {

@@ -4,6 +4,8 @@
 //! sample, which no joint makes. Where all large jumps of an output are of a turn, they are taken
 //! out.
 
+use crate::numerics::to_decimals;
+
 /// A sensor that wraps after so much, output units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wrap {
@@ -73,7 +75,7 @@ impl Wrap {
         let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
         format!(
             "the output wraps at a turn of {}{unit}, {times}: it is unwrapped",
-            (self.turn * 1e4).round() / 1e4
+            to_decimals(self.turn, 4)
         )
     }
 }

@@ -1,5 +1,7 @@
 //! Ranges of axes with their ticks, and signals thinned to what can be seen.
 
+use crate::numerics::as_written;
+
 /// Data range of an axis; never empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Span {
@@ -72,7 +74,7 @@ pub(crate) fn thinned_to(values: &[f64], points: usize) -> Vec<usize> {
 
 /// What a tick of a logarithmic axis stands for, to two digits.
 pub(crate) fn power_of_ten(tick: f64) -> f64 {
-    format!("{:.1e}", 10_f64.powf(tick)).parse().unwrap_or(0.0)
+    as_written(10_f64.powf(tick), 2)
 }
 
 #[cfg(test)]

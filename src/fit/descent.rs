@@ -40,7 +40,7 @@ pub(super) struct Limits {
     /// It has converged when a linear step would make the sum of squares less by a smaller part.
     pub(super) relative_gain: f64,
     /// Steps that are tried.
-    pub(super) patience: usize,
+    pub(super) max_iterations: usize,
     /// Whether slopes are differenced anew before a descent has converged; where it is only to
     /// be seen where one leads, those that were mended will do.
     pub(super) sure: bool,
@@ -146,7 +146,7 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
     }
 
     fn run(mut self, limits: Limits) -> (Termination, Option<DMatrix<f64>>) {
-        for _ in 0..limits.patience {
+        for _ in 0..limits.max_iterations {
             if !self.is_finite() {
                 return self.ended(Termination::Numerical);
             }

@@ -12,7 +12,7 @@ use crate::model::{
     outputs_together, simulate_together,
 };
 
-/// How stretches are simulated: as a whole, or the output alone.
+/// How ranges of samples are simulated: as a whole, or the output alone.
 type Simulate = fn(&[Driven<'_>]) -> Vec<Simulated>;
 
 /// A model on one trial, and what the two need of the record.
@@ -62,7 +62,7 @@ impl Run<'_> {
     }
 
     /// A small part of what the output spans.
-    fn nudge(&self) -> f64 {
+    fn perturbation(&self) -> f64 {
         /// Small against what changes an effect, large against rounding.
         const PART: f64 = 1e-5;
         PART * self.span.max(f64::MIN_POSITIVE.sqrt())
@@ -81,43 +81,44 @@ impl Run<'_> {
         self.windows.iter().zip(starts).map(restart).collect()
     }
 
-    /// The stretches of this run, which is that at `index`, from the `starts` of its windows.
+    /// The ranges of this run, which is that at `index`, from the `starts` of its windows.
     fn pieces(&self, index: usize, starts: &[f64]) -> Vec<Piece> {
         let restarts = self.restarts(starts);
-        let stretches = stretches(&self.windows);
-        if let [only] = stretches.as_slice()
+        let ranges = simulated_ranges(&self.windows);
+        if let [only] = ranges.as_slice()
             && only.start == 0
         {
-            return vec![Piece { of: index, stretch: only.clone(), arrivals: None, restarts }];
+            return vec![Piece { of: index, range: only.clone(), arrivals: None, restarts }];
         }
-        let piece = |stretch: Range<usize>| {
-            let own = restarts.iter().filter(|restart| stretch.contains(&restart.sample));
-            let shifted = own.map(|r| Restart { sample: r.sample - stretch.start, ..*r });
+        let piece = |range: Range<usize>| {
+            let own = restarts.iter().filter(|restart| range.contains(&restart.sample));
+            let shifted = own.map(|r| Restart { sample: r.sample - range.start, ..*r });
             // It begins as it was measured.
-            let output = self.trial.output()[stretch.start];
+            let output = self.trial.output()[range.start];
             let begin = Restart { sample: 0, output, speed: None };
             let restarts = std::iter::once(begin).chain(shifted).collect();
-            let ends = (self.seconds(stretch.start), self.seconds(stretch.end));
-            let arrivals = (stretch.start > 0).then(|| self.arrivals.between(ends.0, ends.1));
-            Piece { of: index, stretch, arrivals, restarts }
+            let ends = (self.seconds(range.start), self.seconds(range.end));
+            let arrivals = (range.start > 0).then(|| self.arrivals.between(ends.0, ends.1));
+            Piece { of: index, range, arrivals, restarts }
         };
-        stretches.into_iter().map(piece).collect()
+        ranges.into_iter().map(piece).collect()
     }
 
     /// What is simulated before it is, with room for outputs where they come in parts.
     fn nothing_yet(&self) -> Simulated {
-        let is_whole = matches!(stretches(&self.windows).as_slice(), [only] if only.start == 0);
+        let is_whole =
+            matches!(simulated_ranges(&self.windows).as_slice(), [only] if only.start == 0);
         let samples = self.windows.last().map_or(0, |window| window.end);
         Simulated::with_room_for(if is_whole { 0 } else { samples })
     }
 
     fn driven<'p>(&'p self, piece: &'p Piece) -> Driven<'p> {
-        let start = piece.stretch.start;
+        let start = piece.range.start;
         Driven {
             model: &self.model,
             arrivals: piece.arrivals.as_ref().unwrap_or(&self.arrivals),
             restarts: &piece.restarts,
-            samples: piece.stretch.len(),
+            samples: piece.range.len(),
             period_s: self.trial.period().seconds(),
             surroundings: Surroundings {
                 others: self.surroundings.others.get(start..).unwrap_or_default(),
@@ -157,8 +158,8 @@ impl Run<'_> {
 pub(super) fn best_starts(runs: &[Run<'_>]) -> Vec<Starts> {
     let measured: Vec<Vec<f64>> = runs.iter().map(Run::measured_starts).collect();
     let ahead = |(run, starts): (&Run<'_>, &Vec<f64>)| -> Vec<f64> {
-        let nudge = run.nudge();
-        starts.iter().map(|start| start + nudge).collect()
+        let perturbation = run.perturbation();
+        starts.iter().map(|start| start + perturbation).collect()
     };
     let ahead: Vec<Vec<f64>> = runs.iter().zip(&measured).map(ahead).collect();
     let all = runs.iter().zip(measured.iter().zip(&ahead));
@@ -172,8 +173,8 @@ pub(super) fn best_starts(runs: &[Run<'_>]) -> Vec<Starts> {
         let Some([Simulated { output: here, .. }, Simulated { output: ahead, .. }]) = pair else {
             return Starts { outputs, slope: None };
         };
-        let nudge = run.nudge();
-        let slope: Vec<f64> = ahead.iter().zip(here).map(|(a, b)| (a - b) / nudge).collect();
+        let perturbation = run.perturbation();
+        let slope: Vec<f64> = ahead.iter().zip(here).map(|(a, b)| (a - b) / perturbation).collect();
         let wrong = run.shifts(here, Some(&slope));
         let outputs = outputs.iter().zip(wrong).map(|(start, by)| start + by).collect();
         Starts { outputs, slope: Some(slope) }
@@ -216,42 +217,42 @@ fn simulated(begun: &[(&Run<'_>, &[f64])], simulate: Simulate) -> Vec<Simulated>
     let pieces = pieces.flat_map(|(index, (run, starts))| run.pieces(index, starts));
     let pieces: Vec<Piece> = pieces.collect();
     let mut whole: Vec<Simulated> = begun.iter().map(|(run, _)| run.nothing_yet()).collect();
-    // So many at a time, lest all stretches are held twice.
+    // So many at a time, lest all ranges are held twice.
     for some in pieces.chunks(BESIDE) {
         let driven = some.iter().filter_map(|piece| Some(begun.get(piece.of)?.0.driven(piece)));
         let parts = simulate(&driven.collect::<Vec<_>>());
         for (piece, part) in some.iter().zip(parts) {
             if let Some(whole) = whole.get_mut(piece.of) {
-                whole.append_at(piece.stretch.start, part);
+                whole.append_at(piece.range.start, part);
             }
         }
     }
     whole
 }
 
-/// A stretch of the run at the index `of`, to be simulated.
+/// A part of the run at the index `of`, to be simulated.
 struct Piece {
     of: usize,
-    stretch: Range<usize>,
+    range: Range<usize>,
     /// What arrives from its start on, where that is not that of the trial.
     arrivals: Option<Arrivals>,
     /// Counted from its start.
     restarts: Vec<Restart>,
 }
 
-/// Samples before a stretch that are simulated, so that it does not begin at rest.
+/// Samples before a window that are simulated, so that it does not begin at rest.
 const LEAD_IN: usize = 150;
 
-/// Samples that are simulated: windows without a gap are one stretch, and the first of them
+/// Samples that are simulated: windows without a gap are one range, and the first of them
 /// has a lead-in.
-fn stretches(windows: &[Window]) -> Vec<Range<usize>> {
-    let mut stretches: Vec<Range<usize>> = Vec::new();
+fn simulated_ranges(windows: &[Window]) -> Vec<Range<usize>> {
+    let mut ranges: Vec<Range<usize>> = Vec::new();
     for window in windows {
-        let before = stretches.last_mut().map(|last| (last.end, last));
+        let before = ranges.last_mut().map(|last| (last.end, last));
         match before {
             Some((end, last)) if window.start <= end + LEAD_IN => last.end = window.end,
-            _ => stretches.push(window.start.saturating_sub(LEAD_IN)..window.end),
+            _ => ranges.push(window.start.saturating_sub(LEAD_IN)..window.end),
         }
     }
-    stretches
+    ranges
 }

@@ -22,17 +22,17 @@ pub(super) struct Search<'p, 'r> {
 }
 
 /// To see which of several starts leads down.
-pub(super) const ROUGH: Limits = Limits { relative_gain: 3e-3, patience: 16, sure: false };
+pub(super) const ROUGH: Limits = Limits { relative_gain: 3e-3, max_iterations: 16, sure: false };
 
 /// To compare models: what could still be gained is far below the noise.
 pub(super) fn comparing(samples: usize) -> Limits {
-    Limits { relative_gain: 1e-2 / samples.max(1) as f64, patience: 100, sure: true }
+    Limits { relative_gain: 1e-2 / samples.max(1) as f64, max_iterations: 100, sure: true }
 }
 
 /// As far as the data reach: one standard error of a parameter changes the sum of squares of
 /// `n` samples by its part `1/n`, a hundredth of one by `1e-4/n`.
 pub(super) fn whole(samples: usize) -> Limits {
-    Limits { relative_gain: 1e-4 / samples.max(1) as f64, patience: 400, sure: true }
+    Limits { relative_gain: 1e-4 / samples.max(1) as f64, max_iterations: 400, sure: true }
 }
 
 impl<'p, 'r> Search<'p, 'r> {

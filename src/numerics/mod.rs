@@ -14,6 +14,7 @@ mod normal_equations;
 mod projection;
 pub(crate) mod rank;
 mod regression;
+mod rounding;
 mod statistics;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -28,6 +29,9 @@ pub(crate) use normal_equations::NormalEquations;
 pub(crate) use projection::{Basis, Projection};
 pub(crate) use rank::{PseudoInverse, REGRESSORS};
 pub(crate) use regression::{Regression, residuals_of};
+pub(crate) use rounding::{
+    as_written, decimal_exponent, to_decimals, to_digits, to_digits_by, to_multiple, to_nanoseconds,
+};
 pub use statistics::{RankTest, mann_whitney, median, quantile, ranks, spearman};
 pub(crate) use statistics::{chi_square_tail, fisher_tail, holm, normal_below, student_quantile};
 pub(crate) use statistics::{noise_of_differences, quantile_of, robust_scale};

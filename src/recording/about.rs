@@ -13,7 +13,7 @@ use super::paths::ABOUT;
 use super::recorded::Recording;
 use crate::figure::ladder::judged;
 use crate::report::{
-    EstimatedJoint, JointSummary, LEVEL_HEADER, SUMMARY_HEADER, Words, change_in_words,
+    EstimatedJoint, JointSummary, LEVEL_HEADER, ReviewCount, SUMMARY_HEADER, change_in_words,
     chosen_line, dead_time_sentences, doubtful_lines, kind_sentence, level_cells, settings_rows,
     summary_cells,
 };
@@ -49,7 +49,7 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
     for (joint, summary) in recording.joints.iter().zip(&summaries) {
         let name = plain(&joint.joint.name);
         let sentences = summary.headline.kinds().iter().map(kind_sentence);
-        let sentences = sentences.chain(summary.words.map(Words::sentence));
+        let sentences = sentences.chain(summary.reviewed.map(ReviewCount::sentence));
         for sentence in sentences.chain(dead_time_sentences(joint)) {
             writeln!(page, "- {name}: {sentence}")?;
         }

@@ -11,6 +11,7 @@ use super::paths::{at, error_share, of_model};
 use super::sheet::Sheet;
 use crate::diagnosis::failure::{Feature, Region};
 use crate::figure::error_share::{FeatureShares, Share, is_level};
+use crate::numerics::as_written;
 use crate::report::ComparedJoint;
 use crate::wording::{feature_with_unit, number};
 
@@ -154,7 +155,7 @@ fn name(region: &Region) -> String {
 
 /// A number in three digits.
 pub(super) fn short(value: f64) -> String {
-    format!("{value:.2e}").parse().map_or_else(|_| number(value), number)
+    number(as_written(value, 3))
 }
 
 /// The lines that fill the bars of one model.

@@ -8,7 +8,7 @@ use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::paths::{self, at};
-use crate::wording::number;
+use crate::wording::to_place;
 
 /// Adds `/place`.
 pub(super) fn add(
@@ -67,7 +67,7 @@ const AXIS: &str = "*`decision` counts candidates: choose `time` for an axis in 
 fn words(layout: &JointLayout<'_>, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let decision = segment.decision;
     let p = decision.input_step.sample;
-    let seconds = |s: f64| number((s * 1e3).round() / 1e3);
+    let seconds = |s: f64| to_place(s, 3);
     let of = trial.segments.len();
     let in_trial = format!(
         "**step {} of {of}**: p = sample {p} at {} s",

@@ -141,7 +141,7 @@ fn verdict(trial: &TrialLayout<'_>, decision: &Decision) -> String {
         (Verdict::Rejected(condition), _) => format!("✗ {}", condition.meaning()),
         (Verdict::Accepted, delay) => format!("✓ {}", delay.map_or_else(String::new, seconds)),
     };
-    if decision.word.is_some() {
+    if decision.reviewer_verdict.is_some() {
         let said = match (decision.verdict(), decision.delay()) {
             (Verdict::Accepted, Some(delay)) => format!("✓ by a reviewer {}", seconds(delay)),
             (Verdict::Accepted, None) => "✓ by a reviewer".to_owned(),
@@ -293,15 +293,15 @@ impl Facts<'_, '_> {
 
     fn headline(&self) -> String {
         let decision = self.segment.decision;
-        match &decision.word {
+        match &decision.reviewer_verdict {
             None => self.program_headline(),
-            Some(word) => {
-                let said = match (word.accepted, decision.delay()) {
+            Some(reviewed) => {
+                let said = match (reviewed.accepted, decision.delay()) {
                     (true, Some(delay)) => format!("✓ accepted: delay {}", self.delay(delay)),
                     (true, None) => "✓ accepted".to_owned(),
                     (false, _) => "✗ rejected".to_owned(),
                 };
-                let (by, note) = (plain(&word.reviewer), plain(&word.note));
+                let (by, note) = (plain(&reviewed.reviewer), plain(&reviewed.note));
                 let by = if by.is_empty() { "a reviewer".to_owned() } else { by };
                 let note = if note.is_empty() { note } else { format!("\n> {note}\n") };
                 let program = self.program_headline().replacen("## ", "", 1);

@@ -6,6 +6,7 @@ use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::explain::Addition;
 use crate::model::JointModel;
+use crate::numerics::to_decimals;
 use crate::wording::{effect_ids, effects_text, number, p_text, with_unit};
 
 /// A joint whose model got another effect.
@@ -90,7 +91,7 @@ fn change(before: f64, after: f64, unit: Option<&str>) -> String {
     if !taken.is_finite() {
         return format!("{falls} from {from} to {to}");
     }
-    let share = (10.0 * taken.abs()).round() / 10.0;
+    let share = to_decimals(taken.abs(), 1);
     format!("{falls} from {from} to {to}, by {share} %")
 }
 

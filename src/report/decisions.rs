@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use super::{DataTable, EstimatedJoint, Kind};
 use crate::delay::{Check, Condition, Decision, Method, Settings, Verdict};
 use crate::experiment::Trial;
+use crate::numerics::to_nanoseconds;
 use crate::wording::remedy_text;
 
 /// One row of `--decisions`; sample numbers count from 1 within the trial.
@@ -108,7 +109,7 @@ impl<'a> DecisionRow<'a> {
             f_opt: candidate.map(|candidate| candidate.f),
             q: delta.map(|delta| decision.input_step.sample as f64 + delta),
             delta,
-            delta_s: delta.map(|delta| tidy_seconds(delta * trial.period().seconds())),
+            delta_s: delta.map(|delta| to_nanoseconds(delta * trial.period().seconds())),
             sse: candidate.map(|candidate| candidate.sse),
             slope_before: candidate.map(|candidate| candidate.before.slope),
             intercept_before: candidate.map(|candidate| candidate.before.intercept),
@@ -140,11 +141,6 @@ fn samples<S: Serializer>(value: &Option<f64>, serializer: S) -> Result<S::Ok, S
     }
 }
 
-/// Seconds to the nanosecond: `0.07`, not `0.07000000000000001`.
-pub(super) fn tidy_seconds(seconds: f64) -> f64 {
-    (seconds * 1e9).round() / 1e9
-}
-
 /// The rows of one joint, trial by trial.
 pub fn decision_rows(
     joint: EstimatedJoint<'_>,
@@ -168,7 +164,7 @@ pub(super) fn verdicts(
         let period_s = trial.period().seconds();
         estimate.decisions.iter().map(move |decision| {
             let delay = decision.delay();
-            (decision.verdict(), delay, delay.map(|delay| tidy_seconds(delay * period_s)))
+            (decision.verdict(), delay, delay.map(|delay| to_nanoseconds(delay * period_s)))
         })
     })
 }

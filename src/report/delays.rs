@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 use std::io::Write;
 
-use super::decisions::tidy_seconds;
 use super::table::Cell;
 use super::{DataTable, EstimatedJoint, Kind};
 use crate::delay::DelayProfile;
 use crate::experiment::Trial;
+use crate::numerics::to_nanoseconds;
 
 /// Writes `trial,sample,time_s,<joint>.tau…` as CSV: a row per sample, delays in samples,
 /// empty where none was recorded.
@@ -26,7 +26,7 @@ pub fn write_delays(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Resu
         for sample in 1..=longest.len() {
             writer.write_field(run.label())?;
             writer.write_field(sample.to_string())?;
-            writer.write_field(tidy_seconds(longest.logged_time_s(sample)).to_string())?;
+            writer.write_field(to_nanoseconds(longest.logged_time_s(sample)).to_string())?;
             for column in &columns {
                 let tau = column.and_then(|(_, profile)| profile.at(sample));
                 writer.write_field(tau.map_or_else(String::new, |tau| tau.to_string()))?;
@@ -49,7 +49,7 @@ pub(crate) fn delay_table(joints: &[EstimatedJoint<'_>]) -> DataTable {
         let trials = columns.iter().flatten().map(|(trial, _)| *trial);
         let Some(longest) = trials.max_by_key(|trial| trial.len()) else { continue };
         for sample in 1..=longest.len() {
-            let time_s = tidy_seconds(longest.logged_time_s(sample));
+            let time_s = to_nanoseconds(longest.logged_time_s(sample));
             let delays =
                 columns.iter().map(|column| column.and_then(|(_, profile)| profile.at(sample)));
             let mut cells =

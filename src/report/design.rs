@@ -2,9 +2,9 @@
 
 use std::io::Write;
 
-use super::decisions::tidy_seconds;
 use crate::design::{Design, FreeRunError, Hold, Order, Prediction, Schedule, TestRig};
 use crate::explain::Pattern;
+use crate::numerics::to_nanoseconds;
 
 /// The input of one joint, and what is expected of it.
 #[derive(Clone, Debug)]
@@ -92,9 +92,9 @@ pub(super) fn holds(schedule: &Schedule) -> Vec<Held> {
     let period_s = schedule.period().seconds();
     let of_trial = |(trial, schedule): (usize, Schedule)| {
         let hold = |start: &mut usize, hold: &Hold| {
-            let start_s = tidy_seconds(*start as f64 * period_s);
+            let start_s = to_nanoseconds(*start as f64 * period_s);
             *start += hold.samples;
-            let hold_s = tidy_seconds(hold.samples as f64 * period_s);
+            let hold_s = to_nanoseconds(hold.samples as f64 * period_s);
             Some(Held { trial, start_s, level: hold.level, hold_s })
         };
         schedule.holds().iter().scan(0, hold).collect::<Vec<_>>()
@@ -188,7 +188,7 @@ fn write_columns(joints: &[DesignedJoint], columns: &[Column], out: impl Write) 
             if trials > 1 {
                 writer.write_field((trial + 1).to_string())?;
             }
-            writer.write_field(tidy_seconds(row as f64 * period_s).to_string())?;
+            writer.write_field(to_nanoseconds(row as f64 * period_s).to_string())?;
             for Column { trials, after, .. } in columns {
                 let value = trials.get(trial).and_then(|values| values.get(row));
                 let value = value.copied().unwrap_or(*after);

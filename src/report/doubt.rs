@@ -52,10 +52,10 @@ pub(crate) fn doubtful_lines(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
     lines(&all_by_doubt(joints))
 }
 
-/// A line for each decision that is doubtful and on which no reviewer has said a word, of all by doubt.
+/// A line for each decision that is doubtful and on which no reviewer has judged, of all by doubt.
 fn lines(all: &[(EstimatedJoint<'_>, Doubted<'_>)]) -> Vec<String> {
     let doubtful = all.iter().take_while(|(_, found)| found.doubt.is_doubtful());
-    let open = doubtful.filter(|(_, found)| found.decision.word.is_none());
+    let open = doubtful.filter(|(_, found)| found.decision.reviewer_verdict.is_none());
     open.map(|(joint, found)| line(*joint, found)).collect()
 }
 
@@ -72,7 +72,7 @@ pub(super) fn doubtful_text(joints: &[EstimatedJoint<'_>]) -> String {
     };
     let said: String = doubtful.iter().take(MOST).flat_map(|line| ["  ", line, "\n"]).collect();
     let first = if doubtful.len() > MOST { "look first at" } else { "look at" };
-    let is_reviewed = all.iter().any(|(_, found)| found.decision.word.is_some());
+    let is_reviewed = all.iter().any(|(_, found)| found.decision.reviewer_verdict.is_some());
     let open = if is_reviewed { " and not reviewed" } else { "" };
     let (count, all) = (doubtful.len(), counted(steps, "decision"));
     format!("{count} of {all} {are} doubtful{open}; {first}\n{said}")

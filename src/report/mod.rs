@@ -12,7 +12,6 @@ mod delay_table;
 mod delays;
 mod design;
 mod design_words;
-mod desk;
 mod difference;
 mod doubt;
 mod effects;
@@ -29,6 +28,7 @@ mod model_delay;
 mod page;
 mod parameters;
 mod review;
+mod review_page;
 mod separation;
 mod settings;
 mod steps;
@@ -68,7 +68,6 @@ pub(crate) use design_words::{SIDE_HEADER, design_sentences, side_rows};
 pub(crate) use design_words::{
     design_text, hold_note, left_out_note, no_range_note, shortened_note, trials_note,
 };
-pub(crate) use desk::review_page;
 pub(crate) use difference::{Against, against_text};
 #[cfg(feature = "rrd")]
 pub(crate) use doubt::doubtful_lines;
@@ -89,7 +88,8 @@ pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{Document, Heading, RecordingFile, Report, report_text};
 #[cfg(feature = "rrd")]
 pub(crate) use parameters::{delay_of_steps, telling_parameters};
-pub(crate) use review::{Words, write_review_sheet};
+pub(crate) use review::{ReviewCount, write_review_sheet};
+pub(crate) use review_page::review_page;
 pub(crate) use settings::settings_in_short;
 #[cfg(feature = "rrd")]
 pub(crate) use settings::settings_rows;

@@ -1,13 +1,13 @@
-//! What persons said of the decisions: the sheet they fill in, and the count of their words.
+//! What persons said of the decisions: the sheet they fill in, and the count of their verdicts.
 
 use std::io::Write;
 
 use serde::Serialize;
 
-use super::decisions::tidy_seconds;
 use super::doubt::all_by_doubt;
 use super::{Doubted, EstimatedJoint};
 use crate::delay::Verdict;
+use crate::numerics::{to_decimals, to_nanoseconds};
 use crate::wording::{counted, doubt_sentence};
 
 /// A row of a review sheet: what to fill in, and what the program says.
@@ -33,29 +33,29 @@ impl<'a> SheetRow<'a> {
     pub(crate) fn of(joint: &'a str, doubted: &Doubted<'a>) -> Self {
         let Doubted { trial, decision, doubt, .. } = doubted;
         let period_s = trial.period().seconds();
-        let seconds = |delay: Option<f64>| delay.map(|delay| tidy_seconds(delay * period_s));
+        let seconds = |delay: Option<f64>| delay.map(|delay| to_nanoseconds(delay * period_s));
         let program = decision.program_verdict();
-        let word = decision.word.as_ref();
-        let said = |accepted| if accepted { "accepted" } else { "rejected" };
+        let said = decision.reviewer_verdict.as_ref();
+        let verdict = |accepted| if accepted { "accepted" } else { "rejected" };
         Self {
             joint,
             trial: trial.label(),
             i: decision.number,
-            verdict: word.map_or("", |word| said(word.accepted)),
-            delay_s: seconds(word.and_then(|word| word.delay)),
-            note: word.map_or("", |word| &word.note),
-            reviewer: word.map_or("", |word| &word.reviewer),
+            verdict: said.map_or("", |said| verdict(said.accepted)),
+            delay_s: seconds(said.and_then(|said| said.delay)),
+            note: said.map_or("", |said| &said.note),
+            reviewer: said.map_or("", |said| &said.reviewer),
             p: decision.input_step.sample,
             program_verdict: program.to_string(),
             program_delay_s: seconds(decision.program_delay()),
-            doubt: (doubt.value() * 1e3).round() / 1e3,
+            doubt: to_decimals(doubt.value(), 3),
             why: doubt_sentence(doubt, program, period_s),
         }
     }
 }
 
 /// Writes a review sheet of all decisions: a table for `--review` to fill in, the most doubtful
-/// decision first. Words that were said already are in it.
+/// decision first. Verdicts that were given already are in it.
 ///
 /// # Errors
 /// When `out` cannot be written.
@@ -72,7 +72,7 @@ pub(crate) fn write_review_sheet(
 
 /// How many steps of a joint persons spoke of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub(crate) struct Words {
+pub(crate) struct ReviewCount {
     /// Steps that they accepted.
     pub(crate) accepted: usize,
     /// Steps that they rejected.
@@ -81,19 +81,19 @@ pub(crate) struct Words {
     pub(crate) overruled: usize,
 }
 
-impl Words {
+impl ReviewCount {
     /// Those on `joint`; none where nobody spoke.
     pub(crate) fn on(joint: EstimatedJoint<'_>) -> Option<Self> {
         let decisions = joint.estimate.estimated().flat_map(|trial| &trial.decisions);
-        let mut words = Self::default();
+        let mut count = Self::default();
         for decision in decisions {
-            let Some(word) = &decision.word else { continue };
+            let Some(said) = &decision.reviewer_verdict else { continue };
             let by_program = decision.program_verdict() == Verdict::Accepted;
-            words.accepted += usize::from(word.accepted);
-            words.rejected += usize::from(!word.accepted);
-            words.overruled += usize::from(word.accepted != by_program);
+            count.accepted += usize::from(said.accepted);
+            count.rejected += usize::from(!said.accepted);
+            count.overruled += usize::from(said.accepted != by_program);
         }
-        (words != Self::default()).then_some(words)
+        (count != Self::default()).then_some(count)
     }
 
     /// The count in a sentence.

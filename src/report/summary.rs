@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::decisions::verdicts;
-use super::{EstimatedJoint, Words};
+use super::{EstimatedJoint, ReviewCount};
 use crate::delay::{Condition, KindDelay, Verdict};
 use crate::experiment::longest_gap_s;
 
@@ -29,7 +29,7 @@ pub(crate) struct JointSummary {
     /// What stands for the delays in one line.
     pub(crate) headline: Headline,
     /// What persons said of the decisions, where any did.
-    pub(crate) words: Option<Words>,
+    pub(crate) reviewed: Option<ReviewCount>,
 }
 
 /// What stands for the delays of a joint in one line.
@@ -113,7 +113,7 @@ impl JointSummary {
             is_continuous: joint.estimate.dead_time.is_some(),
             levels_differ: levels_differ(joint),
             gap_s: longest_gap_s(&joint.joint.trials),
-            words: Words::on(joint),
+            reviewed: ReviewCount::on(joint),
         }
     }
 }

@@ -19,7 +19,7 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
         table.row(summary_cells(name, &summary));
         let sentences = summary.headline.kinds().iter().map(kind_sentence);
         kinds.extend(sentences.map(|sentence| format!("{name}: {sentence}\n")));
-        kinds.extend(summary.words.map(|words| format!("{name}: {}\n", words.sentence())));
+        kinds.extend(summary.reviewed.map(|count| format!("{name}: {}\n", count.sentence())));
     }
     let doubtful = doubtful_text(joints);
     let dead_times: String = joints.iter().flat_map(dead_time_lines).collect();
@@ -50,12 +50,12 @@ fn dead_time_lines<'a>(joint: &EstimatedJoint<'a>) -> impl Iterator<Item = Strin
 
 /// The settings that were chosen for a joint, and why, where any were.
 pub(crate) fn chosen_line(joint: &EstimatedJoint<'_>) -> Option<String> {
-    let Chosen { automatic, grounds } = joint.estimate.chosen?;
+    let Chosen { automatic, statistics } = joint.estimate.chosen?;
     let settings = &joint.estimate.settings;
     let unit = joint.joint.output_unit.as_deref();
     let mut parts = Vec::new();
     if automatic.alpha {
-        parts.push(match grounds.short_delay {
+        parts.push(match statistics.short_delay {
             Some(delay) => format!(
                 "α = {} (nine delays of ten are above {} samples)",
                 settings.alpha,
@@ -68,7 +68,7 @@ pub(crate) fn chosen_line(joint: &EstimatedJoint<'_>) -> Option<String> {
         parts.push(format!("β = {}", settings.beta));
     }
     if automatic.passband {
-        let noise = grounds.noise.map_or_else(
+        let noise = statistics.noise.map_or_else(
             || "nothing known of the noise".to_owned(),
             |noise| format!("noise {}", measure(noise, unit)),
         );

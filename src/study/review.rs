@@ -1,4 +1,4 @@
-//! What persons say of decisions: a file of their words, and what becomes of it.
+//! What persons say of decisions: a file of their verdicts, and what becomes of it.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::estimate::JointEstimate;
-use crate::delay::{Decision, EstimateError, Word};
+use crate::delay::{Decision, EstimateError, ReviewerVerdict};
 use crate::experiment::{Joint, Trial, read_text};
 
 /// Why a review cannot be read.
@@ -48,13 +48,13 @@ pub enum ReviewError {
     },
 }
 
-/// Words on decisions, in the order of their file.
+/// Verdicts on decisions, in the order of their file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Review {
     rows: Vec<Reviewed>,
 }
 
-/// A word on one step, and what the reviewer was shown of it.
+/// A verdict on one step, and what the reviewer was shown of it.
 #[derive(Clone, Debug, PartialEq)]
 struct Reviewed {
     joint: String,
@@ -138,9 +138,8 @@ impl Review {
         self.rows.is_empty()
     }
 
-    /// Puts the words above the decisions of `estimates`, one per joint; what could not be heard,
-    /// or is said of a decision that has changed since. Of two words on one step the later one
-    /// counts.
+    /// Overrides the decisions of `estimates`, one per joint; what could not be applied, or is said
+    /// of a decision that has changed since. Of two verdicts on one step the later one counts.
     pub fn apply(
         &self,
         joints: &[Joint],
@@ -243,13 +242,13 @@ impl Reviewed {
             return Some(self.note(Why::Outside { delay_s, left_s }));
         }
         let changed = self.changed(decision, trial);
-        let word = Word {
+        let verdict = ReviewerVerdict {
             accepted: self.accepted,
             delay: self.delay_s.map(|delay_s| delay_s / trial.period().seconds()),
             note: self.note.clone(),
             reviewer: self.reviewer.clone(),
         };
-        found.review(self.i, word, between);
+        found.review(self.i, verdict, between);
         changed.map(|why| self.note(why))
     }
 
@@ -267,7 +266,7 @@ impl Reviewed {
     }
 }
 
-/// What a person should know of a word on a step.
+/// What a person should know of a verdict on a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReviewNote {
     /// The joint as the review names it.
@@ -280,7 +279,7 @@ pub struct ReviewNote {
     pub why: Why,
 }
 
-/// Why a word is not heard, or is to be looked at again.
+/// Why a verdict is not applied, or is to be looked at again.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Why {
     /// There is no such joint.
@@ -289,16 +288,16 @@ pub enum Why {
     NoTrial,
     /// The trial has only so many steps.
     NoStep(usize),
-    /// The step is at another sample: the word is not heard.
+    /// The step is at another sample: the verdict is not applied.
     Moved {
         /// Its sample when it was reviewed.
         was: usize,
         /// Its sample now.
         is: usize,
     },
-    /// The delay leads to before the step or behind the trial's end: the word is not heard.
+    /// The delay leads to before the step or behind the trial's end: the verdict is not applied.
     Outside {
-        /// The delay of the word, seconds.
+        /// The reviewer's delay, seconds.
         delay_s: f64,
         /// From the step to the trial's end.
         left_s: f64,
@@ -317,7 +316,7 @@ pub enum Why {
         /// Its delay now.
         is: Option<f64>,
     },
-    /// Two words differ: the later one stands.
+    /// Two verdicts differ: the later one counts.
     Twice,
 }
 
@@ -387,7 +386,7 @@ mod tests {
         Joint { name, input_unit: None, output_unit: None, covariates, trials: vec![trial] }
     }
 
-    fn heard(rows: &str) -> (Vec<Decision>, Vec<ReviewNote>, Option<f64>) {
+    fn reviewed(rows: &str) -> (Vec<Decision>, Vec<ReviewNote>, Option<f64>) {
         let joints = [joint()];
         let settings = Settings { low_pass: None, ..Settings::default() };
         let mut estimates = estimate_joints(&joints, &settings, || (), &Sequential);
@@ -398,25 +397,26 @@ mod tests {
     }
 
     #[test]
-    fn a_word_stands_above_the_conditions_and_the_delays_follow() {
-        let (decisions, notes, tau) = heard(&format!("{HEADER}\nboom,1,1,rejected,,noise,Ann"));
+    fn a_reviewer_overrides_the_conditions_and_the_delays_follow() {
+        let (decisions, notes, tau) = reviewed(&format!("{HEADER}\nboom,1,1,rejected,,noise,Ann"));
         assert_eq!(notes, []);
         assert_eq!(decisions[0].verdict(), Verdict::Rejected(Condition::Reviewer));
         assert_eq!(decisions[0].program_verdict(), Verdict::Accepted);
         assert_eq!(tau, None);
-        let (decisions, _, tau) = heard(&format!("{HEADER}\nboom,1,1,accepted,0.15,,Ann"));
+        let (decisions, _, tau) = reviewed(&format!("{HEADER}\nboom,1,1,accepted,0.15,,Ann"));
         assert!((decisions[0].accepted_delay().unwrap() - 15.0).abs() < 1e-9);
         assert!((tau.unwrap() - 15.0).abs() < 1e-9);
         assert!((decisions[0].program_delay().unwrap() - 15.0).abs() > 1.0);
     }
 
     #[test]
-    fn a_changed_step_is_said_and_one_that_moved_is_not_heard() {
+    fn a_changed_step_is_said_and_one_that_moved_is_not_applied() {
         let wide = format!("{HEADER},p,program_verdict,program_delay_s");
         let why = |row: &str| {
-            let (decisions, notes, _) = heard(&format!("{wide}\n{row}"));
-            let words = decisions.iter().filter(|decision| decision.word.is_some()).count();
-            (notes.into_iter().map(|note| note.why).next(), words)
+            let (decisions, notes, _) = reviewed(&format!("{wide}\n{row}"));
+            let count =
+                decisions.iter().filter(|decision| decision.reviewer_verdict.is_some()).count();
+            (notes.into_iter().map(|note| note.why).next(), count)
         };
         assert_eq!(why("boom,1,1,rejected,,,Ann,101,accepted,").1, 1);
         let moved = Why::Moved { was: 99, is: 101 };
@@ -425,14 +425,14 @@ mod tests {
         assert_eq!(why("boom,1,1,rejected,,,Ann,101,sse,"), (Some(changed), 1));
         assert!(matches!(why("boom,1,1,rejected,,,Ann,101,,0.9"), (Some(Why::Delay { .. }), 1)));
         for delay_s in ["-0.1", "500"] {
-            let (why, words) = why(&format!("boom,1,1,accepted,{delay_s},,Ann,101,,"));
-            assert!(matches!((why, words), (Some(Why::Outside { .. }), 0)), "{delay_s}");
+            let (why, count) = why(&format!("boom,1,1,accepted,{delay_s},,Ann,101,,"));
+            assert!(matches!((why, count), (Some(Why::Outside { .. }), 0)), "{delay_s}");
         }
         assert_eq!(why("arm,1,1,rejected,,,Ann,,,"), (Some(Why::NoJoint), 0));
         assert_eq!(why("boom,2,1,rejected,,,Ann,,,"), (Some(Why::NoTrial), 0));
         assert_eq!(why("boom,1,9,rejected,,,Ann,,,"), (Some(Why::NoStep(3)), 0));
         let twice = format!("{wide}\nboom,1,1,rejected,,,A,,,\nboom,1,1,accepted,,,B,,,");
-        let (decisions, notes, _) = heard(&twice);
+        let (decisions, notes, _) = reviewed(&twice);
         assert_eq!(notes[0].why, Why::Twice);
         assert_eq!(decisions[0].verdict(), Verdict::Accepted);
     }

@@ -135,7 +135,7 @@ pub(super) struct Attempt {
 }
 
 /// How an experimenter knows where a joint will be.
-pub(super) trait Foresight {
+pub(super) trait Predictor {
     /// How far the joint, driven by `drive` and then by `attempt`, goes beyond its range, in
     /// output units.
     ///
@@ -144,13 +144,13 @@ pub(super) trait Foresight {
     fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError>;
 
     /// Draws after which the level with the least excess is taken, if there is one.
-    fn patience(&self) -> Option<usize>;
+    fn max_draws(&self) -> Option<usize>;
 }
 
 /// Of a joint without inertia and load.
 pub(super) struct Unhindered;
 
-impl Foresight for Unhindered {
+impl Predictor for Unhindered {
     fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError> {
         let Attempt { intent, range, end_s } = *attempt;
         let from = drive.arrivals.angle_at(intent.acts_s);
@@ -159,7 +159,7 @@ impl Foresight for Unhindered {
     }
 
     /// Never: a range that cannot be kept is an error.
-    fn patience(&self) -> Option<usize> {
+    fn max_draws(&self) -> Option<usize> {
         None
     }
 }
@@ -215,7 +215,7 @@ impl<'a> Driver<'a> {
     pub(super) fn act(
         &mut self,
         sample: usize,
-        foresight: &impl Foresight,
+        predictor: &impl Predictor,
     ) -> Result<(), PlantError> {
         // Drawn before the level, so that draws refused cost no chance.
         let chance = self.delays.random();
@@ -225,7 +225,7 @@ impl<'a> Driver<'a> {
                 steps.get(self.drive.steps.len()).map_or(0.0, |(_, level)| *level)
             }
             InputSpec::Levels { levels, hold_s } => {
-                let (level, hold) = self.draw(sample, levels, *hold_s, chance, foresight)?;
+                let (level, hold) = self.draw(sample, levels, *hold_s, chance, predictor)?;
                 self.next = sample.saturating_add(hold);
                 level
             }
@@ -252,19 +252,19 @@ impl<'a> Driver<'a> {
         levels: &[f64],
         hold_s: [f64; 2],
         chance: f64,
-        foresight: &impl Foresight,
+        predictor: &impl Predictor,
     ) -> Result<(f64, usize), PlantError> {
         let now = self.drive.level();
         let others: Vec<f64> = levels.iter().copied().filter(|level| differ(*level, now)).collect();
         let mut best = None;
-        for _ in 0..foresight.patience().unwrap_or(MAX_DRAWS) {
+        for _ in 0..predictor.max_draws().unwrap_or(MAX_DRAWS) {
             let hold = self.draw_hold(hold_s);
             let drawn = others.choose(&mut self.input).copied();
             for level in drawn.into_iter().flat_map(|level| [level, -level]) {
                 if !differ(level, now) {
                     continue;
                 }
-                let excess = self.excess(sample, level, hold, chance, foresight)?;
+                let excess = self.excess(sample, level, hold, chance, predictor)?;
                 if excess <= 0.0 {
                     return Ok((level, hold));
                 }
@@ -273,7 +273,7 @@ impl<'a> Driver<'a> {
                 }
             }
         }
-        let least = best.filter(|_| foresight.patience().is_some()).map(|(_, drawn)| drawn);
+        let least = best.filter(|_| predictor.max_draws().is_some()).map(|(_, drawn)| drawn);
         least.ok_or_else(|| PlantError::Range { place: Place::joint(&self.joint.name), sample })
     }
 
@@ -291,7 +291,7 @@ impl<'a> Driver<'a> {
         level: f64,
         hold: usize,
         chance: f64,
-        foresight: &impl Foresight,
+        predictor: &impl Predictor,
     ) -> Result<f64, PlantError> {
         let Some(range) = self.joint.range else {
             return Ok(0.0);
@@ -299,7 +299,7 @@ impl<'a> Driver<'a> {
         let intent = self.intent(sample, level, chance)?;
         let next = self.clock.time_s(sample.saturating_add(hold)) + self.joint.longest_delay_s();
         let end_s = next.min(self.clock.time_s(self.clock.samples()));
-        foresight.excess(&self.drive, &Attempt { intent, range, end_s })
+        predictor.excess(&self.drive, &Attempt { intent, range, end_s })
     }
 
     /// The step to `level` at `sample`.

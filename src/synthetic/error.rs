@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::experiment::TrialError;
+use crate::experiment::{TrialError, did_you_mean};
 
 /// Which part of a plant file is meant.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ pub enum PlantError {
         allowed: &'static str,
     },
     /// No effect has this name.
-    #[error("no effect `{name}`{}; known: {known}", nearest.map_or(String::new(), |near| format!(", did you mean `{near}`")))]
+    #[error("no effect `{name}`{}; known: {known}", did_you_mean(*nearest))]
     Unknown {
         /// The name.
         name: String,

@@ -43,6 +43,7 @@
 //! ```
 
 mod arrivals;
+mod check;
 mod clock;
 mod cylinder;
 mod delay_law;

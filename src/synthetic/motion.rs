@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::clock::Clock;
-use super::drive::{Attempt, Drive, Foresight, beyond};
+use super::drive::{Attempt, Drive, Predictor, beyond};
 use super::effects::{CreepMemory, MEMORIES, SupplyDroop, Valve};
 use super::error::PlantError;
 use super::spec::{JointSpec, Ringing};
@@ -301,7 +301,7 @@ impl<'a> Motion<'a> {
 ///
 /// What no level can help does not count: only how far it goes beyond where it is when
 /// the level begins to act.
-impl Foresight for Motion<'_> {
+impl Predictor for Motion<'_> {
     fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError> {
         let Attempt { intent, range, end_s } = *attempt;
         let mut drive = drive.clone();
@@ -323,7 +323,7 @@ impl Foresight for Motion<'_> {
     }
 
     /// A joint that coasts or creeps may have to leave its range.
-    fn patience(&self) -> Option<usize> {
+    fn max_draws(&self) -> Option<usize> {
         Some(PATIENCE)
     }
 }

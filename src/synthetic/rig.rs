@@ -2,7 +2,7 @@
 
 use super::clock::Clock;
 use super::cylinder::{CylinderSpec, Machine, State};
-use super::drive::{Attempt, Drive, Driver, Foresight, beyond};
+use super::drive::{Attempt, Drive, Driver, Predictor, beyond};
 use super::driven::Driven;
 use super::error::{Place, PlantError};
 use super::spec::JointSpec;
@@ -130,8 +130,8 @@ impl<'a> Rig<'a> {
 /// acts and has settled.
 ///
 /// Where the level before leads out of the range, this one must not lead further.
-impl Foresight for Rig<'_> {
-    /// That of the first sample outside, which is enough as there is no patience.
+impl Predictor for Rig<'_> {
+    /// That of the first sample outside, which is enough without `max_draws`.
     fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError> {
         let Attempt { intent, range, end_s } = *attempt;
         let mut drive = drive.clone();
@@ -153,7 +153,7 @@ impl Foresight for Rig<'_> {
     }
 
     /// Never: a range that cannot be kept is an error.
-    fn patience(&self) -> Option<usize> {
+    fn max_draws(&self) -> Option<usize> {
         None
     }
 }

@@ -1,35 +1,13 @@
 //! The plant file: which joints, how they move, what drives them.
 
-use std::collections::HashSet;
-use std::fmt::Debug;
-
 use serde::{Deserialize, Serialize};
 
-use super::clock::{Clock, MIN_STEPS_PER_LAG, MIN_STEPS_PER_PERIOD, whole};
 use super::cylinder::CylinderSpec;
 use super::delay_law::{DelayLaw, Occasion};
 use super::effects::{self, Change, Effects, Outside, Valve};
-use super::error::{Allowed, Place, PlantError, above_zero};
+use super::error::PlantError;
 use super::input::InputSpec;
 use super::schema::SCHEMA;
-use crate::units::SamplePeriod;
-
-/// Samples of all joints together: 14 hours of a joint at 100 Hz. Keeps a slip of
-/// the pen from filling the memory.
-const MAX_SAMPLES: f64 = 5e7;
-
-/// Shortest sample period in seconds: a log has the time to a nanosecond.
-const MIN_SAMPLE_PERIOD_S: f64 = 1e-6;
-
-/// Most time steps per sample.
-const MAX_SUBSTEPS: u32 = 1000;
-
-/// Time steps of all joints together: minutes of work, not days of it.
-const MAX_TIME_STEPS: f64 = 2e9;
-
-/// Steps of the inputs of all joints together, each of which has a row of the truth: a
-/// gigabyte of them.
-const MAX_INPUT_STEPS: f64 = 5e6;
 
 /// Joints to simulate, as a plant file holds them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -136,7 +114,7 @@ pub struct Ringing {
 }
 
 /// What a file may leave out.
-mod default {
+pub(super) mod default {
     /// Time steps per sample: enough for a lag of a fifth of a sample, and for ringing
     /// with a period of two samples, the shortest that sampling can show.
     const SUBSTEPS: u32 = 20;
@@ -154,7 +132,7 @@ mod default {
         SUBSTEPS
     }
 
-    pub(super) fn gain() -> f64 {
+    pub(in crate::synthetic) fn gain() -> f64 {
         10.0
     }
 
@@ -219,57 +197,6 @@ impl PlantSpec {
     /// [`PlantError::Write`] for what TOML cannot hold.
     pub fn to_toml(&self) -> Result<String, PlantError> {
         toml::to_string(self).map_err(|source| PlantError::Write { source: Box::new(source) })
-    }
-
-    /// Refuses a plant that cannot be simulated.
-    ///
-    /// # Errors
-    /// [`PlantError::Schema`] for another schema, [`PlantError::Value`] for the first
-    /// value that is not allowed, [`PlantError::ListedDelays`] when steps are given
-    /// and delays are listed, but not one for each.
-    pub fn check(&self) -> Result<(), PlantError> {
-        if self.schema != SCHEMA {
-            return Err(PlantError::Schema { found: self.schema.clone() });
-        }
-        let clock = self.clock()?;
-        let mut names = HashSet::new();
-        let mut input_steps = 0.0;
-        for joint in &self.joints {
-            let place = Place::joint(&joint.name);
-            let allowed = "a name that no other joint has";
-            place.require("name", joint.name.as_str(), allowed, |name| names.insert(*name))?;
-            joint.check(&clock, &place)?;
-            input_steps += joint.input.steps_in(&clock);
-            let allowed = "so long that there are five million steps of all joints or fewer";
-            let holds = joint.input.mean_hold_s(&clock);
-            place.require("input.hold_s", holds, allowed, |_| input_steps <= MAX_INPUT_STEPS)?;
-        }
-        Ok(())
-    }
-
-    /// The times of the record.
-    pub(super) fn clock(&self) -> Result<Clock, PlantError> {
-        let plant = Place::Plant;
-        let count = self.joints.len();
-        plant.require("joint", count, "one table [[joint]] or more", |count| *count > 0)?;
-        let period_s = self.sample_period_s;
-        let period = SamplePeriod::from_seconds(period_s)
-            .filter(|period| period.seconds() >= MIN_SAMPLE_PERIOD_S);
-        let Some(period) = period else {
-            let allowed = "finite seconds, 1e-6 or more";
-            return Err(plant.refuse("sample_period_s", period_s, allowed));
-        };
-        let samples = (self.duration_s / period_s).round();
-        let allowed = "two sample periods or more; fifty million samples of all joints or fewer";
-        plant.require("duration_s", self.duration_s, allowed, |_| {
-            samples >= 2.0 && samples * count as f64 <= MAX_SAMPLES
-        })?;
-        let allowed = "1 to 1000; two thousand million time steps of all joints or fewer";
-        plant.require("substeps", self.substeps, allowed, |substeps| {
-            let steps = samples * count as f64 * f64::from(*substeps);
-            (1..=MAX_SUBSTEPS).contains(substeps) && steps <= MAX_TIME_STEPS
-        })?;
-        Ok(Clock::new(period, whole(samples), self.substeps))
     }
 }
 
@@ -352,174 +279,19 @@ impl JointSpec {
         let pilot_s = self.cylinder.as_ref().map_or(0.0, CylinderSpec::longest_pilot_s);
         self.delay.longest_s() + variable_s + pilot_s
     }
-
-    fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
-        self.check_words(place)?;
-        self.input.check(clock, place)?;
-        self.delay.check(place)?;
-        self.check_list(place)?;
-        self.check_range(place)?;
-        self.check_statics(place)?;
-        self.check_dynamics(clock, place)?;
-        self.check_cylinder(clock, place)?;
-        self.check_sensor(place)?;
-        self.effect.check(place, clock)?;
-        self.outside.check(place, clock)
-    }
-
-    fn check_words(&self, place: &Place) -> Result<(), PlantError> {
-        let fits = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
-        place.require("name", &self.name, "letters, digits, `_` and `-`", |name| {
-            !name.is_empty() && name.chars().all(fits)
-        })?;
-        for (key, unit) in [("input_unit", &self.input_unit), ("output_unit", &self.output_unit)] {
-            let bad = |c: char| c == '[' || c == ']' || c.is_control();
-            place.require(key, unit, "a unit without brackets", |unit| {
-                !unit.trim().is_empty() && !unit.contains(bad)
-            })?;
-        }
-        Ok(())
-    }
-
-    fn check_list(&self, place: &Place) -> Result<(), PlantError> {
-        match (&self.input, &self.delay) {
-            (InputSpec::Steps { steps, .. }, DelayLaw::Listed { seconds })
-                if steps.len() != seconds.len() =>
-            {
-                let (given, needed) = (seconds.len(), steps.len());
-                Err(PlantError::ListedDelays { place: place.clone(), given, needed })
-            }
-            _ => Ok(()),
-        }
-    }
-
-    fn check_range(&self, place: &Place) -> Result<(), PlantError> {
-        place.require("start", self.start, "finite", |start| start.is_finite())?;
-        let Some(range) = self.range else {
-            return Ok(());
-        };
-        let [lowest, highest] = range;
-        place.require("range", range, "[lowest, highest], finite", |_| {
-            lowest < highest && lowest.is_finite() && highest.is_finite()
-        })?;
-        place.require("start", self.start, "an angle within `range`", |start| {
-            (lowest..=highest).contains(start)
-        })?;
-        place.require("range", range, "none, as `input.steps` are given, not drawn", |_| {
-            matches!(self.input, InputSpec::Levels { .. })
-        })
-    }
-
-    fn check_statics(&self, place: &Place) -> Result<(), PlantError> {
-        place.require("gain", self.gain, "finite, not zero", |gain| {
-            gain.is_finite() && gain.abs() > 0.0
-        })?;
-        if let Some(band) = self.dead_band {
-            place.require("dead_band", band, "[lower, upper], finite", |[lower, upper]| {
-                lower <= upper && lower.is_finite() && upper.is_finite()
-            })?;
-        }
-        place.require("valve_edge", self.valve_edge, "above 0, 1 or less", |edge| {
-            *edge > 0.0 && *edge <= 1.0
-        })?;
-        above_zero(place, "saturation", self.saturation)
-    }
-
-    fn check_dynamics(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
-        let lasts =
-            |seconds: f64, steps: f64| seconds.is_finite() && seconds >= steps * clock.substep_s();
-        if let Some(lag_s) = self.lag_s {
-            let allowed = "finite seconds, four time steps or more (sample_period_s / substeps)";
-            place.require("lag_s", lag_s, allowed, |lag_s| lasts(*lag_s, MIN_STEPS_PER_LAG))?;
-        }
-        let Some(Ringing { period_s, damping }) = self.ringing else {
-            return Ok(());
-        };
-        let allowed = "finite seconds, forty time steps or more (sample_period_s / substeps)";
-        place.require("ringing.period_s", period_s, allowed, |period_s| {
-            lasts(*period_s, MIN_STEPS_PER_PERIOD)
-        })?;
-        place.require("ringing.damping", damping, "0 or more, below 1", |damping| {
-            (0.0..1.0).contains(damping)
-        })
-    }
-
-    fn check_cylinder(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
-        let Some(cylinder) = &self.cylinder else { return Ok(()) };
-        self.check_replaced(place)?;
-        let unit = self.output_unit.as_str();
-        let allowed = "`deg` or `rad`, as `cylinder` moves the joint";
-        place.require("output_unit", unit, allowed, |unit| matches!(*unit, "deg" | "rad"))?;
-        cylinder.check(clock, place)?;
-        let turn = if unit == "rad" { 1.0_f64.to_degrees() } else { 1.0 };
-        let [lowest, highest] = cylinder.angle_limits_deg;
-        let reached = |angle: f64| (lowest..=highest).contains(&(angle * turn));
-        let allowed = "an angle within `cylinder.angle_limits_deg`";
-        place.require("start", self.start, allowed, |start| reached(*start))?;
-        let Some(range) = self.range else { return Ok(()) };
-        let allowed = "angles within `cylinder.angle_limits_deg`";
-        place.require("range", range, allowed, |range| range.iter().all(|angle| reached(*angle)))
-    }
-
-    /// Refuses what does not act beside a cylinder.
-    fn check_replaced(&self, place: &Place) -> Result<(), PlantError> {
-        let allowed = "none, as `cylinder` moves the joint: remove one of the two";
-        let gain = ((self.gain - default::gain()).abs() > 0.0).then_some(self.gain);
-        let named = |names: Vec<&'static str>| (!names.is_empty()).then_some(names);
-        let (effect, outside) = (named(self.effect.names()), named(self.outside.hindering()));
-        let replaced: [(_, Option<&dyn Debug>); 7] = [
-            ("gain", gain.as_ref().map(|gain| gain as _)),
-            ("dead_band", self.dead_band.as_ref().map(|band| band as _)),
-            ("saturation", self.saturation.as_ref().map(|limit| limit as _)),
-            ("lag_s", self.lag_s.as_ref().map(|lag_s| lag_s as _)),
-            ("ringing", self.ringing.as_ref().map(|ringing| ringing as _)),
-            ("effect", effect.as_ref().map(|names| names as _)),
-            ("outside", outside.as_ref().map(|names| names as _)),
-        ];
-        for (key, given) in replaced {
-            if let Some(value) = given {
-                return Err(place.refuse(key, value, allowed));
-            }
-        }
-        Ok(())
-    }
-
-    fn check_sensor(&self, place: &Place) -> Result<(), PlantError> {
-        place.require("noise", self.noise, "finite, not negative", |noise| {
-            noise.is_finite() && *noise >= 0.0
-        })?;
-        let (key, allowed) = ("noise_correlation", "above -1, below 1");
-        place.require(key, self.noise_correlation, allowed, |phi| phi.abs() < 1.0)?;
-        above_zero(place, "resolution", self.resolution)?;
-        let Some(Spikes { share, size }) = self.spikes else {
-            return Ok(());
-        };
-        place.number("spikes.share", share, Allowed::Share)?;
-        place.number("spikes.size", size, Allowed::NotNegative)
-    }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     const HEAD: &str = "schema = 'tauscope/plant/1'\nseed = 1\nduration_s = 10\n";
-    const INPUT: &str = "input = { levels = [-1, 1], hold_s = [1, 2] }\n";
-    const STEPS: &str = "input = { steps = [[40, 1], [89, -1]] }\n";
-    const DELAY: &str = "delay = { law = 'constant', seconds = 0.1 }\n";
+    pub(in crate::synthetic) const INPUT: &str = "input = { levels = [-1, 1], hold_s = [1, 2] }\n";
+    pub(in crate::synthetic) const DELAY: &str = "delay = { law = 'constant', seconds = 0.1 }\n";
 
     /// A plant of one joint with the lines `parts`.
-    fn joint(parts: &[&str]) -> Result<PlantSpec, PlantError> {
+    pub(in crate::synthetic) fn joint(parts: &[&str]) -> Result<PlantSpec, PlantError> {
         PlantSpec::from_toml(&format!("{HEAD}[[joint]]\nname = 'a'\n{}", parts.concat()))
-    }
-
-    /// Asserts that a value of `key` is what is refused.
-    #[track_caller]
-    fn assert_refused(found: Result<PlantSpec, PlantError>, expected: &str) {
-        match found {
-            Err(PlantError::Value { key, .. }) => assert_eq!(key, expected),
-            other => panic!("`{expected}` is not refused: {other:?}"),
-        }
     }
 
     #[test]
@@ -560,96 +332,5 @@ mod tests {
             let found = joint(&[part, INPUT, DELAY]);
             assert!(matches!(found, Err(PlantError::Parse { .. })), "{part}");
         }
-    }
-
-    #[test]
-    fn another_schema_is_refused() {
-        let mut spec = joint(&[INPUT, DELAY]).unwrap();
-        spec.schema = "tauscope/plant/2".to_owned();
-        assert!(matches!(spec.check(), Err(PlantError::Schema { .. })));
-    }
-
-    #[test]
-    fn each_bad_value_of_the_plant_is_refused() {
-        let with = |change: fn(&mut PlantSpec)| {
-            let mut spec = joint(&[INPUT, DELAY]).unwrap();
-            change(&mut spec);
-            spec.check().map(|()| spec)
-        };
-        assert_refused(with(|spec| spec.joints.clear()), "joint");
-        assert_refused(with(|spec| spec.joints.push(spec.joints[0].clone())), "name");
-        assert_refused(with(|spec| spec.sample_period_s = f64::NAN), "sample_period_s");
-        assert_refused(with(|spec| spec.sample_period_s = f64::INFINITY), "sample_period_s");
-        assert_refused(with(|spec| spec.sample_period_s = -0.01), "sample_period_s");
-        assert_refused(with(|spec| spec.duration_s = 0.01), "duration_s");
-        assert_refused(with(|spec| spec.duration_s = 1e9), "duration_s");
-        assert_refused(with(|spec| spec.duration_s = f64::NAN), "duration_s");
-        assert_refused(with(|spec| spec.substeps = 0), "substeps");
-    }
-
-    #[test]
-    fn each_bad_number_of_a_joint_is_refused() {
-        let cases = [
-            ("gain = 0\n", "gain"),
-            ("gain = inf\n", "gain"),
-            ("start = nan\n", "start"),
-            ("range = [1, -1]\n", "range"),
-            ("range = [1, 2]\n", "start"),
-            ("input_unit = ''\n", "input_unit"),
-            ("output_unit = '[deg]'\n", "output_unit"),
-            ("dead_band = [0.1, -0.1]\n", "dead_band"),
-            ("saturation = 0\n", "saturation"),
-            ("lag_s = 0.001\n", "lag_s"),
-            ("ringing = { period_s = 0.01, damping = 0.2 }\n", "ringing.period_s"),
-            ("ringing = { period_s = 0.4, damping = 1.0 }\n", "ringing.damping"),
-            ("noise = -0.1\n", "noise"),
-            ("noise_correlation = 1\n", "noise_correlation"),
-            ("resolution = 0\n", "resolution"),
-        ];
-        for (part, key) in cases {
-            assert_refused(joint(&[part, INPUT, DELAY]), key);
-        }
-        assert_refused(joint(&["range = [-9, 9]\n", STEPS, DELAY]), "range");
-    }
-
-    #[test]
-    fn each_bad_input_is_refused() {
-        let cases = [
-            ("{ levels = [1, 1], hold_s = [1, 2] }", "input.levels"),
-            ("{ levels = [], hold_s = [1, 2] }", "input.levels"),
-            ("{ levels = [1, nan], hold_s = [1, 2] }", "input.levels"),
-            ("{ levels = [-1, 1], hold_s = [2, 1] }", "input.hold_s"),
-            ("{ levels = [-1, 1], hold_s = [0, 1] }", "input.hold_s"),
-            ("{ steps = [[1, 1]] }", "input.steps"),
-            ("{ steps = [[5, 1], [5, 2]] }", "input.steps"),
-            ("{ steps = [[1001, 1]] }", "input.steps"),
-            ("{ steps = [[5, 1], [6, 1]] }", "input.steps"),
-            ("{ steps = [[5, 1]], initial = inf }", "input.initial"),
-        ];
-        for (input, key) in cases {
-            assert_refused(joint(&["input = ", input, "\n", DELAY]), key);
-        }
-    }
-
-    #[test]
-    fn each_bad_delay_is_refused() {
-        let cases = [
-            ("law = 'constant', seconds = -0.1", "delay.seconds"),
-            ("law = 'uniform', min = 0.5, max = 0.1", "delay.min"),
-            ("law = 'uniform', min = 0.5, max = inf", "delay.max"),
-            ("law = 'step_size', min = 0.1, max = 0.5, scale = 0", "delay.scale"),
-            ("law = 'direction', rising = nan, falling = 0.1", "delay.rising"),
-            ("law = 'warming', first = 0.1, last = -1", "delay.last"),
-            ("law = 'listed', seconds = [0.1, -0.1]", "delay.seconds"),
-        ];
-        for (law, key) in cases {
-            assert_refused(joint(&[STEPS, "delay = { ", law, " }\n"]), key);
-        }
-    }
-
-    #[test]
-    fn a_list_of_delays_must_fit_the_steps() {
-        let found = joint(&[STEPS, "delay = { law = 'listed', seconds = [0.1] }\n"]);
-        assert!(matches!(found, Err(PlantError::ListedDelays { given: 1, needed: 2, .. })));
     }
 }

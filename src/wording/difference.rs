@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::{counted, number};
+use super::counted;
+use super::number::to_place;
 use crate::delay::Verdict;
 use crate::study::{JointDifferences, StepPair, StepResult, Verdicts};
 
@@ -11,7 +12,7 @@ const NAMED: usize = 5;
 
 /// A time to the tenth of a millisecond.
 fn seconds_text(seconds: f64) -> String {
-    format!("{} s", number((seconds * 1e4).round() / 1e4))
+    format!("{} s", to_place(seconds, 4))
 }
 
 /// What a result says of a step: `✓ 0.15 s`, or `✗` and why.

@@ -1,8 +1,8 @@
 //! The doubt of a decision in words.
 
-use super::number;
+use super::number::to_place;
 #[cfg(feature = "rrd")]
-use super::{counted, percent};
+use super::{counted, number, percent};
 use crate::delay::{Condition, Doubt, Flag, Verdict};
 
 /// Margin of a condition that failed up to which it failed by little.
@@ -11,7 +11,7 @@ const LITTLE: f64 = 0.3;
 /// What speaks most against a decision with this verdict, on a trial sampled every `period_s`
 /// seconds.
 pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> String {
-    let seconds = |samples: f64| number((samples * period_s * 1e3).round() / 1e3);
+    let seconds = |samples: f64| to_place(samples * period_s, 3);
     let near = doubt.nearest.filter(|(_, margin)| *margin < 1.0);
     if let Verdict::Rejected(_) = verdict {
         return near.map_or_else(
@@ -25,7 +25,7 @@ pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
     let [explained, placed, meeting] = doubt.margins();
     let mut reasons = vec![
         (explained, {
-            let percent = number((100.0 * (1.0 - explained)).round());
+            let percent = to_place(100.0 * (1.0 - explained), 0);
             let of = if doubt.settles { "no reaction" } else { "one line" };
             let what = if doubt.settles { "reaction" } else { "break" };
             format!("the {what} leaves {percent} % of the squared error of {of}")
@@ -56,7 +56,7 @@ pub(crate) fn doubt_in_short(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
         Some(Flag::Stop) => return "output at its end".to_owned(),
         None => {}
     }
-    let seconds = |samples: f64| number((samples * period_s * 1e3).round() / 1e3);
+    let seconds = |samples: f64| to_place(samples * period_s, 3);
     let [explained, placed, meeting] = doubt.margins();
     let mut reasons = vec![
         (explained, format!("error left {}", percent(1.0 - explained))),

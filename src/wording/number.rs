@@ -1,5 +1,7 @@
 //! Numbers and units as a person reads them.
 
+use crate::numerics::{decimal_exponent, to_decimals};
+
 /// `value` to five significant digits, without trailing zeros: `0.012346`, `1.2e-9`.
 pub fn number(value: f64) -> String {
     /// Digits that are shown; files hold all of them.
@@ -16,8 +18,7 @@ fn to_digits(value: f64, significant: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
-    #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
-    let exponent = value.abs().log10().floor() as i32;
+    let exponent = decimal_exponent(value);
     if !(-4..9).contains(&exponent) {
         let decimals = usize::try_from(significant - 1).unwrap_or(0);
         return tidy(&format!("{value:.decimals$e}"));
@@ -34,6 +35,11 @@ fn tidy(text: &str) -> String {
         return format!("{mantissa}{exponent}");
     }
     format!("{mantissa}{exponent}")
+}
+
+/// `value` with so many digits behind the point, without trailing zeros.
+pub(crate) fn to_place(value: f64, decimals: i32) -> String {
+    number(to_decimals(value, decimals))
 }
 
 /// A unit as it is written behind a number: ` V`, or nothing.
@@ -66,8 +72,7 @@ pub(crate) fn measure(value: f64, unit: Option<&str>) -> String {
 /// A value to the digits that its standard error leaves: `0.612 ± 0.021`.
 pub(crate) fn with_error(value: f64, std_error: f64) -> String {
     let known = std_error.is_finite() && std_error > 0.0;
-    #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
-    let decimals = if known { 1 - std_error.log10().floor() as i32 } else { 0 };
+    let decimals = if known { 1 - decimal_exponent(std_error) } else { 0 };
     match usize::try_from(decimals) {
         Ok(decimals) if known && decimals < 9 => {
             format!("{value:.decimals$} ± {std_error:.decimals$}")

@@ -1,6 +1,6 @@
 //! Probabilities and shares.
 
-use super::number;
+use super::number::to_place;
 
 /// A p-value in a sentence: `p = 0.0312`.
 pub(crate) fn p_text(p_value: f64) -> String {
@@ -12,7 +12,7 @@ pub(crate) fn p_cell(p_value: Option<f64>) -> String {
     match p_value {
         None => "-".to_owned(),
         Some(p_value) if p_value < 0.001 => "< 0.001".to_owned(),
-        Some(p_value) => number((p_value * 1000.0).round() / 1000.0),
+        Some(p_value) => to_place(p_value, 3),
     }
 }
 

@@ -7,7 +7,7 @@ use crate::cli::console::Host;
 use crate::cli::failure::said;
 use crate::experiment::{
     ColumnMap, Experiment, JointColumns, MemoryLimit, ReadOptions, Repair, expand_folders,
-    notes_on_subfolders,
+    format_names, notes_on_subfolders,
 };
 use crate::units::SamplePeriod;
 use anyhow::{Context as _, bail};
@@ -16,12 +16,15 @@ use clap::Args;
 /// Where the logs are and how they are read.
 #[derive(Args, Debug)]
 pub(crate) struct DataArgs {
-    /// Logs (CSV, XLSX, Parquet, MATLAB, MCAP), or folders of logs
-    #[arg(required = true, value_name = "DATA")]
+    #[arg(help = help(), required = true, value_name = "DATA")]
     data: Vec<PathBuf>,
 
     #[command(flatten)]
     reading: ReadingArgs,
+}
+
+fn help() -> String {
+    format!("Logs ({}), or folders of logs", format_names())
 }
 
 /// How logs are read.

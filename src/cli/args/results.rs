@@ -40,7 +40,7 @@ pub(crate) struct RunArgs {
 impl RunArgs {
     /// Whether progress and notices are shown.
     pub(crate) fn verbosity(&self) -> Verbosity {
-        if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
+        self.quiet.into()
     }
 
     /// Does `work` with as many threads as are to be used.

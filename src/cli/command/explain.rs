@@ -17,7 +17,7 @@ use crate::cli::args::{
 };
 use crate::cli::exit::Completion;
 use crate::cli::output::check_outputs;
-use crate::cli::run::{Begun, Session, Study, add_arguments, estimate_at, outcomes};
+use crate::cli::run::{Session, Study, StudyContext, add_arguments, estimate_at, outcomes};
 
 /// Say which physical effect a model lacks
 ///
@@ -55,11 +55,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let session = Session::with_others("explain", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
-    let study = Study::of(session, &args.output.delay_settings(), |begun| {
-        let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("explaining"));
-        let watched = protocol.watched(&bar).beside(begun.others);
+    let study = Study::of(session, &args.output.delay_settings(), |context| {
+        let (joints, estimates, bar) =
+            (context.joints, context.estimates, context.bar("explaining"));
+        let watched = protocol.watched(&bar).beside(context.others);
         let explained = explain_joints(joints, estimates, starts, watched, &options, &Threads);
-        let bests = args.output.is_recorded().then(|| args.bests(begun, &explained));
+        let bests = args.output.is_recorded().then(|| args.bests(context, &explained));
         (explained, bests.unwrap_or_default())
     })?;
     let joints = &study.experiment().joints;
@@ -119,18 +120,18 @@ impl Args {
     /// The best candidate of each joint beside the measurement, and its name.
     fn bests(
         &self,
-        begun: Begun<'_>,
+        context: StudyContext<'_>,
         explained: &OfJoints<Explanation>,
     ) -> Vec<Option<(String, Comparison)>> {
-        let joints = begun.joints;
+        let joints = context.joints;
         let best = |joint: &Joint| {
             let index = joints.iter().position(|other| other.name == joint.name)?;
             explained.get(index)?.as_ref()?.as_ref().ok()?.ranking.first()
         };
         let model = |joint: &Joint| Some(best(joint)?.fit.model.clone());
         let protocol = self.protocol.with(Mode::AsItIs, Horizon::Auto);
-        let watched = protocol.watched(&()).beside(begun.others);
-        let compared = compare_joints(joints, begun.estimates, model, watched, &Threads);
+        let watched = protocol.watched(&()).beside(context.others);
+        let compared = compare_joints(joints, context.estimates, model, watched, &Threads);
         let named = |(joint, compared): (&Joint, Option<Result<Comparison, _>>)| {
             Some((format!("with {}", best(joint)?.name()), compared?.ok()?))
         };

@@ -9,10 +9,10 @@ use anyhow::{Context as _, anyhow};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::read_model;
-use crate::cli::console::{Verbosity, message};
+use crate::cli::console::message;
 use crate::cli::exit::Completion;
 use crate::cli::output::{check_outputs, write_file};
-use crate::experiment::nearest_name;
+use crate::experiment::{did_you_mean, nearest_name};
 use crate::export::{Export, File, Language, Units, by_ending, endings};
 use crate::model::{Component, JointModel, ModelFile};
 
@@ -68,7 +68,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     for file in &files {
         let path = paths(file);
         write_file(&path, |output| Ok(output.write_all(&file.content)?))?;
-        if args.verbosity() == Verbosity::Normal {
+        if !args.quiet {
             message("model", &shown(&path));
         }
         if let Some(note) = &file.note {
@@ -76,12 +76,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         }
     }
     Ok(Completion::Whole)
-}
-
-impl Args {
-    fn verbosity(&self) -> Verbosity {
-        if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
-    }
 }
 
 fn shown(path: &Path) -> String {
@@ -112,9 +106,7 @@ fn joint<'a>(model: &'a ModelFile, wanted: Option<&str>) -> anyhow::Result<&'a s
         (None, _) => Err(anyhow!("it has several joints: `--joint` takes one of {}", listed())),
         (Some(wanted), names) => {
             names.iter().find(|name| **name == wanted).copied().ok_or_else(|| {
-                let near = nearest_name(wanted, names.iter().copied());
-                let near =
-                    near.map_or_else(String::new, |near| format!("; the nearest is `{near}`"));
+                let near = did_you_mean(nearest_name(wanted, names.iter().copied()));
                 anyhow!("it has no joint `{wanted}`{near}")
             })
         }

@@ -19,7 +19,7 @@ use crate::cli::each_log::{Each, FolderArgs};
 use crate::cli::exit::Completion;
 use crate::cli::output::check_outputs;
 use crate::cli::run::{
-    Begun, Progress, Session, Study, add_arguments, estimate_at, improved, models, outcomes,
+    Progress, Session, Study, StudyContext, add_arguments, estimate_at, improved, models, outcomes,
     revised, revision_names,
 };
 
@@ -89,11 +89,12 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let session = Session::with_others("improve", &args.data, &args.output.run, stream)?;
     let name = name_of(Some(target));
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
-    let study = Study::of(session, &args.output.delay_settings(), |begun| {
-        let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("improving"));
-        let progress = Progress::new(&file, joints, begun.verbosity(), Some(interrupt));
+    let study = Study::of(session, &args.output.delay_settings(), |context| {
+        let (joints, estimates, bar) =
+            (context.joints, context.estimates, context.bar("improving"));
+        let progress = Progress::new(&file, joints, context.verbosity(), Some(interrupt));
         let arguments = args.add_arguments(joints);
-        let stage = Stage::new(begun, &file, &name, &arguments);
+        let stage = Stage::new(context, &file, &name, &arguments);
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
         let done = |index, revision: &Step| {
             stage.show(index, revision);
@@ -103,7 +104,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
             joints,
             estimates,
             starts,
-            protocol.watched(&bar).beside(begun.others),
+            protocol.watched(&bar).beside(context.others),
             &options,
             done,
             &Threads,
@@ -158,7 +159,7 @@ impl Args {
 
 /// The revisions so far, shown to whoever looks on.
 struct Stage<'a> {
-    begun: Begun<'a>,
+    context: StudyContext<'a>,
     file: &'a ModelFile,
     name: &'a str,
     arguments: &'a [String],
@@ -167,28 +168,33 @@ struct Stage<'a> {
 }
 
 impl<'a> Stage<'a> {
-    fn new(begun: Begun<'a>, file: &'a ModelFile, name: &'a str, arguments: &'a [String]) -> Self {
-        let steps = begun.joints.iter().map(|_| Mutex::default()).collect();
-        Self { begun, file, name, arguments, steps }
+    fn new(
+        context: StudyContext<'a>,
+        file: &'a ModelFile,
+        name: &'a str,
+        arguments: &'a [String],
+    ) -> Self {
+        let steps = context.joints.iter().map(|_| Mutex::default()).collect();
+        Self { context, file, name, arguments, steps }
     }
 
     /// Shows one more revision of a joint. What goes wrong is reported, and is no reason to stop:
     /// the results do not depend on the viewer.
     fn show(&self, index: usize, revision: &Step) {
-        if !self.begun.is_shown() {
+        if !self.context.is_shown() {
             return;
         }
-        let of_joint = self.begun.joints.get(index).zip(self.steps.get(index));
+        let of_joint = self.context.joints.get(index).zip(self.steps.get(index));
         let Some((joint, steps)) = of_joint else { return };
         let Ok(mut steps) = steps.lock() else { return };
         steps.push(revision.clone());
         let (revisions, attribution) = (steps.clone(), Attribution::default());
         let improvement = Improvement { revisions, verdict: so_far(revision), attribution };
         let arguments = self.arguments.get(index).map_or("", String::as_str);
-        let delays = estimate_at(self.begun.estimates, index);
+        let delays = estimate_at(self.context.estimates, index);
         let improved = improved(self.file, self.name, joint, (&improvement, delays), arguments);
         let revisions: Vec<_> = improved.into_iter().collect();
-        if let Err(error) = self.begun.show(&[], &revisions, Some(&joint.name)) {
+        if let Err(error) = self.context.show(&[], &revisions, Some(&joint.name)) {
             message("warning", &format!("{error:#}"));
         }
     }

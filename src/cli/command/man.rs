@@ -10,7 +10,7 @@ use clap_mangen::Man;
 use crate::cli::console::{self, message};
 use crate::cli::exit::Completion;
 use crate::cli::output::write_file;
-use crate::cli::similar::did_you_mean;
+use crate::experiment::{did_you_mean, nearest_name};
 
 /// Print the manual page of a command, or write all pages to a folder
 ///
@@ -77,6 +77,6 @@ fn write_all(pages: &[Command], folder: &Path) -> anyhow::Result<Completion> {
 fn unknown(wanted: &str, pages: &[Command]) -> String {
     let names = pages.iter().filter_map(|page| name_of(page).strip_prefix("tauscope-"));
     let names: Vec<&str> = names.collect();
-    let near = did_you_mean(wanted, names.iter().copied());
-    format!("no command `{wanted}`; expected one of {}{near}", names.join(", "))
+    let near = did_you_mean(nearest_name(wanted, names.iter().copied()));
+    format!("no command `{wanted}`{near}; expected one of {}", names.join(", "))
 }

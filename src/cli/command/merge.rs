@@ -6,7 +6,6 @@ use crate::report::FolderReport;
 use clap::Args as ClapArgs;
 
 use crate::cli::args::Format;
-use crate::cli::console::Verbosity;
 use crate::cli::each_log::{Tables, kept_in, present, read_folders};
 use crate::cli::exit::Completion;
 use crate::cli::output::CsvText;
@@ -52,6 +51,5 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     if command != "estimate" && tables.decisions.is_some() {
         anyhow::bail!("--decisions: these are results of `{command}`, which makes no decisions");
     }
-    let verbosity = if args.quiet { Verbosity::Quiet } else { Verbosity::Normal };
-    present(&report, &missing, tables, args.format, verbosity)
+    present(&report, &missing, tables, args.format, args.quiet.into())
 }

@@ -28,7 +28,7 @@ use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, said};
 use crate::cli::output::{check_outputs, write_file};
 use crate::cli::run::{
-    self, Begun, Progress, Session, Study, add_arguments, compared, estimate_at, estimated,
+    self, Progress, Session, Study, StudyContext, add_arguments, compared, estimate_at, estimated,
     improved, others, revised,
 };
 use crate::cli::viewer::StreamArgs;
@@ -142,7 +142,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let asked = (std::slice::from_ref(&settings), Automatic::default());
     let others = others(&session, (&args.against, &args.data), asked, &[])?;
     let session = session.with_results(others);
-    let study = Study::of(session, &settings, |begun| args.model.improved(&file, begun, &options))?;
+    let study =
+        Study::of(session, &settings, |context| args.model.improved(&file, context, &options))?;
     if study.result.is_some() {
         note_missing(&file, &study.experiment().joints, study.verbosity());
     }
@@ -164,24 +165,24 @@ impl ModelArgs {
     fn improved(
         &self,
         file: &ModelFile,
-        begun: Begun<'_>,
+        context: StudyContext<'_>,
         options: &Options,
     ) -> Option<OfJoints<Improvement>> {
-        let (joints, estimates) = (begun.joints, begun.estimates);
+        let (joints, estimates) = (context.joints, context.estimates);
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
         let protocol = self.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
         if self.improve {
-            let bar = begun.bar("improving");
-            let progress = Progress::new(file, joints, begun.verbosity(), None);
+            let bar = context.bar("improving");
+            let progress = Progress::new(file, joints, context.verbosity(), None);
             let done = |index, revision: &Revision| progress.done(index, revision);
-            let protocol = protocol.watched(&bar).beside(begun.others);
+            let protocol = protocol.watched(&bar).beside(context.others);
             return Some(improve_joints(
                 joints, estimates, starts, protocol, options, done, &Threads,
             ));
         }
         self.model.as_ref()?;
-        let bar = begun.bar("explaining");
-        let protocol = protocol.watched(&bar).beside(begun.others);
+        let bar = context.bar("explaining");
+        let protocol = protocol.watched(&bar).beside(context.others);
         let explained = explain_joints(joints, estimates, starts, protocol, options, &Threads);
         let one = |found: Option<Result<_, _>>| Some(found?.map(as_it_is));
         Some(explained.into_iter().map(one).collect())

@@ -104,13 +104,13 @@ const NOISE: f64 = 0.05;
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let spec = {
-        let _bar = Bar::spinner(args.verbosity(), "sizing effects");
+        let _bar = Bar::spinner(Verbosity::from(args.quiet), "sizing effects");
         spec(args)?
     };
     let outputs = std::iter::once(&args.output).chain(&args.truth);
     let inputs = args.plant.iter().filter_map(|path| path.canonicalize().ok());
     check_outputs(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), &inputs.collect::<Vec<_>>())?;
-    let bar = Bar::spinner(args.verbosity(), "simulating");
+    let bar = Bar::spinner(Verbosity::from(args.quiet), "simulating");
     let made = match &args.plant {
         Some(path) => simulate(&spec).with_context(|| path.display().to_string())?,
         None => simulate(&spec)?,
@@ -122,12 +122,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         message("log", &format!("{}: {joints} joints, {steps} steps", args.output.display()));
     }
     Ok(Completion::Whole)
-}
-
-impl Args {
-    fn verbosity(&self) -> Verbosity {
-        if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
-    }
 }
 
 /// Log and truth under their final names, or nothing.

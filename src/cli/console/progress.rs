@@ -14,6 +14,13 @@ pub(crate) enum Verbosity {
     Quiet,
 }
 
+impl From<bool> for Verbosity {
+    /// What `--quiet` says.
+    fn from(quiet: bool) -> Self {
+        if quiet { Self::Quiet } else { Self::Normal }
+    }
+}
+
 /// All bars there are. It draws nothing where stderr is no terminal.
 static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 

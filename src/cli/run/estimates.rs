@@ -122,6 +122,7 @@ fn coarse_grid(joints: &[EstimatedJoint<'_>]) -> Option<String> {
     let coarse: Vec<_> =
         joints.iter().filter(|joint| is_on_a_coarse_grid(joint.estimate)).collect();
     let beta = coarse.first()?.estimate.settings.beta;
+    let finer = Method::all().find(|method| method.spec().has_intervals)?;
     let named = coarse.iter().take(NAMED).map(|one| format!("`{}`", one.joint.name));
     let named = named.collect::<Vec<_>>().join(", ");
     let joints = match coarse.len() {
@@ -131,7 +132,7 @@ fn coarse_grid(joints: &[EstimatedJoint<'_>]) -> Option<String> {
     };
     Some(format!(
         "{joints}: delays come in steps of β = {beta} samples, which is much beside them; `--method \
-         hinge` places them between samples, with intervals"
+         {finer}` places them between samples, with intervals"
     ))
 }
 
@@ -141,7 +142,7 @@ fn is_on_a_coarse_grid(estimate: &JointEstimate) -> bool {
     const FEWEST: usize = 3;
     const COARSE: f64 = 0.4;
     let settings = &estimate.settings;
-    if settings.method != Method::TWO_LINE || settings.paper || settings.beta < 2 {
+    if !settings.method.spec().has_rows || settings.paper || settings.beta < 2 {
         return false;
     }
     let delays = accepted(estimate).filter(|decision| decision.fine.is_none());
@@ -159,10 +160,11 @@ fn smeared(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let holds = estimate.estimated().flat_map(|trial| &trial.decisions);
     let holds: Vec<f64> = holds.map(|decision| decision.hold as f64).collect();
     let hold_s = median(&holds)? * first.seconds();
+    let unsmoothed = Method::all().find(|method| method.spec().low_pass.is_none())?;
     (hold_s * cutoff_hz < 1.0).then(|| {
         format!(
             "joint `{}`: the input is held for {} s (median), less than a period of the low-pass of \
-             {cutoff_hz} Hz, which blends reactions into one another: `--method hinge` needs none",
+             {cutoff_hz} Hz, which blends reactions into one another: `--method {unsmoothed}` needs none",
             joint.name,
             number(hold_s),
         )
@@ -190,8 +192,8 @@ fn accepted(estimate: &JointEstimate) -> impl Iterator<Item = &Decision> {
 /// A line where segments end at the next step, since they held the reaction to it.
 fn cut_at_the_next_step(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let settings = &estimate.settings;
-    let is_two_line = settings.method == Method::TWO_LINE;
-    let mut trials = estimate.estimated().filter(|_| is_two_line);
+    let cuts_segments = settings.method.spec().cuts_segments;
+    let mut trials = estimate.estimated().filter(|_| cuts_segments);
     trials.any(|trial| end_at_the_next_step(&trial.decisions)).then(|| {
         format!(
             "joint `{}`: it reacts within α = {} samples, so that segments hold the reaction to the \

@@ -14,4 +14,4 @@ pub(crate) use estimates::{Estimates, estimate_at, estimated, failures, notes};
 pub(crate) use outcomes::outcomes;
 pub(crate) use revisions::{Progress, improved, models, revised, revision_names};
 pub(crate) use session::Session;
-pub(crate) use study::{Begun, Study};
+pub(crate) use study::{Study, StudyContext};

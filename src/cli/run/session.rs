@@ -70,7 +70,7 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// What persons said of the decisions stands above the conditions.
+    /// What reviewers said of the decisions overrides the conditions.
     pub(crate) fn reviewed(self, review: Review) -> Self {
         Self { review, ..self }
     }
@@ -80,8 +80,8 @@ impl<'a> Session<'a> {
         Self { beside, ..self }
     }
 
-    /// Hears what persons said, and says what of it was of no use.
-    fn hear(&self, estimates: &mut Estimates) {
+    /// Applies what reviewers said, and warns of what could not be applied.
+    fn apply_review(&self, estimates: &mut Estimates) {
         let notes = self.review.apply(&self.experiment.joints, estimates);
         warn(&notes.iter().map(ToString::to_string).collect::<Vec<_>>());
     }
@@ -142,7 +142,7 @@ impl<'a> Session<'a> {
     pub(crate) fn estimates(&self, settings: &Settings) -> Estimates {
         let bar = self.estimating(1);
         let mut estimates = self.estimated(settings, Automatic::default(), &bar);
-        self.hear(&mut estimates);
+        self.apply_review(&mut estimates);
         estimates
     }
 
@@ -156,9 +156,9 @@ impl<'a> Session<'a> {
         let bar = self.estimating(settings.len());
         let one = |settings| self.estimated(settings, automatic, &bar);
         let mut all: Vec<Estimates> = settings.iter().map(one).collect();
-        // A word is on the answer, not on what is reported beside it.
+        // A review is of the answer, not of what is reported beside it.
         if let Some(answer) = all.first_mut() {
-            self.hear(answer);
+            self.apply_review(answer);
         }
         all
     }

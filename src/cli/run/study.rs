@@ -24,7 +24,7 @@ pub(crate) struct Study<'a, T> {
 
 /// What work on the joints begins with.
 #[derive(Clone, Copy)]
-pub(crate) struct Begun<'a> {
+pub(crate) struct StudyContext<'a> {
     session: &'a Session<'a>,
     pub(crate) joints: &'a [Joint],
     pub(crate) estimates: &'a Estimates,
@@ -38,7 +38,7 @@ impl<'a, T: Send> Study<'a, T> {
     pub(crate) fn of(
         session: Session<'a>,
         settings: &Settings,
-        work: impl FnOnce(Begun<'_>) -> T + Send,
+        work: impl FnOnce(StudyContext<'_>) -> T + Send,
     ) -> anyhow::Result<Self> {
         let settings = session.in_samples(settings);
         let (estimates, result) = session.in_threads(|| {
@@ -46,9 +46,12 @@ impl<'a, T: Send> Study<'a, T> {
             let result = {
                 let of_others = session.estimates_of_others(&settings);
                 let others = others_of(&session.experiment.others, &of_others);
-                let begun = Begun { others: &others, ..Begun::of(&session, &estimates, &settings) };
-                begun.show(&[], &[], None)?;
-                work(begun)
+                let context = StudyContext {
+                    others: &others,
+                    ..StudyContext::of(&session, &estimates, &settings)
+                };
+                context.show(&[], &[], None)?;
+                work(context)
             };
             anyhow::Ok((estimates, result))
         })??;
@@ -56,7 +59,7 @@ impl<'a, T: Send> Study<'a, T> {
     }
 }
 
-impl<'a> Begun<'a> {
+impl<'a> StudyContext<'a> {
     fn of(session: &'a Session<'a>, estimates: &'a Estimates, settings: &'a Settings) -> Self {
         let joints = &session.experiment.joints;
         Self { session, joints, estimates, others: &[], settings }
@@ -134,12 +137,13 @@ impl<T> Study<'_, T> {
         models: &[ComparedJoint<'_>],
         revisions: &[ImprovedJoint<'_>],
     ) -> anyhow::Result<()> {
-        let begun = Begun::of(&self.session, &self.estimates, &self.settings);
+        let context = StudyContext::of(&self.session, &self.estimates, &self.settings);
         if let Some(path) = path {
             let verbosity = self.verbosity();
-            begun.with_contents(models, revisions, |contents| contents.record(path, verbosity))?;
+            context
+                .with_contents(models, revisions, |contents| contents.record(path, verbosity))?;
         }
-        begun.show(models, revisions, None)
+        context.show(models, revisions, None)
     }
 
     /// Says what failed, prints the results, and ends what viewers are sent.

@@ -168,7 +168,7 @@ impl<'a> FitWindow<'a> {
         self.fill_linear(&response, linear, moves);
         if let Some(parts) = parts {
             for (index, column) in lag_columns.chunks_exact_mut(length).enumerate() {
-                self.fill_lag_column(&model.nudged(index), parts, linear, column);
+                self.fill_lag_column(&model.perturbed(index), parts, linear, column);
             }
         }
         for (slot, y) in target.iter_mut().zip(self.values) {
@@ -217,19 +217,19 @@ impl<'a> FitWindow<'a> {
     /// What changes with one parameter of the model, given the model a little changed.
     fn fill_lag_column(
         &self,
-        nudged: &LagModel,
+        perturbed: &LagModel,
         parts: &[f64],
         linear: &[f64],
         column: &mut [f64],
     ) {
         let length = self.values.len();
-        let response = Response::of(nudged);
+        let response = Response::of(perturbed);
         let mut changed = vec![0.0; linear.len()];
         self.fill_linear(&response, &mut changed, &mut []);
         let pairs = changed.chunks_exact(length).zip(linear.chunks_exact(length));
         for ((after, before), part) in pairs.zip(parts).skip(LINE) {
             // ∂y/∂θ = Σ part·∂column/∂θ, by a forward difference.
-            let scale = part / LagModel::nudge();
+            let scale = part / LagModel::perturbation();
             for ((slot, after), before) in column.iter_mut().zip(after).zip(before) {
                 *slot += scale * (after - before);
             }
@@ -383,17 +383,17 @@ mod tests {
     #[test]
     fn columns_of_the_lag_are_what_changes_with_it() {
         let model = LagModel::pair_of(0.2, 0.4).behind(4.0);
-        let values = made(&model.nudged(1), 47.37);
+        let values = made(&model.perturbed(1), 47.37);
         let noise = NoiseModel::white();
         let window = FitWindow::alone(&values, vec![47.37]);
         let parts = window.at(&Basis::of(&model, 120), &noise).parts;
         let found = window.with_lag_columns(&model, &noise, &parts);
         let mut information = Information::default();
         found.inform(&mut information);
-        // To first order the nudge is all there is to find.
+        // To first order the perturbation is all there is to find.
         let matrix = nalgebra::Matrix3::from_fn(|i, j| information.products[i][j]);
         let solved = matrix.lu().solve(&nalgebra::Vector3::from(information.with)).unwrap();
-        assert!((solved[1] / LagModel::nudge() - 1.0).abs() < 0.02, "{solved}");
-        assert!(solved[0].abs() + solved[2].abs() < 0.02 * LagModel::nudge(), "{solved}");
+        assert!((solved[1] / LagModel::perturbation() - 1.0).abs() < 0.02, "{solved}");
+        assert!(solved[0].abs() + solved[2].abs() < 0.02 * LagModel::perturbation(), "{solved}");
     }
 }

@@ -92,15 +92,15 @@ impl LagModel {
     }
 
     /// This model with one logarithm a little larger.
-    pub(crate) fn nudged(mut self, index: usize) -> Self {
+    pub(crate) fn perturbed(mut self, index: usize) -> Self {
         if let Some(log) = self.logs.get_mut(index) {
             *log += STEP;
         }
         self
     }
 
-    /// What a step of [`nudged`](Self::nudged) is to be divided by.
-    pub(crate) const fn nudge() -> f64 {
+    /// What a step of [`perturbed`](Self::perturbed) is to be divided by.
+    pub(crate) const fn perturbation() -> f64 {
         STEP
     }
 
@@ -135,7 +135,7 @@ impl LagModel {
         let at = value(self);
         let mut slopes = [0.0; MAX_PARAMETERS];
         for (index, slope) in slopes[..self.order()].iter_mut().enumerate() {
-            *slope = (value(&self.nudged(index)) - at) / STEP;
+            *slope = (value(&self.perturbed(index)) - at) / STEP;
         }
         slopes
     }

@@ -27,6 +27,7 @@ static SPEC: MethodSpec = MethodSpec {
     source: None,
     summary: "A continuous broken line, with intervals",
     has_rows: false,
+    cuts_segments: false,
     has_intervals: true,
     scope: Scope::Trial,
     low_pass: None,

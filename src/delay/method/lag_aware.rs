@@ -30,6 +30,7 @@ static SPEC: MethodSpec = MethodSpec {
     source: None,
     summary: "A broken line behind a lag: dead time apart from lag, with intervals",
     has_rows: false,
+    cuts_segments: false,
     has_intervals: true,
     scope: Scope::Joint,
     low_pass: None,

@@ -37,7 +37,7 @@ pub(super) fn answer_the_next_step(decisions: &[Decision], beta: usize) -> bool 
 }
 
 /// Whether the segments of `decisions` end before the next step, since each would hold the reaction
-/// to it, too: what `two-line` makes of a joint that reacts within α.
+/// to it, too: what a method that cuts them makes of a joint that reacts within α.
 pub(crate) fn end_at_the_next_step(decisions: &[Decision]) -> bool {
     let next =
         || decisions.windows(2).map(|pair| (pair[0].segment.last, pair[1].input_step.sample));

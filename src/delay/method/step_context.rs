@@ -111,7 +111,16 @@ impl StepContext<'_> {
             fine,
         };
         let checks = Checks::of(&facts.check(self.settings));
-        let (response, word) = (None, None);
-        Decision { number, input_step, hold, segment, candidates, checks, fine, response, word }
+        Decision {
+            number,
+            input_step,
+            hold,
+            segment,
+            candidates,
+            checks,
+            fine,
+            response: None,
+            reviewer_verdict: None,
+        }
     }
 }

@@ -30,6 +30,7 @@ static SPEC: MethodSpec = MethodSpec {
     source: Some("Albrecht and Taylor, Algorithm 1"),
     summary: "Two regression lines (Albrecht and Taylor)",
     has_rows: true,
+    cuts_segments: true,
     has_intervals: false,
     scope: Scope::Segment,
     low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),

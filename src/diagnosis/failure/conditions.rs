@@ -8,7 +8,7 @@ use super::grid::{Choice, Grid, Selection};
 use super::record::{ResidualRecord, Row, Units};
 use super::regions::trial_label;
 use super::search::{DIGITS_COST, MIN_GAIN, Search};
-use super::threshold::to_digits;
+use crate::numerics::to_digits;
 
 /// Conditions that are named.
 const MOST: usize = 3;

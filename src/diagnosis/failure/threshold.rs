@@ -1,5 +1,7 @@
 //! Where a feature is cut: numbers with few digits that separate the data.
 
+use crate::numerics::{decimal_exponent, to_multiple};
+
 /// Digits after which a number is taken as it is.
 const DIGITS: i32 = 17;
 
@@ -67,28 +69,11 @@ fn roundest(low: f64, high: f64) -> f64 {
         return 0.0;
     }
     let largest = low.abs().max(high.abs());
-    #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
-    let exponent = largest.log10().floor().clamp(-300.0, 300.0) as i32;
+    let exponent = decimal_exponent(largest);
     let middle = f64::midpoint(low, high);
-    let rounded = (0..DIGITS).map(|digit| round_to(middle, exponent - digit));
+    let rounded = (0..DIGITS).map(|digit| to_multiple(middle, exponent - digit));
     let mut inside = rounded.filter(|value| *value > low && *value <= high);
     inside.next().unwrap_or(high)
-}
-
-/// `value` to so many significant digits.
-pub(super) fn to_digits(value: f64, digits: i32) -> f64 {
-    if value == 0.0 || !value.is_finite() {
-        return value;
-    }
-    #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
-    let exponent = value.abs().log10().floor().clamp(-300.0, 300.0) as i32;
-    round_to(value, exponent - (digits - 1))
-}
-
-/// `value` rounded to a multiple of `10^exponent`; a decimal fraction is the nearest double.
-fn round_to(value: f64, exponent: i32) -> f64 {
-    let unit = 10_f64.powi(exponent.abs());
-    if exponent < 0 { (value * unit).round() / unit } else { (value / unit).round() * unit }
 }
 
 #[cfg(test)]
@@ -102,13 +87,6 @@ mod tests {
         let levels = [-2.5, -1.0, 0.0, 1.0, 1.5, 4.0].repeat(9);
         let shown: Vec<String> = cuts(&levels, 12).iter().map(f64::to_string).collect();
         assert_eq!(shown, ["-2", "-0.5", "0.5", "1.3", "3"]);
-    }
-
-    #[test]
-    fn as_many_digits_as_asked_for_are_kept() {
-        let values = [12.345_678, -0.001_239, 987_654.0, 0.5, 0.0];
-        let shown = values.map(|value| to_digits(value, 3).to_string());
-        assert_eq!(shown, ["12.3", "-0.00124", "988000", "0.5", "0"]);
     }
 
     #[test]

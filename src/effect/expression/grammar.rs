@@ -11,6 +11,7 @@ use winnow::stream::{Stateful, Stream as _};
 use winnow::token::{one_of, take_while};
 
 use super::tree::{Function, Name, Node, Operator};
+use crate::experiment::did_you_mean;
 
 /// The longest expression, in bytes: longer than anyone reads.
 ///
@@ -85,7 +86,7 @@ pub enum Problem {
     #[error("expected {0}")]
     Expected(&'static str),
     /// There is no signal, parameter, constant or function of this name.
-    #[error("`{name}` is not known; the nearest of {known} is `{nearest}`")]
+    #[error("`{name}` is not known{}; known: {known}", did_you_mean(Some(nearest)))]
     Unknown {
         /// The name.
         name: String,
@@ -448,9 +449,9 @@ mod tests {
             (
                 "1 + sgnal",
                 5,
-                "`sgnal` is not known; the nearest of signal, position, slope, start, pi is `signal`",
+                "`sgnal` is not known (did you mean `signal`?); known: signal, position, slope, start, pi",
             ),
-            ("maks(1, 2)", 1, "the nearest of abs, sign, sqrt"),
+            ("maks(1, 2)", 1, "known: abs, sign, sqrt"),
             ("slope (signal)", 1, "`slope` is not a function"),
             ("abs(1, 2)", 1, "`abs` takes one value, not 2"),
             ("max(1)", 1, "`max` takes two values or more, not 1"),

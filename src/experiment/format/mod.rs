@@ -23,4 +23,5 @@ mod xlsx;
 
 pub(super) use csv::GrowingRows;
 pub(super) use date::date_of_seconds;
+pub(crate) use registry::format_names;
 pub(super) use registry::{endings, is_named_like_a_log, is_text, open};

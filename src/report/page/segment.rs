@@ -11,8 +11,8 @@ use crate::figure::segment::SegmentFigure;
 use crate::figure::{Axis, Mark, Panel, Place, Shape};
 use crate::report::EstimatedJoint;
 use crate::wording::bracketed;
-use crate::wording::number;
 use crate::wording::rounded;
+use crate::wording::to_place;
 
 /// A decision that is worth a look, and why.
 struct Choice<'a> {
@@ -114,14 +114,17 @@ impl Choice<'_> {
                 format!("rejected as {condition}: {}", condition.meaning())
             }
         };
-        format!("{why}: step {i}{trial_said} at {at} s, {delay}, {verdict}{}.", self.beside_word())
+        format!(
+            "{why}: step {i}{trial_said} at {at} s, {delay}, {verdict}{}.",
+            self.beside_reviewer()
+        )
     }
 
     /// Who said it, and what the program says, where a person said something.
-    fn beside_word(&self) -> String {
+    fn beside_reviewer(&self) -> String {
         let decision = self.decision;
-        let Some(word) = &decision.word else { return String::new() };
-        let by = if word.reviewer.is_empty() { "a person" } else { word.reviewer.as_str() };
+        let Some(said) = &decision.reviewer_verdict else { return String::new() };
+        let by = if said.reviewer.is_empty() { "a person" } else { said.reviewer.as_str() };
         let program = match (decision.program_verdict(), decision.program_delay()) {
             (Verdict::Accepted, Some(delay)) => {
                 format!("accepted, delay {} s", rounded(delay * self.trial.period().seconds()))
@@ -230,7 +233,7 @@ impl Choice<'_> {
 
 /// A time to the hundredth, where that is enough.
 fn rounded_time(seconds: f64) -> String {
-    if seconds.abs() < 1e6 { number((seconds * 100.0).round() / 100.0) } else { rounded(seconds) }
+    if seconds.abs() < 1e6 { to_place(seconds, 2) } else { rounded(seconds) }
 }
 
 #[cfg(test)]

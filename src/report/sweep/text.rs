@@ -153,17 +153,18 @@ fn lag_sentence(grid: &Grid, reported: &ReportedSweep<'_>) -> Option<String> {
         let settings = grid.runs().get(index)?;
         // Less than a sample is no lag that another method could take for delay.
         let is_known = lag.value >= longest && lag.value > 1.96 * lag.std_error;
-        is_known.then_some((settings.low_pass, lag.value))
+        is_known.then_some((settings, lag.value))
     };
     let mut lags: Vec<_> = reported.sweep.runs.iter().enumerate().filter_map(of_run).collect();
     // A low-pass looks like a lag; what was found without it comes first.
-    lags.sort_by_key(|(low_pass, _)| low_pass.is_some());
-    let (low_pass, seconds) = lags.first()?;
-    let others = grid.bases().len() > 1 && low_pass.is_none();
+    lags.sort_by_key(|(settings, _)| settings.low_pass.is_some());
+    let (settings, seconds) = lags.first()?;
+    let others = grid.bases().len() > 1 && settings.low_pass.is_none();
     others.then(|| {
         format!(
-            "`lag-aware` finds a lag of {} s, which the other methods take for delay: that \
-             they agree does not make them right.",
+            "`{}` finds a lag of {} s, which the other methods take for delay: that they agree \
+             does not make them right.",
+            settings.method,
             rounded(*seconds)
         )
     })

@@ -150,7 +150,7 @@ impl Noise {
 
 /// An effect that is hidden, and how much of it.
 #[derive(Clone, Debug)]
-struct Secret {
+struct HiddenEffect {
     name: &'static str,
     chances: Chances,
     amount: f64,
@@ -158,7 +158,7 @@ struct Secret {
     random: ChaCha8Rng,
 }
 
-impl Secret {
+impl HiddenEffect {
     /// The effect `name`, its particulars drawn by `seed`.
     fn new(name: &str, seed: u64) -> Result<Self, PlantError> {
         let name = effects::name(name)?;
@@ -251,23 +251,23 @@ impl Scenario {
         strength: Strength,
         noise: Noise,
     ) -> Result<Self, ScenarioError> {
-        let secrets = hidden.iter().map(|name| Secret::new(name, bare.seed));
-        let mut secrets = secrets.collect::<Result<Vec<_>, _>>()?;
-        for (index, secret) in secrets.iter().enumerate() {
-            if secrets.iter().skip(index + 1).any(|other| other.name == secret.name) {
-                return Err(PlantError::Twice { name: secret.name }.into());
+        let effects = hidden.iter().map(|name| HiddenEffect::new(name, bare.seed));
+        let mut effects = effects.collect::<Result<Vec<_>, _>>()?;
+        for (index, effect) in effects.iter().enumerate() {
+            if effects.iter().skip(index + 1).any(|other| other.name == effect.name) {
+                return Err(PlantError::Twice { name: effect.name }.into());
             }
         }
         let mut alone = None;
-        for secret in &mut secrets {
-            alone = Some(settle(secret, bare, strength, noise.deviation)?);
+        for effect in &mut effects {
+            alone = Some(settle(effect, bare, strength, noise.deviation)?);
         }
         let (given, error_over_noise) = match alone {
-            Some(alone) if secrets.len() == 1 => alone,
-            _ => together(bare, &secrets, noise.deviation)?,
+            Some(alone) if effects.len() == 1 => alone,
+            _ => together(bare, &effects, noise.deviation)?,
         };
-        let hidden = secrets.iter().map(|secret| secret.name).collect();
-        Ok(Self { plant: noisy(with(&given, &secrets), noise), hidden, error_over_noise })
+        let hidden = effects.iter().map(|effect| effect.name).collect();
+        Ok(Self { plant: noisy(with(&given, &effects), noise), hidden, error_over_noise })
     }
 }
 
@@ -299,20 +299,20 @@ fn levels(random: &mut ChaCha8Rng) -> Vec<f64> {
     levels
 }
 
-/// `ideal` with `secrets` in its first joint.
-fn with(ideal: &PlantSpec, secrets: &[Secret]) -> PlantSpec {
+/// `ideal` with `effects` in its first joint.
+fn with(ideal: &PlantSpec, effects: &[HiddenEffect]) -> PlantSpec {
     let mut plant = ideal.clone();
     if let Some(joint) = plant.joints.first_mut() {
-        for secret in secrets {
-            secret.put_on(joint);
+        for effect in effects {
+            effect.put_on(joint);
         }
     }
     plant
 }
 
-/// `bare` with given steps, such that the joint with `secrets` keeps its range.
-fn with_input_for(bare: &PlantSpec, secrets: &[Secret]) -> Result<PlantSpec, PlantError> {
-    let made = simulate(&with(bare, secrets))?;
+/// `bare` with given steps, such that the joint with `effects` keeps its range.
+fn with_input_for(bare: &PlantSpec, effects: &[HiddenEffect]) -> Result<PlantSpec, PlantError> {
+    let made = simulate(&with(bare, effects))?;
     let mut given = bare.clone();
     for joint in &mut given.joints {
         let steps = made.truth.iter().filter(|step| step.joint == joint.name);
@@ -322,42 +322,42 @@ fn with_input_for(bare: &PlantSpec, secrets: &[Secret]) -> Result<PlantSpec, Pla
     Ok(given)
 }
 
-/// `bare` with an input for all of `secrets`, and the error in deviations of the noise.
+/// `bare` with an input for all of `effects`, and the error in deviations of the noise.
 fn together(
     bare: &PlantSpec,
-    secrets: &[Secret],
+    effects: &[HiddenEffect],
     deviation: f64,
 ) -> Result<(PlantSpec, f64), PlantError> {
-    let given = with_input_for(bare, secrets)?;
-    let found = error(&simulate(&with(&given, secrets))?) / deviation;
+    let given = with_input_for(bare, effects)?;
+    let found = error(&simulate(&with(&given, effects))?) / deviation;
     Ok((given, found))
 }
 
-/// Finds the amount of `secret` that makes the error which `strength` means; the plant
+/// Finds the amount of `effect` that makes the error which `strength` means; the plant
 /// with the input that goes with it, and the error in deviations of the noise.
 ///
 /// An input that was drawn for another amount may lead the joint too far: then one is drawn
 /// for this amount, and the amount found for that input. Where that does not help, the
 /// effect gets other particulars.
 fn settle(
-    secret: &mut Secret,
+    effect: &mut HiddenEffect,
     bare: &PlantSpec,
     strength: Strength,
     deviation: f64,
 ) -> Result<(PlantSpec, f64), ScenarioError> {
     let mut nearest = 0.0;
     for round in 1..=ROUNDS {
-        let given = with_input_for(bare, std::slice::from_ref(secret))?;
-        let sized = calibrated(secret.clone(), &given, strength, deviation)?;
-        (secret.amount, nearest) = (sized.amount, sized.error);
+        let given = with_input_for(bare, std::slice::from_ref(effect))?;
+        let sized = calibrated(effect.clone(), &given, strength, deviation)?;
+        (effect.amount, nearest) = (sized.amount, sized.error);
         if strength.holds(sized.error) && sized.reach <= FARTHEST {
             return Ok((given, sized.error));
         }
         if round % ROUNDS_EACH == 0 {
-            secret.chances = Chances(secret.random.random());
+            effect.chances = Chances(effect.random.random());
         }
     }
-    let (name, wanted) = (secret.name, strength.wanted());
+    let (name, wanted) = (effect.name, strength.wanted());
     Err(ScenarioError::OutOfReach { name, found: nearest, wanted })
 }
 
@@ -371,37 +371,37 @@ struct Size {
     reach: f64,
 }
 
-/// The amount of `secret` whose error on one input is nearest to what is wanted.
+/// The amount of `effect` whose error on one input is nearest to what is wanted.
 ///
 /// The error grows with the amount, about in proportion: the next amount follows from the
 /// last one, and where that leaves what is known the middle is taken.
 fn calibrated(
-    mut secret: Secret,
+    mut effect: HiddenEffect,
     ideal: &PlantSpec,
     strength: Strength,
     deviation: f64,
 ) -> Result<Size, PlantError> {
     let (mut too_little, mut too_much) = (LEAST_AMOUNT, 1.0);
-    let mut best = Size { amount: secret.amount, error: 0.0, reach: 0.0 };
+    let mut best = Size { amount: effect.amount, error: 0.0, reach: 0.0 };
     let mut nearest = f64::INFINITY;
     for _ in 0..TRIES {
-        let made = simulate(&with(ideal, std::slice::from_ref(&secret)))?;
+        let made = simulate(&with(ideal, std::slice::from_ref(&effect)))?;
         let found = error(&made) / deviation;
         let ratio = found / strength.wanted();
         let missed = if strength.holds(found) { 0.0 } else { MISSED };
         let distance = ratio.ln().abs() + missed;
         if distance < nearest {
             nearest = distance;
-            best = Size { amount: secret.amount, error: found, reach: reach(&made) };
+            best = Size { amount: effect.amount, error: found, reach: reach(&made) };
         }
         let side = if ratio < 1.0 { &mut too_little } else { &mut too_much };
-        *side = secret.amount;
+        *side = effect.amount;
         if distance < NEAR || too_much / too_little < DISTINCT {
             break;
         }
-        let next = secret.amount / ratio;
+        let next = effect.amount / ratio;
         let inside = next > too_little && next < too_much;
-        secret.amount = if inside { next } else { (too_little * too_much).sqrt() };
+        effect.amount = if inside { next } else { (too_little * too_much).sqrt() };
     }
     Ok(best)
 }

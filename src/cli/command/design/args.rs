@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::Args as ClapArgs;
 
 use super::values::{self, BandChoice, Levels};
+use crate::cli::args::number::at_least_one;
 use crate::cli::args::{ReadingArgs, RunArgs};
+use crate::experiment::format_names;
 
 /// Design the next experiment: an input to play
 ///
@@ -15,9 +17,7 @@ use crate::cli::args::{ReadingArgs, RunArgs};
 /// effects, and says how surely.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
-    /// Logs of earlier experiments (CSV, XLSX, Parquet, MATLAB, MCAP), or folders of logs: what they
-    /// show of the joints is used
-    #[arg(value_name = "DATA")]
+    #[arg(help = data_help(), value_name = "DATA")]
     pub(super) data: Vec<PathBuf>,
 
     #[command(flatten)]
@@ -68,7 +68,7 @@ pub(crate) struct Args {
     /// Most trials, before each of which the joint is brought back to its start: 1 for an input
     /// without a break [default: as many as the range needs]
     #[arg(
-        long, value_name = "N", value_parser = values::trials, conflicts_with = "separate",
+        long, value_name = "N", value_parser = at_least_one, conflicts_with = "separate",
         allow_negative_numbers = true, help_heading = "Input"
     )]
     pub(super) trials: Option<usize>,
@@ -148,4 +148,11 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     pub(super) run: RunArgs,
+}
+
+fn data_help() -> String {
+    format!(
+        "Logs of earlier experiments ({}), or folders of logs: what they show of the joints is used",
+        format_names()
+    )
 }

@@ -2,7 +2,7 @@
 
 use crate::batch::Threads;
 use crate::design::{
-    Band, Logged, Plan, TestRig, Uncertain, Wishes, default_largest, plan, reach, response_s,
+    Band, Logged, Plan, PlanRequest, TestRig, Uncertain, default_largest, plan, reach, response_s,
     resting_band,
 };
 use crate::experiment::Joint;
@@ -64,8 +64,8 @@ fn steps_of(
     }
     let logged = known.logged(&rig.name);
     let rest = known.rest(&rig.name);
-    let wishes = wishes(args, uncertain, &rig, logged)?;
-    let planned = plan(&wishes, &rig, uncertain, logged, index)?;
+    let request = request(args, uncertain, &rig, logged)?;
+    let planned = plan(&request, &rig, uncertain, logged, index)?;
     let notes = notes(&planned, &rig, uncertain, rest);
     let basis = uncertain.map(|known| basis(known, &rig, logged, &planned));
     let Plan { schedule, prediction, .. } = planned;
@@ -74,12 +74,12 @@ fn steps_of(
 }
 
 /// What is asked for, in differences to rest.
-fn wishes(
+fn request(
     args: &Args,
     uncertain: Option<&Uncertain>,
     rig: &TestRig,
     logged: Option<&Logged>,
-) -> anyhow::Result<Wishes> {
+) -> anyhow::Result<PlanRequest> {
     let rest = logged.map_or(0.0, |logged| logged.rest);
     let levels = args.levels.as_ref();
     let levels = levels.map(|Levels(levels)| levels.iter().map(|u| u - rest).collect::<Vec<_>>());
@@ -88,7 +88,7 @@ fn wishes(
     let largest = largest.or(logged.map(Logged::largest).filter(|largest| *largest > 0.0));
     let largest = largest.unwrap_or_else(|| default_largest(model(uncertain), rig));
     let band = args.dead_band.map(|choice| band(choice, uncertain, rig, (largest, rest)));
-    Ok(Wishes {
+    Ok(PlanRequest {
         levels,
         largest: args.largest,
         band: band.transpose()?,

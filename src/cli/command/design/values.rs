@@ -1,5 +1,7 @@
 //! Arguments of `design`: levels, pairs and shares.
 
+use crate::numerics::to_decimals;
+
 /// Levels of an input, each once, ascending.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Levels(pub(crate) Vec<f64>);
@@ -46,7 +48,7 @@ fn range(first: &str, rest: &str, most: usize) -> Option<Vec<f64>> {
     let level = |k: usize| {
         let level = first + k as f64 * step;
         // Zero is meant where rounding leaves a little.
-        if level.abs() < 1e-9 * step { 0.0 } else { (level * 1e9).round() / 1e9 }
+        if level.abs() < 1e-9 * step { 0.0 } else { to_decimals(level, 9) }
     };
     Some((0..=most).map(level).take_while(|level| *level <= end).collect())
 }
@@ -102,11 +104,6 @@ pub(crate) fn rehearsals(text: &str) -> Result<usize, String> {
     const MOST: usize = 10_000;
     let number = text.parse().ok().filter(|number| *number <= MOST);
     number.ok_or_else(|| format!("expected a whole number from 0 to {MOST}"))
-}
-
-pub(crate) fn trials(text: &str) -> Result<usize, String> {
-    let number = text.parse().ok().filter(|number| *number > 0);
-    number.ok_or_else(|| "expected a whole number from 1 on".to_owned())
 }
 
 #[cfg(test)]

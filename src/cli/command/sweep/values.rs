@@ -6,7 +6,7 @@ use crate::delay::Method;
 
 use crate::cli::args::number::{at_least_one, length};
 use crate::cli::args::{Passband, passband};
-use crate::cli::similar::did_you_mean;
+use crate::experiment::{did_you_mean, nearest_name};
 use crate::units::Length;
 
 /// Most values of one range.
@@ -73,7 +73,8 @@ pub(crate) fn methods(text: &str) -> Result<Values<Method>, String> {
         let ids = || Method::all().map(Method::id);
         let expected = || {
             let names: Vec<_> = ids().collect();
-            format!("expected some of {}{}", names.join(", "), did_you_mean(name, ids()))
+            let near = did_you_mean(nearest_name(name, ids()));
+            format!("expected some of {}{near}", names.join(", "))
         };
         Method::find(name).map(|method| vec![method]).ok_or_else(expected)
     };

@@ -1,8 +1,8 @@
-//! What a person says of a decision: it stands above the conditions.
+//! What a reviewer says of a decision: it overrides the conditions.
 
-/// A reviewer's word on a step.
+/// A reviewer's verdict on a step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Word {
+pub struct ReviewerVerdict {
     /// Whether its delay counts.
     pub accepted: bool,
     /// The delay in samples, where the reviewer says it; else the method's own.

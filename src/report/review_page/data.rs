@@ -3,13 +3,14 @@
 use serde::Serialize;
 
 use crate::delay::{Check, Decision, Outcome};
+use crate::numerics::as_written;
 use crate::report::doubt::all_by_doubt;
 use crate::report::review::SheetRow;
 use crate::report::{Doubted, EstimatedJoint};
 
 /// All that the page is made from.
 #[derive(Debug, Serialize)]
-pub(super) struct DeskJson<'a> {
+pub(super) struct ReviewPageJson<'a> {
     /// The log.
     name: &'a str,
     /// All decisions there are; the page may hold fewer.
@@ -68,7 +69,7 @@ impl From<Check> for ConditionJson {
     }
 }
 
-impl<'a> DeskJson<'a> {
+impl<'a> ReviewPageJson<'a> {
     /// The `most` most doubtful decisions on `joints`.
     pub(super) fn of(name: &'a str, joints: &'a [EstimatedJoint<'a>], most: usize) -> Self {
         let all = all_by_doubt(joints);
@@ -120,5 +121,5 @@ fn fitted_to(decision: &Decision) -> Option<usize> {
 
 /// What is drawn needs no more.
 fn six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
+    as_written(value, 6)
 }

@@ -3,7 +3,7 @@
 
 mod data;
 
-use data::DeskJson;
+use data::ReviewPageJson;
 
 use super::{EstimatedJoint, Report};
 use crate::experiment::Source;
@@ -22,18 +22,18 @@ pub(crate) fn review_page(report: &Report<'_>) -> serde_json::Result<String> {
 }
 
 fn page(name: &str, joints: &[EstimatedJoint<'_>]) -> serde_json::Result<String> {
-    let data = serde_json::to_string(&DeskJson::of(name, joints, MOST))?;
+    let data = serde_json::to_string(&ReviewPageJson::of(name, joints, MOST))?;
     // Within a script nothing may look like its end.
     let data = data.replace('<', "\\u003c");
     let title = html(&format!("Review of {name}"));
     let parts = [
         ("{title}", title.as_str()),
-        ("{style}", include_str!("desk.css")),
-        ("{script}", include_str!("desk.js")),
+        ("{style}", include_str!("page.css")),
+        ("{script}", include_str!("page.js")),
         // Last, since it may hold anything.
         ("{data}", data.as_str()),
     ];
-    let page = include_str!("desk.html").to_owned();
+    let page = include_str!("page.html").to_owned();
     let page = parts.into_iter().fold(page, |page, (place, text)| page.replacen(place, text, 1));
     Ok(legible(&page))
 }
