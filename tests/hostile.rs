@@ -214,12 +214,21 @@ fn what_a_workbook_says_of_texts_and_styles_counts_before_they_are_read() {
 #[cfg(feature = "xlsx")]
 fn what_a_workbook_lists_beside_its_cells_counts_as_well() {
     let folder = TempDir::new().unwrap();
-    let parts: String = (0..120_000)
-        .map(|id| format!("<Relationship Id=\"r{id}\" Type=\"x/worksheet\" Target=\"a{id}\"/>"))
-        .collect();
+    let part = "<Relationship Id=\"r\" Type=\"x/worksheet\" Target=\"a\"/>";
+    let parts = part.repeat(120_000);
     let content = format!("<Relationships>{parts}</Relationships>");
     let bytes = workbook::with_part("xl/_rels/workbook.xml.rels", &content);
     assert_says(&file(&folder, "lists.xlsx", &bytes), &["--max-memory", "50MB"], "--max-memory");
+}
+
+#[test]
+#[cfg(feature = "xlsx")]
+fn elements_of_a_workbook_that_are_not_ended_count_as_well() {
+    let folder = TempDir::new().unwrap();
+    for name in ["xl/worksheets/sheet1.xml", "xl/sharedStrings.xml"] {
+        let bytes = workbook::with_part(name, &format!("<sheetData>{}", "<a>".repeat(4_000_000)));
+        assert_says(&file(&folder, "nest.xlsx", &bytes), &["--max-memory", "50MB"], "--max-memory");
+    }
 }
 
 #[test]

@@ -8,45 +8,10 @@ use super::error::ReadError;
 use super::joint::Signal;
 use super::names::{listed, nearest_name};
 use super::table::{Head, Header};
+use super::time_column::{TimeSource, find_any, find_time_column, times};
 use super::unit;
 use crate::units::SamplePeriod;
 
-/// Names of a time column, the preferred first.
-const TIME_NAMES: [&str; 3] = ["time_s", "t_s", "time"];
-/// Further names of a column of times, in lower case, without the unit they may end in.
-const FURTHER_TIME_NAMES: [&str; 29] = [
-    "time",
-    "t",
-    "timestamp",
-    "time_stamp",
-    "stamp",
-    "elapsed",
-    "elapsed_time",
-    "elapsed time",
-    "datetime",
-    "date_time",
-    "date time",
-    "seconds",
-    "sec",
-    "millis",
-    "epoch",
-    "unix_time",
-    "unixtime",
-    "__time",
-    "%time",
-    "rosbagtimestamp",
-    "zeit",
-    "zeitstempel",
-    "temps",
-    "tiempo",
-    "tempo",
-    "tid",
-    "時間",
-    "时间",
-    "x_value",
-];
-/// Those of them that are units themselves.
-const TIME_UNIT_NAMES: [&str; 3] = ["seconds", "sec", "millis"];
 /// Name of a column of sample numbers.
 const SAMPLE_NAME: &str = "sample";
 /// Names of a column that names the trial.
@@ -54,27 +19,6 @@ const TRIAL_NAMES: [&str; 3] = ["trial", "test", "run"];
 
 /// Stands for "no column names the trial".
 const NO_TRIAL: &str = "none";
-
-/// Where the time of a row comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum TimeSource {
-    /// A column of times, and the seconds in its unit where the unit is known.
-    Times(usize, Option<f64>),
-    /// A column of sample numbers, one period apart.
-    SampleNumbers(usize, SamplePeriod),
-    /// The rows themselves, one period apart.
-    Rows(SamplePeriod),
-}
-
-impl TimeSource {
-    /// The column that it is read from.
-    pub(super) fn column(self) -> Option<usize> {
-        match self {
-            Self::Times(column, _) | Self::SampleNumbers(column, _) => Some(column),
-            Self::Rows(_) => None,
-        }
-    }
-}
 
 /// A signal of a joint and the column that holds it.
 #[derive(Clone, Debug, PartialEq)]
@@ -321,47 +265,6 @@ fn find_time(
     }
 }
 
-/// A column of times in the unit that is `given`, else that its header states, else that its
-/// name ends in.
-fn times(head: &Head, column: usize, given: Option<&str>) -> Result<TimeSource, ReadError> {
-    let header = head.headers.get(column);
-    let name = header.map_or("", |header| header.name.as_str());
-    let stated = given.or_else(|| header?.unit.as_deref());
-    let lower = name.to_lowercase();
-    let named = || unit::of_time(name).or_else(|| unit::of_time(&lower));
-    let is_itself = || Some(lower.as_str()).filter(|name| TIME_UNIT_NAMES.contains(name));
-    let Some(unit) = stated.or_else(named).or_else(is_itself) else {
-        return Ok(TimeSource::Times(column, None));
-    };
-    let unknown = || ReadError::TimeUnit {
-        path: head.path.clone(),
-        row: head.header_row,
-        column: name.to_owned(),
-        unit: unit.to_owned(),
-    };
-    let seconds = unit::seconds_of(unit).ok_or_else(unknown)?;
-    Ok(TimeSource::Times(column, Some(seconds)))
-}
-
-/// The column that a name such as `timestamp`, `t_us` or `elapsed` says holds the time.
-pub(super) fn find_time_column(head: &Head) -> Option<usize> {
-    let base = |header: &Header| {
-        let name = header.name.to_lowercase();
-        let bare = unit::of_time(&name).and_then(|unit| name.strip_suffix(unit));
-        let bare = bare.map_or(name.as_str(), |bare| bare.trim_end_matches('_'));
-        let position = FURTHER_TIME_NAMES.iter().position(|known| *known == bare);
-        position.filter(|_| header.name != "T")
-    };
-    let named = head.headers.iter().enumerate();
-    let named = named.filter_map(|(column, header)| Some((base(header)?, column)));
-    // `T` is a temperature, too.
-    let is_t = |header: &Header| header.name == "t";
-    find_any(head, &TIME_NAMES)
-        .or_else(|| head.headers.iter().position(is_t))
-        .or_else(|| named.min().map(|(_, column)| column))
-        .or_else(|| find_any(head, &["t"]))
-}
-
 /// Columns among which a name is looked for that is nearly the one that is missing: each joint
 /// of a log may lack one.
 const MOST_COMPARED: usize = 1000;
@@ -431,10 +334,4 @@ fn one_time_column(columns: &Columns<'_>) -> Result<Option<usize>, ReadError> {
     let Some(index) = find_time_column(columns.head) else { return Ok(None) };
     let text = columns.head.headers.get(index).map_or("", |header| &header.text);
     columns.find(text).map(Some)
-}
-
-fn find_any(head: &Head, wanted: &[&str]) -> Option<usize> {
-    wanted.iter().find_map(|wanted| {
-        head.headers.iter().position(|header| header.name.eq_ignore_ascii_case(wanted))
-    })
 }

@@ -7,12 +7,13 @@ use super::even;
 use super::format::date_of_seconds;
 use super::gaps::{gap_with_all_steps_s, unlogged};
 use super::joint::{Joint, Signal, Trial};
-use super::layout::{JointLayout, TimeSource};
+use super::layout::JointLayout;
 use super::memory::Budget;
 use super::origin::{Counting, origin_s};
 use super::period::is_period;
 use super::sampling::{Fault, Grid, Piece, Repair, Signals};
 use super::table::{BadCell, Coarse, Column, Head, Table, TrialRows};
+use super::time_column::TimeSource;
 use super::wrap::Wrap;
 use crate::numerics::to_digits_by;
 use crate::units::SamplePeriod;
@@ -89,9 +90,13 @@ impl Log<'_> {
     /// How times count: dates in seconds, numbers in the unit of `scale` seconds that is named, else as
     /// their size says.
     fn counting(&self, column: usize, scale: Option<f64>) -> Counting {
-        let are_dates = self.column(column).is_some_and(|column| column.are_dates);
-        let scale = scale.filter(|_| !are_dates);
+        let scale = scale.filter(|_| !self.are_dates(column));
         scale.map_or_else(|| self.counting_by_size(column), Counting::in_unit)
+    }
+
+    /// Whether times are written in words.
+    fn are_dates(&self, column: usize) -> bool {
+        self.column(column).is_some_and(|column| column.are_dates)
     }
 
     fn counting_by_size(&self, column: usize) -> Counting {
@@ -158,11 +163,13 @@ impl Log<'_> {
 
     /// A question where no machine is sampled like this, or where seconds are only supposed.
     fn rate_note(&self, time: TimeSource, grids: &[Grid]) -> Option<String> {
-        /// Samples in a second that are plausible at all, and where the unit is a guess.
+        /// Samples in a second that are plausible at all, and where the unit is a guess: counts of
+        /// milliseconds at 50 Hz or more are no more than 20 to a second.
         const PLAUSIBLE: (f64, f64) = (0.01, 1e5);
-        const GUESSED_FROM: f64 = 0.5;
+        const GUESSED_FROM: f64 = 20.5;
         let TimeSource::Times(column, scale) = time else { return None };
-        let lowest = if scale.is_some() { PLAUSIBLE.0 } else { GUESSED_FROM };
+        let is_known = scale.is_some() || self.counting(column, scale).is_recognized();
+        let lowest = if is_known || self.are_dates(column) { PLAUSIBLE.0 } else { GUESSED_FROM };
         let rates = grids.iter().map(|grid| 1.0 / grid.period().seconds());
         let odd = rates.into_iter().find(|rate| !(lowest..=PLAUSIBLE.1).contains(rate))?;
         let (name, digits) = (self.header(column), format!("{odd:.2e}"));

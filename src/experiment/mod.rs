@@ -28,6 +28,7 @@ mod source;
 mod spikes;
 mod survey;
 mod table;
+mod time_column;
 mod unit;
 mod wrap;
 

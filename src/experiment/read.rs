@@ -9,7 +9,7 @@ use super::columns::{ColumnMap, JointColumns};
 use super::error::ReadError;
 use super::format::{self, is_named_like_a_log};
 use super::joint::{Joint, Trial};
-use super::layout::{JointLayout, Layout, find_time_column};
+use super::layout::{JointLayout, Layout};
 use super::log::Log;
 use super::memory::{Budget, MemoryLimit};
 use super::names::on_one_line;
@@ -18,6 +18,7 @@ use super::sampling::Repair;
 use super::source::{Source, source_of};
 use super::survey::Survey;
 use super::table::{Head, OpenTable};
+use super::time_column::{find_time_column, note_on_times};
 use crate::units::SamplePeriod;
 
 /// How logs are read.
@@ -293,6 +294,8 @@ pub(super) fn laid_out(
             time.name
         ));
     }
+    let note = layout.time.column().and_then(|column| note_on_times(head, column));
+    found.notes.extend(note.map(|note| format!("{}: {note}", head.path.display())));
     Ok((layout, found))
 }
 

@@ -68,6 +68,66 @@ const TIMES: [(&[&str], f64); 5] = [
     (&["min", "minutes"], 60.0),
 ];
 
+/// Words for units of time in several languages, in lower case, and their seconds.
+const TIME_WORDS: [(&[&str], f64); 7] = [
+    (&["s", "sec", "secs", "second", "seconds", "sekunde", "sekunden", "seconde", "secondes"], 1.0),
+    (
+        &[
+            "ms",
+            "msec",
+            "msecs",
+            "millis",
+            "millisecond",
+            "milliseconds",
+            "millisekunde",
+            "millisekunden",
+            "milliseconde",
+            "millisecondes",
+            "milisegundos",
+            "millisecondi",
+        ],
+        1e-3,
+    ),
+    (
+        &[
+            "us",
+            "µs",
+            "μs",
+            "usec",
+            "usecs",
+            "micros",
+            "microsecond",
+            "microseconds",
+            "mikrosekunden",
+        ],
+        1e-6,
+    ),
+    (&["ns", "nsec", "nsecs", "nanos", "nanosecond", "nanoseconds", "nanosekunden"], 1e-9),
+    (&["min", "mins", "minute", "minutes", "minuten", "minutos", "minuti"], 60.0),
+    (&["h", "hr", "hrs", "hour", "hours", "stunde", "stunden", "heure", "heures"], 3600.0),
+    (&["d", "day", "days", "tag", "tage", "jour", "jours"], 86_400.0),
+];
+
+/// The seconds of the one unit of time that `text` names, as `Time in ms` or `Millisekunden`; none
+/// where it names none or several.
+pub(super) fn time_in(text: &str) -> Option<f64> {
+    let lower = text.to_lowercase();
+    let words = lower.split(|letter: char| !letter.is_alphabetic());
+    let of = |word: &str| {
+        let is_it = |(names, _): &&(&[&str], f64)| names.contains(&word);
+        TIME_WORDS.iter().find(is_it).map(|(_, seconds)| *seconds)
+    };
+    let mut found = words.filter_map(of);
+    let first = found.next()?;
+    #[expect(clippy::float_cmp, reason = "each stands in the list above")]
+    found.all(|other| other == first).then_some(first)
+}
+
+/// Whether `unit` is one of time.
+pub(super) fn is_time(unit: &str) -> bool {
+    seconds_of(unit).or_else(|| time_in(unit)).is_some()
+}
+
 /// Whether `text` is a unit by itself.
 pub(super) fn is_unit(text: &str) -> bool {
     shown(text).is_some() || seconds_of(text).is_some()
@@ -93,7 +153,8 @@ pub(super) fn parted(text: &str) -> (&str, Option<String>) {
     if let Some((name, unit)) = split('[', ']') {
         return (name, Some(unit.to_owned()));
     }
-    let known = split('(', ')').filter(|(name, unit)| is_unit(unit) && !name.is_empty());
+    let is_known = |unit: &str| is_unit(unit) || seconds_of(&unit.to_lowercase()).is_some();
+    let known = split('(', ')').filter(|(name, unit)| is_known(unit) && !name.is_empty());
     known.map_or((text, None), |(name, unit)| (name, Some(shown(unit).unwrap_or(unit).to_owned())))
 }
 

@@ -121,6 +121,46 @@ pub(crate) fn jumps() -> Vec<Messy> {
     ]
 }
 
+/// Several columns that may hold the times, and times that name no unit.
+pub(crate) fn which_times() -> Vec<Messy> {
+    let rows = clean();
+    let with = |header: &str, other: &dyn Fn(usize) -> f64| {
+        let mut text = format!("{header}\n");
+        for (k, row) in rows.iter().enumerate() {
+            let (time, other) = (k as f64 * PERIOD, other(k));
+            writeln!(text, "{time:.2},{other:.3},{:.6},{:.6}", row.input, row.output).unwrap();
+        }
+        text
+    };
+    let half = |k: usize| 0.5 * k as f64 * PERIOD;
+    let warm = |k: usize| 35.0 + 0.1 * (k / 100) as f64;
+    let signals = "boom.input,boom.output";
+    vec![
+        messy(
+            "second_clock.csv",
+            with(&format!("time_s,time_s.1,{signals}"), &half),
+            read(1e-6, "`time_s.1` is not used"),
+        ),
+        messy(
+            "clock_of_another_joint.csv",
+            with(&format!("time_s,arm.time_s,{signals}"), &half),
+            read(1e-6, "`arm.time_s` is not used"),
+        ),
+        messy(
+            "clock_without_a_name.csv",
+            with(&format!("time_s,,{signals}"), &half),
+            read(1e-6, "column 2 (without a name) is not used"),
+        ),
+        messy("temperature.csv", with(&format!("ts,T,{signals}"), &warm), SAME),
+        messy(
+            "milliseconds_at_1_khz.csv",
+            table(HEADER, &timed(|k| k as f64), ",", |x| x.to_string())
+                .replacen("time_s", "time", 1),
+            read(1e9, "are 1 samples a second right?"),
+        ),
+    ]
+}
+
 /// Times in words: dates, times of day, and times that have passed.
 pub(crate) fn in_words() -> Vec<Messy> {
     let rows = clean();
@@ -150,6 +190,21 @@ pub(crate) fn in_words() -> Vec<Messy> {
             "more_than_a_day.csv",
             with("time", &|k| format!("25:00:{}", seconds(k))),
             read(1e-6, "times count from 90000 s"),
+        ),
+        messy(
+            "matlab_durations.csv",
+            with("time", &|k| format!("{:.2} sec", k as f64 * PERIOD)),
+            SAME,
+        ),
+        messy(
+            "matlab_dates.csv",
+            with("time", &|k| date(k).replace("2024-05-01", "01-May-2024")),
+            read(1e-6, "times count from 2024-05-01"),
+        ),
+        messy(
+            "how_it_is_written.csv",
+            with("Time [hh:mm:ss]", &|k| format!("00:00:{}", seconds(k))),
+            SAME,
         ),
         messy("date_among_numbers.csv", mixed, Expected::Refused(&["row 619", "`time_s`"])),
     ]

@@ -124,14 +124,6 @@ pub(crate) fn marks() -> Vec<Messy> {
     let rows = clean();
     let all = plain(&rows);
     let (_, below) = all.split_once('\n').unwrap();
-    // Counts of an encoder, between semicolons.
-    let whole = |output: &dyn Fn(f64) -> String| {
-        let row = |(k, row): (usize, &Row)| {
-            format!("{};{};{}\n", 10 * k, 100.0 * row.input, output(row.output))
-        };
-        let rows: String = rows.iter().enumerate().map(row).collect();
-        format!("t_ms;boom.input;boom.output\n{rows}")
-    };
     let quoted = |x: f64| format!("\"{}\"", format!("{x:.6}").replace('.', ","));
     vec![
         messy("marks_behind_rows.csv", format!("{HEADER}\n{}", trailing(below)), SAME),
@@ -143,6 +135,23 @@ pub(crate) fn marks() -> Vec<Messy> {
             Expected::Refused(&["row 502", "3 cells"]),
         ),
         messy("quoted_commas.csv", table(HEADER, &rows, ",", quoted), SAME),
+        messy("numpy.csv", format!("# {all}"), SAME),
+    ]
+}
+
+/// Marks that may stand between thousands.
+pub(crate) fn thousands() -> Vec<Messy> {
+    let rows = clean();
+    let all = plain(&rows);
+    // Counts of an encoder, between semicolons.
+    let whole = |output: &dyn Fn(f64) -> String| {
+        let row = |(k, row): (usize, &Row)| {
+            format!("{};{};{}\n", 10 * k, 100.0 * row.input, output(row.output))
+        };
+        let rows: String = rows.iter().enumerate().map(row).collect();
+        format!("t_ms;boom.input;boom.output\n{rows}")
+    };
+    vec![
         messy(
             "thousands.csv",
             cell(&all, 617, 2, "here").replace("here", "\"1,234\""),
@@ -164,6 +173,18 @@ pub(crate) fn marks() -> Vec<Messy> {
             "three_decimals.csv",
             whole(&|x| format!("{x:.3}").replace('.', ",")),
             read(0.002, ""),
+        ),
+        messy(
+            "points_between_thousands.csv",
+            whole(&|x| {
+                let counts = (50.0 * x).round();
+                if counts < 1000.0 {
+                    counts.to_string()
+                } else {
+                    format!("1.{:03}", counts - 1000.0)
+                }
+            }),
+            Expected::Refused(&["row 2", "`boom.output`", "1.000", "a thousand and more"]),
         ),
         messy(
             "tail_of_thousands.csv",
@@ -191,6 +212,8 @@ pub(crate) fn words_below() -> Vec<Messy> {
     vec![
         messy("types.csv", below(&all, "\ns,V,deg\nfloat,float,float\n"), left_out(3)),
         messy("units_below.csv", below(&in_ms, "\nDOUBLE,DOUBLE,DOUBLE\nms,V,deg\n"), left_out(2)),
+        messy("unit_in_words.csv", below(&in_ms, "\nMilliseconds,Volts,Degrees\n"), left_out(2)),
+        messy("unit_in_german.csv", below(&in_ms, "\nZeit in ms,Ventil,Winkel\n"), left_out(2)),
         messy("one_unit.csv", below(&in_ms, "\nms,digits,Grad\n"), left_out(2)),
         messy(
             "described_below_padding.csv",

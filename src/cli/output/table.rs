@@ -85,16 +85,30 @@ fn copy_safe(table: &[u8], out: impl Write) -> csv::Result<()> {
     let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(out);
     for record in reader.byte_records() {
         for cell in &record? {
-            let is_formula =
-                matches!(cell.first(), Some(b'=' | b'+' | b'-' | b'@' | b'\t' | b'\r'));
-            let text = String::from_utf8_lossy(cell);
-            let is_number = text.parse::<f64>().is_ok();
-            let mark = if is_formula && !is_number { "'" } else { "" };
-            writer.write_field(format!("{mark}{}", text.replace(is_control, "\u{fffd}")))?;
+            writer.write_field(safe(&String::from_utf8_lossy(cell)))?;
         }
         writer.write_record(None::<&[u8]>)?;
     }
     Ok(writer.flush()?)
+}
+
+/// A cell that no spreadsheet program takes for a formula, whatever mark parts cells for it: where it is
+/// the semicolon, a semicolon within a name begins a cell.
+fn safe(cell: &str) -> String {
+    if cell.parse::<f64>().is_ok() {
+        return cell.to_owned();
+    }
+    let mut is_first = true;
+    let mut safe = String::new();
+    for letter in cell.chars() {
+        if is_first && "=+-@\t\r".contains(letter) {
+            safe.push('\'');
+        }
+        // What is not seen does not hide what follows it.
+        is_first = letter == ';' || is_first && (letter == ' ' || letter == '\u{feff}');
+        safe.push(if is_control(letter) { '\u{fffd}' } else { letter });
+    }
+    safe
 }
 
 /// Writes a table as what its name says.
@@ -116,5 +130,12 @@ mod tests {
         copy_safe(table.as_bytes(), &mut safe).unwrap();
         let expected = "joint,delay\n\"'=HYPERLINK(\"\"x\"\",1)\",-1.5e-3\n'@a,+3\n'-a,\nplain,4\n";
         assert_eq!(String::from_utf8(safe).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_semicolon_in_a_name_begins_no_formula() {
+        assert_eq!(safe("x;=cmd|' /C calc'!A0;y"), "x;'=cmd|' /C calc'!A0;y");
+        assert_eq!(safe("x; @a;b=c"), "x; '@a;b=c");
+        assert_eq!(safe("\u{feff}=1+1"), "\u{feff}'=1+1");
     }
 }

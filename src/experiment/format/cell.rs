@@ -66,24 +66,27 @@ pub(super) fn parse_time(cell: &[u8], delimiter: u8) -> Result<Time, BadCell> {
 pub(super) struct DecimalMarks {
     point: bool,
     comma: bool,
-    /// Whether a comma stands where none stands between thousands.
-    decimal_comma: bool,
+    /// Whether a mark stands where none stands between thousands.
+    is_decimal: bool,
+    /// What parts the cells: where commas do, no point stands between thousands.
+    delimiter: u8,
     columns: Vec<WholeNumbers>,
 }
 
-/// What a column of whole numbers with commas between thousands has, as `998`, `999`, `1,000`.
+/// What a column of whole numbers with marks between thousands has, as `998`, `999`, `1,000`.
 #[derive(Clone, Debug, Default)]
 struct WholeNumbers {
-    /// Whether a number of three digits or more has no comma.
-    without_comma: bool,
-    /// The row and the index of the first cell whose comma may stand between thousands, and the cell.
-    with_comma: Option<(u64, usize, String)>,
+    /// Whether a number of three digits or more has no mark.
+    without_mark: bool,
+    /// The row and the index of the first cell whose mark may stand between thousands, and the cell.
+    with_mark: Option<(u64, usize, String)>,
 }
 
 impl DecimalMarks {
-    /// Of so many columns.
-    pub(super) fn of(columns: usize) -> Self {
-        Self { columns: vec![WholeNumbers::default(); columns], ..Self::default() }
+    /// Of so many columns, parted by `delimiter`.
+    pub(super) fn of(columns: usize, delimiter: u8) -> Self {
+        let columns = vec![WholeNumbers::default(); columns];
+        Self { delimiter, columns, ..Self::default() }
     }
 
     /// What was `parsed` of a cell of `column` in `row`, where its mark is that of the other cells:
@@ -99,30 +102,34 @@ impl DecimalMarks {
         if parsed.is_err() || cell.contains(&b':') {
             return parsed;
         }
-        let has_comma = cell.contains(&b',');
-        self.point |= cell.contains(&b'.');
+        let (has_point, has_comma) = (cell.contains(&b'.'), cell.contains(&b','));
+        self.point |= has_point;
         self.comma |= has_comma;
         if self.point && self.comma && cell.iter().any(|byte| b".,".contains(byte)) {
             return Err(BadCell::DecimalMark(String::from_utf8_lossy(cell).into_owned()));
         }
-        let Some(column) = self.columns.get_mut(column) else { return parsed };
-        if has_comma && is_of_thousands(cell) {
-            let first = || (row, index, String::from_utf8_lossy(cell).into_owned());
-            column.with_comma.get_or_insert_with(first);
-        } else if has_comma {
-            self.decimal_comma = true;
-        } else if !column.without_comma {
+        // Once one is seen, all are.
+        let Some(column) = self.columns.get_mut(column).filter(|_| !self.is_decimal) else {
+            return parsed;
+        };
+        let may_part = has_comma || has_point && self.delimiter != b',';
+        let text = String::from_utf8_lossy(cell);
+        if may_part && are_thousands(&text.replace('.', ",")) {
+            column.with_mark.get_or_insert_with(|| (row, index, text.into_owned()));
+        } else if has_comma || has_point {
+            self.is_decimal = true;
+        } else if !column.without_mark {
             let digits = cell.trim_ascii_start().strip_prefix(b"-").unwrap_or(cell);
-            column.without_comma = digits.len() > 2 && digits.iter().all(u8::is_ascii_digit);
+            column.without_mark = digits.len() > 2 && digits.iter().all(u8::is_ascii_digit);
         }
         parsed
     }
 
-    /// The row, the index and the text of the first cell of `column` whose comma may stand between
+    /// The row, the index and the text of the first cell of `column` whose mark may stand between
     /// thousands, where nothing says that it does not: `1,000` behind `999`, and no `0,5` anywhere.
     pub(super) fn doubtful(&self, column: usize) -> Option<&(u64, usize, String)> {
-        let whole = self.columns.get(column).filter(|whole| whole.without_comma)?;
-        whole.with_comma.as_ref().filter(|_| !self.decimal_comma)
+        let whole = self.columns.get(column).filter(|whole| whole.without_mark)?;
+        whole.with_mark.as_ref().filter(|_| !self.is_decimal)
     }
 }
 
@@ -162,15 +169,20 @@ mod tests {
             Ok(Time::Written(seconds)) => seconds,
             other => panic!("{text}: {other:?}"),
         };
-        for text in
-            ["2024-05-01T12:00:00.25Z", "2024-05-01 12:00:00,25", "2024-05-01T14:00:00.25+02:00"]
-        {
+        for text in [
+            "2024-05-01T12:00:00.25Z",
+            "2024-05-01 12:00:00,25",
+            "2024-05-01T14:00:00.25+02:00",
+            "2024/05/01 12:00:00.25",
+            "01-May-2024 12:00:00.25",
+        ] {
             assert!((time(text) - 1_714_564_800.25).abs() < 1e-6, "{text}: {}", time(text));
         }
         for (text, seconds) in [
             ("12:00:00.5", 43_200.5),
             ("26:00:00.25", 93_600.25),
             ("00:01.5", 1.5),
+            ("1.5 sec", 1.5),
             ("0 days 00:00:01.010000", 1.01),
             ("1 day, 0:00:02", 86_402.0),
             ("-1 days +23:59:59.5", -0.5),

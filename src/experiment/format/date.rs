@@ -12,6 +12,10 @@ pub(super) fn seconds_of_date(text: &str) -> Option<f64> {
         return None;
     }
     let text = text.replace(',', ".");
+    if let Some(seconds) = text.strip_suffix(" sec") {
+        return seconds.parse().ok();
+    }
+    let text = with_dashes(&text).unwrap_or(text);
     let seconds =
         |stamp: Timestamp| stamp.as_second() as f64 + f64::from(stamp.subsec_nanosecond()) * 1e-9;
     if let Ok(stamp) = text.parse::<Timestamp>() {
@@ -24,6 +28,23 @@ pub(super) fn seconds_of_date(text: &str) -> Option<f64> {
     };
     let zoned = civil.and_then(|civil| civil.to_zoned(jiff::tz::TimeZone::UTC).ok());
     zoned.map_or_else(|| passed(&text), |zoned| Some(seconds(zoned.timestamp())))
+}
+
+/// The date of ISO 8601 that `2026/03/01 10:15` and MATLAB's `01-Mar-2026 10:15` are.
+fn with_dashes(text: &str) -> Option<String> {
+    const MONTHS: [&str; 12] =
+        ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
+    let (date, time) = text.split_once(' ')?;
+    let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let parts: Vec<&str> = date.split(['/', '-']).collect();
+    let [first, second, third] = parts.as_slice() else { return None };
+    if first.len() == 4 && date.contains('/') && [first, second, third].iter().all(|p| is_number(p))
+    {
+        return Some(format!("{first}-{second:0>2}-{third:0>2} {time}"));
+    }
+    let month = MONTHS.iter().position(|month| second.eq_ignore_ascii_case(month))? + 1;
+    let is_date = third.len() == 4 && is_number(first) && is_number(third);
+    is_date.then(|| format!("{third}-{month:02}-{first:0>2} {time}"))
 }
 
 /// Seconds of a time that has passed: `1 days 02:03:04.5` as pandas writes it, `26:03:04.5`, or `03:04.5`,

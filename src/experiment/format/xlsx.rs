@@ -5,15 +5,20 @@ use std::fs::File;
 use std::io::{BufReader, Read as _};
 use std::path::Path;
 
-use calamine::{Data, DataRef, ExcelDateTime, Range, Reader as _, Xlsx, XlsxError, open_workbook};
+use calamine::{
+    Data, DataRef, ExcelDateTime, Range, Reader as _, Sheet, SheetVisible, Xlsx, XlsxError,
+    open_workbook,
+};
 use zip::ZipArchive;
 
+use super::cell::parse_time;
 use super::csv::table;
 use super::date::{date_of_days, days_since_1970, passed_of_days};
 use super::text::Bytes;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, TooLarge};
-use crate::experiment::table::OpenTable;
+use crate::experiment::names::on_one_line;
+use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
 
 /// Opens the workbook and reads the header of its first sheet that holds rows.
 pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
@@ -28,30 +33,81 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
     budget.take(texts).map_err(|error| error.refuse(path))?;
     let mut workbook: Xlsx<_> =
         open_workbook(path).map_err(|error: XlsxError| damaged(error.to_string()))?;
-    let names = workbook.sheet_names();
-    if names.len() > MOST_SHEETS {
-        return Err(damaged(format!("{} sheets; {MOST_SHEETS} are the most", names.len())));
+    let hidden = |sheet: &Sheet| sheet.visible != SheetVisible::Visible;
+    let (hidden, visible): (Vec<_>, Vec<_>) =
+        workbook.sheets_metadata().iter().cloned().partition(hidden);
+    // What is hidden is read where nothing else is there.
+    let names: Vec<String> = visible.into_iter().chain(hidden).map(|sheet| sheet.name).collect();
+    let count = names.len();
+    if count > MOST_SHEETS {
+        return Err(damaged(format!("{count} sheets; {MOST_SHEETS} are the most")));
     }
     check_unshared(path).map_err(damaged)?;
-    for name in names {
-        check_size(&mut workbook, &name, &budget)
-            .map_err(|error| damaged(error.to_string()))?
-            .map_err(|error| error.refuse(path))?;
-        let range = workbook.worksheet_range(&name).map_err(|error| damaged(error.to_string()))?;
-        if range.height() > 1 {
+    // Where none holds numbers, the first with rows is to say what is wrong with it.
+    for is_log in [holds_a_table, |range: &Range<Data>| range.height() > 1] {
+        for name in &names {
+            check_size(&mut workbook, name, &budget)
+                .map_err(|error| damaged(error.to_string()))?
+                .map_err(|error| error.refuse(path))?;
+            let range =
+                workbook.worksheet_range(name).map_err(|error| damaged(error.to_string()))?;
+            if !is_log(&range) {
+                continue;
+            }
             let text = text_of(&range).map_err(|error| damaged(error.to_string()))?;
             drop((range, workbook));
             budget.give_back(texts);
             let (bytes, start) = Bytes::made(text, path);
-            return table(path, bytes, &start, Some(b','), budget);
+            let OpenTable { head, rows } = table(path, bytes, &start, Some(b','), budget)?;
+            let note = (count > 1).then(|| {
+                format!("{}: the sheet `{}` of {count} is read", path.display(), on_one_line(name))
+            });
+            return Ok(OpenTable { head, rows: Box::new(OfSheet { note, rows }) });
         }
     }
     Err(damaged("no sheet has a header and a row".to_owned()))
 }
 
+/// The rows of a sheet, and which one it is.
+struct OfSheet {
+    note: Option<String>,
+    rows: Box<dyn Rows>,
+}
+
+impl Rows for OfSheet {
+    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+        let mut table = self.rows.read(wanted)?;
+        table.notes.extend(self.note);
+        Ok(table)
+    }
+}
+
+/// Whether a sheet holds what a log consists of: a row with two numbers or dates.
+fn holds_a_table(range: &Range<Data>) -> bool {
+    let is_value = |cell: &&Data| match cell {
+        Data::Float(_) | Data::Int(_) | Data::DateTime(_) => true,
+        Data::String(text) => parse_time(text.trim().as_bytes(), b';').is_ok(),
+        _ => false,
+    };
+    range.height() > 1 && range.rows().any(|row| row.iter().filter(is_value).count() > 1)
+}
+
 /// Memory for a byte of a part that lists names: relationships, formats, names of ranges (measured: 4 to 9
 /// times their size).
 const PART_SIZE: u64 = 10;
+
+/// Memory of an element that is not ended yet, beside its name: where it begins, with what a list that
+/// grows has to spare.
+const ELEMENT_SIZE: u64 = 2 * size_of::<usize>() as u64;
+
+/// How many elements begin in a piece of a part.
+fn begun(piece: &[u8]) -> u64 {
+    let behind = piece.iter().skip(1).chain([&b' ']);
+    piece
+        .iter()
+        .zip(behind)
+        .fold(0, |count, (mark, behind)| count + u64::from(*mark == b'<' && *behind != b'/'))
+}
 
 /// How often `mark` stands in `part`.
 fn count_of(part: &[u8], mark: &[u8]) -> u64 {
@@ -101,6 +157,7 @@ fn ids_of_parts(sheets: &[u8]) -> impl Iterator<Item = &[u8]> {
 fn check_unpacked(path: &Path, budget: &Budget) -> Result<u64, TooLarge> {
     let Some(mut archive) = archive(path) else { return Ok(0) };
     let (mut unpacked, mut piece, mut texts) = (0, vec![0; PIECE], 0);
+    let mut elements = 0;
     for index in 0..archive.len() {
         let Ok(mut part) = archive.by_index(index) else { continue };
         let name = part.name().map(|name| name.to_ascii_lowercase()).unwrap_or_default();
@@ -111,7 +168,8 @@ fn check_unpacked(path: &Path, budget: &Budget) -> Result<u64, TooLarge> {
         while let Ok(bytes @ 1..) = part.read(&mut piece) {
             // Sheets are read cell by cell; of all else a library keeps what it names.
             unpacked += bytes as u64 * if is_sheet || is_texts { 1 } else { PART_SIZE };
-            budget.check(unpacked)?;
+            elements += begun(piece.get(..bytes).unwrap_or_default());
+            budget.check(unpacked + elements * ELEMENT_SIZE)?;
             if is_styles || is_texts {
                 kept.extend_from_slice(piece.get(..bytes).unwrap_or_default());
             }

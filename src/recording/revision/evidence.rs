@@ -73,10 +73,10 @@ fn title(joint: &Joint, shown: Shown) -> String {
     let input = unit(&joint.input_unit, "");
     match shown {
         Shown::Speed => {
-            format!("speed{} at held input{input}: measured white", unit(&joint.output_unit, "/s"))
+            format!("measured speed{} at held input{input}", unit(&joint.output_unit, "/s"))
         }
         Shown::Output => {
-            format!("output{} at held input{input}: measured white", unit(&joint.output_unit, ""))
+            format!("measured output{} at held input{input}", unit(&joint.output_unit, ""))
         }
     }
 }

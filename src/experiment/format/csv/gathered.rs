@@ -44,7 +44,7 @@ impl Gathered {
             notes: Vec::new(),
         };
         let labels = wanted.label.map(|_| Labels::default());
-        let (marks, held_back) = (DecimalMarks::of(wanted.numeric.len()), Vec::new());
+        let (marks, held_back) = (DecimalMarks::of(wanted.numeric.len(), delimiter), Vec::new());
         Self {
             delimiter,
             marks,

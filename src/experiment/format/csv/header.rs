@@ -6,7 +6,8 @@ use super::super::spelling::{are_units, bare_unit, is_remark};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{Head, Header};
-use crate::experiment::unit::is_unit;
+use crate::experiment::time_column::find_time_column;
+use crate::experiment::unit::{is_time, is_unit};
 
 /// Refuses a header of more cells than a log has columns, which a row of commas is, too.
 pub(super) fn check_header_size(
@@ -61,9 +62,11 @@ pub(super) fn describes(
     if !are_all_units && (before >= MOST_ABOVE || !is_remark(record, delimiter)) {
         return false;
     }
-    for (header, cell) in head.headers.iter_mut().zip(record) {
+    let time = find_time_column(head);
+    for (column, (header, cell)) in head.headers.iter_mut().zip(record).enumerate() {
         let unit = bare_unit(&String::from_utf8_lossy(cell));
-        let is_meant = are_all_units && !unit.is_empty() || is_unit(&unit);
+        let is_of_time = time == Some(column) && is_time(&unit);
+        let is_meant = are_all_units && !unit.is_empty() || is_unit(&unit) || is_of_time;
         if header.unit.is_none() && is_meant {
             header.unit = Some(unit);
         }

@@ -1,0 +1,238 @@
+//! Which column holds the times of a log, and in what unit.
+
+use super::error::ReadError;
+use super::table::{Head, Header};
+use super::unit;
+use crate::units::SamplePeriod;
+
+/// Names of a time column, the preferred first.
+const TIME_NAMES: [&str; 3] = ["time_s", "t_s", "time"];
+
+/// Further names of a column of times, in lower case, without the unit they may end in.
+const FURTHER_TIME_NAMES: [&str; 49] = [
+    "time",
+    "t",
+    "timestamp",
+    "time_stamp",
+    "time stamp",
+    "stamp",
+    "ts",
+    "elapsed",
+    "elapsed_time",
+    "elapsed time",
+    "datetime",
+    "date_time",
+    "date time",
+    "date&time",
+    "seconds",
+    "sec",
+    "millis",
+    "micros",
+    "epoch",
+    "unix",
+    "unix_time",
+    "unixtime",
+    "time_unix",
+    "unix timestamp",
+    "unix_timestamp",
+    "posix",
+    "posix_time",
+    "utc",
+    "clock",
+    "tick",
+    "log_time",
+    "recorded_at",
+    "__time",
+    "%time",
+    "rosbagtimestamp",
+    "zeit",
+    "uhrzeit",
+    "zeitstempel",
+    "temps",
+    "tiempo",
+    "tempo",
+    "tid",
+    "aika",
+    "czas",
+    "čas",
+    "時間",
+    "时间",
+    "время",
+    "x_value",
+];
+
+/// Those of them that are units themselves.
+const TIME_UNIT_NAMES: [&str; 4] = ["seconds", "sec", "millis", "micros"];
+
+/// Where the time of a row comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum TimeSource {
+    /// A column of times, and the seconds in its unit where the unit is known.
+    Times(usize, Option<f64>),
+    /// A column of sample numbers, one period apart.
+    SampleNumbers(usize, SamplePeriod),
+    /// The rows themselves, one period apart.
+    Rows(SamplePeriod),
+}
+
+impl TimeSource {
+    /// The column that it is read from.
+    pub(super) fn column(self) -> Option<usize> {
+        match self {
+            Self::Times(column, _) | Self::SampleNumbers(column, _) => Some(column),
+            Self::Rows(_) => None,
+        }
+    }
+}
+
+/// A column of times in the unit that is `given`, else that its header states, else that its
+/// name ends in.
+pub(super) fn times(
+    head: &Head,
+    column: usize,
+    given: Option<&str>,
+) -> Result<TimeSource, ReadError> {
+    let header = head.headers.get(column);
+    let name = header.map_or("", |header| header.name.as_str());
+    let stated = given.or_else(|| header?.unit.as_deref());
+    let lower = name.to_lowercase();
+    let named = || unit::of_time(name).or_else(|| unit::of_time(&lower));
+    let is_itself = || Some(lower.as_str()).filter(|name| TIME_UNIT_NAMES.contains(name));
+    let Some(unit) = stated.or_else(named).or_else(is_itself) else {
+        return Ok(TimeSource::Times(column, None));
+    };
+    let unknown = || ReadError::TimeUnit {
+        path: head.path.clone(),
+        row: head.header_row,
+        column: name.to_owned(),
+        unit: unit.to_owned(),
+    };
+    // `[hh:mm:ss]` is how a time is written, and no unit.
+    if unit.to_lowercase().contains("mm:ss") {
+        return Ok(TimeSource::Times(column, None));
+    }
+    let seconds = unit::seconds_of(unit).or_else(|| unit::time_in(unit));
+    Ok(TimeSource::Times(column, Some(seconds.ok_or_else(unknown)?)))
+}
+
+/// The column that a name such as `timestamp`, `t_us` or `elapsed` says holds the time.
+pub(super) fn find_time_column(head: &Head) -> Option<usize> {
+    let base = |header: &Header| {
+        let name = header.name.to_lowercase();
+        let known = |bare: &str| FURTHER_TIME_NAMES.iter().position(|known| *known == bare);
+        known(without_unit(&name)).filter(|_| header.name != "T")
+    };
+    let named = head.headers.iter().enumerate();
+    let named = named.filter_map(|(column, header)| Some((base(header)?, column)));
+    // `T` is a temperature, too.
+    let is_t = |header: &Header| header.name == "t";
+    find_any(head, &TIME_NAMES)
+        .or_else(|| head.headers.iter().position(is_t))
+        .or_else(|| named.min().map(|(_, column)| column))
+        .or_else(|| find_any(head, &["t"]))
+}
+
+/// What a reader should know of a log whose times are those of `column`: that others are not used, and
+/// that what may be a temperature is taken for a time.
+pub(super) fn note_on_times(head: &Head, column: usize) -> Option<String> {
+    /// Columns that are named.
+    const MOST: usize = 3;
+    let others = head.headers.iter().enumerate().filter(|(other, header)| {
+        let is_within = *other > 0 && other + 1 < head.headers.len();
+        *other != column && (is_like_a_time(header) || header.name.is_empty() && is_within)
+    });
+    let names: Vec<String> = others.map(|(other, header)| named(other, header)).collect();
+    let header = head.headers.get(column)?;
+    let used = named(column, header);
+    let more = if names.len() > MOST { ", …" } else { "" };
+    match names.len() {
+        0 if header.name == "T" => Some(format!("the times are those in {used}")),
+        0 => None,
+        1 => Some(format!("the times are those in {used}; {} is not used", names[0])),
+        count => {
+            let names = names.get(..count.min(MOST)).unwrap_or_default().join(", ");
+            Some(format!("the times are those in {used}; {names}{more} are not used"))
+        }
+    }
+}
+
+/// A column as a note calls it.
+fn named(column: usize, header: &Header) -> String {
+    match header.text.as_str() {
+        "" => format!("column {} (without a name)", column + 1),
+        text => format!("`{text}`"),
+    }
+}
+
+/// Whether a name is one of a time, also with a number behind it or that of a joint before it.
+fn is_like_a_time(header: &Header) -> bool {
+    if header.name == "T" || header.unit.as_deref().is_some_and(|unit| !unit::is_time(unit)) {
+        return false;
+    }
+    let name = header.name.to_lowercase();
+    // Parts of messages have stamps of their own.
+    if name.starts_with('/') || name.contains("header.stamp") {
+        return false;
+    }
+    let is_known = |name: &str| FURTHER_TIME_NAMES.contains(&without_unit(name));
+    let text = header.text.to_lowercase();
+    let numbered = |text: &str| {
+        let bare = text.trim_end_matches(|c: char| c.is_ascii_digit() || " _.#".contains(c));
+        is_known(unit::parted(bare).0)
+    };
+    is_known(&name)
+        || numbered(&name)
+        || numbered(&text)
+        || name.rsplit_once('.').is_some_and(|(_, last)| is_known(last))
+}
+
+/// A name in lower case without the unit of time that it ends in.
+fn without_unit(name: &str) -> &str {
+    let bare = unit::of_time(name).and_then(|unit| name.strip_suffix(unit));
+    bare.map_or(name, |bare| bare.trim_end_matches('_'))
+}
+
+pub(super) fn find_any(head: &Head, wanted: &[&str]) -> Option<usize> {
+    wanted.iter().find_map(|wanted| {
+        head.headers.iter().position(|header| header.name.eq_ignore_ascii_case(wanted))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+
+    fn note(names: &[&str]) -> Option<String> {
+        let headers = names.iter().map(|name| Header::parse(name)).collect();
+        let head = Head { path: PathBuf::from("log.csv"), headers, header_row: 1 };
+        note_on_times(&head, find_time_column(&head)?)
+    }
+
+    #[test]
+    fn a_second_column_of_times_is_not_passed_over_in_silence() {
+        for other in ["time_s.1", "Time2 [s]", "Time (s) 2", "arm.time_s", "", "t", "timestamp"] {
+            let found = note(&["time_s", "boom.input", "boom.output", other, "arm.input"]);
+            assert!(found.is_some_and(|note| note.contains("not used")), "{other}");
+        }
+        for other in ["T", "T [degC]", "t_oil_degC", "boom.speed", "/joint/header.stamp.sec"] {
+            assert_eq!(note(&["time_s", "boom.input", other]), None, "{other}");
+        }
+        assert_eq!(
+            note(&["", "time_s", "u", "y", ""]),
+            None,
+            "an index, and a mark behind the row"
+        );
+        assert_eq!(note(&["T", "u", "y"]).as_deref(), Some("the times are those in `T`"));
+    }
+
+    #[test]
+    fn a_stamp_is_preferred_to_a_temperature() {
+        for stamp in ["ts", "ts_ms", "unix_ms", "clock_ms", "log_time", "recorded_at"] {
+            let headers = [stamp, "T", "u"].map(Header::parse).to_vec();
+            let head = Head { path: PathBuf::new(), headers, header_row: 1 };
+            assert_eq!(find_time_column(&head), Some(0), "{stamp}");
+        }
+    }
+}
