@@ -230,7 +230,7 @@ fn what_is_wrong_with_a_definition_is_said() {
         ),
         (
             joint_text(&own("mine", "transport", "signal + k", k)),
-            "of before, after, held, time, k, pi is",
+            "known: before, after, held, time, k, pi",
         ),
         (
             joint_text(&own("dead_band", "input", "signal", k)),

@@ -8,7 +8,7 @@ use super::{
     OilColumn, PositionGain, RateLimit, Resonance, SpoolLag, Stiction, SupplyDroop, ThermalDrift,
     VariableDelay,
 };
-use crate::experiment::did_you_mean;
+use crate::experiment::{did_you_mean, nearest_name};
 
 /// Every built-in effect, in the order the documentation lists them.
 pub const REGISTRY: &[&dyn Effect] = &[
@@ -38,7 +38,7 @@ pub const REGISTRY: &[&dyn Effect] = &[
 
 /// No effect has this id.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no effect `{id}`{}", did_you_mean(Some(nearest)))]
+#[error("there is no effect `{id}`{}", did_you_mean(nearest_name(id, [*nearest])))]
 pub struct UnknownEffect {
     /// What was asked for.
     pub id: String,

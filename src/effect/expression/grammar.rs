@@ -11,7 +11,7 @@ use winnow::stream::{Stateful, Stream as _};
 use winnow::token::{one_of, take_while};
 
 use super::tree::{Function, Name, Node, Operator};
-use crate::experiment::did_you_mean;
+use crate::experiment::{did_you_mean, nearest_name};
 
 /// The longest expression, in bytes: longer than anyone reads.
 ///
@@ -86,7 +86,7 @@ pub enum Problem {
     #[error("expected {0}")]
     Expected(&'static str),
     /// There is no signal, parameter, constant or function of this name.
-    #[error("`{name}` is not known{}; known: {known}", did_you_mean(Some(nearest)))]
+    #[error("`{name}` is not known{}; known: {known}", did_you_mean(nearest_name(name, [nearest.as_str()])))]
     Unknown {
         /// The name.
         name: String,

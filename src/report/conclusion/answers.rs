@@ -48,11 +48,11 @@ impl Finding<'_> {
         let more = found.len() - shown;
         let names: Vec<String> = found.iter().take(shown).map(name).collect();
         let more = if more > 0 { format!(" and {more} more below") } else { String::new() };
-        let alone = found.iter().all(|one| one.alternatives.is_empty());
-        let alone = if alone {
-            "; nothing that was tried leaves as little in the place of one"
-        } else {
-            ""
+        let has_no_other = found.iter().all(|one| one.alternatives.is_empty());
+        let alone = match found.len() {
+            _ if !has_no_other => "",
+            1 => "; nothing that was tried leaves as little in its place",
+            _ => "; nothing that was tried leaves as little in the place of one of them",
         };
         format!("{}{more}: {explained}{alone}", names.join(", "))
     }
