@@ -108,14 +108,8 @@ impl TypicalDelay {
             _ => ordered(&delays),
         };
         let (least, greatest) = (*delays.first()?, *delays.last()?);
-        // Student's interval does not know that an effect follows its cause, nor that these steps differ
-        // by more than those of other groups.
+        // Student's interval does not know that an effect follows its cause.
         let causal = |low: f64| low.max(least.min(0.0));
-        let is_few = delays.len() < ORDERED;
-        let of_all = |(low, high): (f64, f64)| {
-            if is_few { (low.min(least), high.max(greatest)) } else { (low, high) }
-        };
-        let interval_s = interval_s.map(of_all);
         Some(Self {
             median_s: to_nanoseconds(median(&delays)?),
             interval_s: interval_s
@@ -126,15 +120,20 @@ impl TypicalDelay {
     }
 }
 
-/// Student's interval of the mean.
+/// Student's interval of the mean, and no less than from the least to the greatest: these may differ by
+/// more than delays of other groups.
 fn student(samples: &[StepSample], scatter: Scatter) -> Option<(f64, f64)> {
     let count = samples.len() as f64;
     let own: Option<f64> = samples.iter().map(StepSample::variance).sum();
     let variance = (scatter.squares / scatter.freedom).max(own.map_or(0.0, |own| own / count));
     let quantile = student_quantile(0.5 + 0.5 * CONFIDENCE, scatter.freedom);
     let reach = quantile * (variance / count).sqrt();
+    let delays = samples.iter().map(|sample| sample.delay_s);
+    let (least, greatest) =
+        delays.fold((f64::MAX, f64::MIN), |(low, high), delay| (low.min(delay), high.max(delay)));
     // Delays on a grid may agree by chance.
-    (variance > 0.0).then_some((mean(samples) - reach, mean(samples) + reach))
+    (variance > 0.0)
+        .then_some(((mean(samples) - reach).min(least), (mean(samples) + reach).max(greatest)))
 }
 
 /// The two delays in order that bound the median.

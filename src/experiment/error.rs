@@ -297,10 +297,10 @@ pub enum ReadError {
         /// What the cell holds.
         text: String,
     },
-    /// A number whose comma may stand between thousands.
+    /// A number whose comma or point may stand between thousands.
     #[error(
         "{}, row {row}, column `{column}`: `{}` may be a thousand and more, beside whole numbers \
-         without a comma, or have three decimals; write decimals with a point, and nothing between \
+         without such a mark, or have three decimals; write decimals with a point, and nothing between \
          thousands", path.display(), shown(text)
     )]
     Thousands {

@@ -312,7 +312,7 @@ pub(super) enum BadCell {
     Text(String),
     /// A number with another decimal mark than cells before it.
     DecimalMark(String),
-    /// A number whose comma may stand between thousands, in a column of whole numbers.
+    /// A number whose comma or point may stand between thousands, in a column of whole numbers.
     Thousands(String),
     Infinite,
     /// Its squares, and sums of products of them, are beyond double precision.

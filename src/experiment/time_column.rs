@@ -111,8 +111,7 @@ pub(super) fn times(
     if unit.to_lowercase().contains("mm:ss") {
         return Ok(TimeSource::Times(column, None));
     }
-    let seconds = unit::seconds_of(unit).or_else(|| unit::time_in(unit));
-    Ok(TimeSource::Times(column, Some(seconds.ok_or_else(unknown)?)))
+    Ok(TimeSource::Times(column, Some(unit::time_in(unit).ok_or_else(unknown)?)))
 }
 
 /// The column that a name such as `timestamp`, `t_us` or `elapsed` says holds the time.
@@ -145,12 +144,12 @@ pub(super) fn note_on_times(head: &Head, column: usize) -> Option<String> {
     let header = head.headers.get(column)?;
     let used = named(column, header);
     let more = if names.len() > MOST { ", …" } else { "" };
-    match names.len() {
-        0 if header.name == "T" => Some(format!("the times are those in {used}")),
-        0 => None,
-        1 => Some(format!("the times are those in {used}; {} is not used", names[0])),
-        count => {
-            let names = names.get(..count.min(MOST)).unwrap_or_default().join(", ");
+    match names.as_slice() {
+        [] if header.name == "T" => Some(format!("the times are those in {used}")),
+        [] => None,
+        [other] => Some(format!("the times are those in {used}; {other} is not used")),
+        others => {
+            let names = others.get(..MOST).unwrap_or(others).join(", ");
             Some(format!("the times are those in {used}; {names}{more} are not used"))
         }
     }

@@ -59,26 +59,19 @@ const UNITS: [(&str, &str); 55] = [
     ("ticks", "ticks"),
 ];
 
-/// Units of time, and their seconds.
-const TIMES: [(&[&str], f64); 5] = [
-    (&["s", "sec", "secs", "second", "seconds"], 1.0),
-    (&["ms", "msec", "millis", "milliseconds"], 1e-3),
-    (&["us", "µs", "μs", "usec", "micros", "microseconds"], 1e-6),
-    (&["ns", "nsec", "nanos", "nanoseconds"], 1e-9),
-    (&["min", "minutes"], 60.0),
-];
-
-/// Words for units of time in several languages, in lower case, and their seconds.
-const TIME_WORDS: [(&[&str], f64); 7] = [
-    (&["s", "sec", "secs", "second", "seconds", "sekunde", "sekunden", "seconde", "secondes"], 1.0),
+/// Units of time: names of which each is a unit by itself or ends the name of a column, further words
+/// for it in lower case, and its seconds.
+const TIMES: [(&[&str], &[&str], f64); 7] = [
     (
+        &["s", "sec", "secs", "second", "seconds"],
+        &["sekunde", "sekunden", "seconde", "secondes"],
+        1.0,
+    ),
+    (
+        &["ms", "msec", "millis", "milliseconds"],
         &[
-            "ms",
-            "msec",
             "msecs",
-            "millis",
             "millisecond",
-            "milliseconds",
             "millisekunde",
             "millisekunden",
             "milliseconde",
@@ -89,23 +82,18 @@ const TIME_WORDS: [(&[&str], f64); 7] = [
         1e-3,
     ),
     (
-        &[
-            "us",
-            "µs",
-            "μs",
-            "usec",
-            "usecs",
-            "micros",
-            "microsecond",
-            "microseconds",
-            "mikrosekunden",
-        ],
+        &["us", "µs", "μs", "usec", "micros", "microseconds"],
+        &["usecs", "microsecond", "mikrosekunden", "microsecondes"],
         1e-6,
     ),
-    (&["ns", "nsec", "nsecs", "nanos", "nanosecond", "nanoseconds", "nanosekunden"], 1e-9),
-    (&["min", "mins", "minute", "minutes", "minuten", "minutos", "minuti"], 60.0),
-    (&["h", "hr", "hrs", "hour", "hours", "stunde", "stunden", "heure", "heures"], 3600.0),
-    (&["d", "day", "days", "tag", "tage", "jour", "jours"], 86_400.0),
+    (
+        &["ns", "nsec", "nanos", "nanoseconds"],
+        &["nsecs", "nanosecond", "nanosekunden", "nanosecondes"],
+        1e-9,
+    ),
+    (&["min", "minutes"], &["mins", "minute", "minuten", "minutos", "minuti"], 60.0),
+    (&[], &["h", "hr", "hrs", "hour", "hours", "stunde", "stunden", "heure", "heures"], 3600.0),
+    (&[], &["d", "day", "days", "tag", "tage", "jour", "jours"], 86_400.0),
 ];
 
 /// The seconds of the one unit of time that `text` names, as `Time in ms` or `Millisekunden`; none
@@ -114,8 +102,10 @@ pub(super) fn time_in(text: &str) -> Option<f64> {
     let lower = text.to_lowercase();
     let words = lower.split(|letter: char| !letter.is_alphabetic());
     let of = |word: &str| {
-        let is_it = |(names, _): &&(&[&str], f64)| names.contains(&word);
-        TIME_WORDS.iter().find(is_it).map(|(_, seconds)| *seconds)
+        let is_it = |(names, words, _): &&(&[&str], &[&str], f64)| {
+            names.contains(&word) || words.contains(&word)
+        };
+        TIMES.iter().find(is_it).map(|(_, _, seconds)| *seconds)
     };
     let mut found = words.filter_map(of);
     let first = found.next()?;
@@ -125,7 +115,7 @@ pub(super) fn time_in(text: &str) -> Option<f64> {
 
 /// Whether `unit` is one of time.
 pub(super) fn is_time(unit: &str) -> bool {
-    seconds_of(unit).or_else(|| time_in(unit)).is_some()
+    time_in(unit).is_some()
 }
 
 /// Whether `text` is a unit by itself.
@@ -139,8 +129,7 @@ fn shown(text: &str) -> Option<&'static str> {
 
 /// The seconds of a unit of time.
 pub(super) fn seconds_of(unit: &str) -> Option<f64> {
-    let is_it = |(names, _): &&(&[&str], f64)| names.contains(&unit);
-    TIMES.iter().find(is_it).map(|(_, seconds)| *seconds)
+    TIMES.iter().find(|(names, ..)| names.contains(&unit)).map(|(_, _, seconds)| *seconds)
 }
 
 /// Name and unit of a header: a unit in square brackets is any text, one in round brackets

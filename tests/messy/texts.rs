@@ -151,6 +151,10 @@ pub(crate) fn thousands() -> Vec<Messy> {
         let rows: String = rows.iter().enumerate().map(row).collect();
         format!("t_ms;boom.input;boom.output\n{rows}")
     };
+    let counted = |x: f64, mark: char| {
+        let counts = (50.0 * x).round();
+        if counts < 1000.0 { counts.to_string() } else { format!("1{mark}{:03}", counts - 1000.0) }
+    };
     vec![
         messy(
             "thousands.csv",
@@ -159,14 +163,7 @@ pub(crate) fn thousands() -> Vec<Messy> {
         ),
         messy(
             "thousands_among_whole_numbers.csv",
-            whole(&|x| {
-                let counts = (50.0 * x).round();
-                if counts < 1000.0 {
-                    counts.to_string()
-                } else {
-                    format!("1,{:03}", counts - 1000.0)
-                }
-            }),
+            whole(&|x| counted(x, ',')),
             Expected::Refused(&["row 2", "`boom.output`", "1,000", "a thousand and more"]),
         ),
         messy(
@@ -176,14 +173,7 @@ pub(crate) fn thousands() -> Vec<Messy> {
         ),
         messy(
             "points_between_thousands.csv",
-            whole(&|x| {
-                let counts = (50.0 * x).round();
-                if counts < 1000.0 {
-                    counts.to_string()
-                } else {
-                    format!("1.{:03}", counts - 1000.0)
-                }
-            }),
+            whole(&|x| counted(x, '.')),
             Expected::Refused(&["row 2", "`boom.output`", "1.000", "a thousand and more"]),
         ),
         messy(

@@ -36,25 +36,23 @@ impl Spelling {
     /// The header in the last comment above the table, where that begins with numbers, as NumPy writes it:
     /// `# time,u,y`.
     fn at_marked_header(self, start: &[u8]) -> Self {
+        const MARK: &[u8] = b"#";
         let (bytes, before) = self.preamble;
-        let text = start.get(bytes..).unwrap_or_default();
-        let lines: Vec<&[u8]> = rows(text).take(LINES).collect();
-        let first = lines.iter().position(|line| is_row(line));
-        let Some((above, header)) = first.and_then(|first| {
-            let first_row = split(lines.get(first)?, self.delimiter);
-            let header = lines.get(first.checked_sub(1)?)?;
-            let names = split(header.strip_prefix(b"#")?, self.delimiter);
-            let is_header = holds_numbers(&first_row, self.delimiter)
-                && names.len() == first_row.len()
-                && names.len() > 1
-                && filled(&names) == names.len()
-                && names.iter().all(|name| parse_time(name.trim_ascii(), self.delimiter).is_err());
-            is_header.then(|| (lines.get(..first - 1).unwrap_or_default(), b"#".len()))
-        }) else {
+        let lines: Vec<&[u8]> = rows(start.get(bytes..).unwrap_or_default()).take(LINES).collect();
+        let first = lines.iter().position(|line| is_row(line)).unwrap_or(0);
+        let (above, from_first) = lines.split_at(first);
+        let (Some(row), Some((comment, above))) = (from_first.first(), above.split_last()) else {
             return self;
         };
+        let row = split(row, self.delimiter);
+        let names = split(comment.strip_prefix(MARK).unwrap_or_default(), self.delimiter);
+        let is_name = |cell: &[u8]| parse_time(cell.trim_ascii(), self.delimiter).is_err();
+        let is_header = names.len() > 1 && names.len() == row.len() && names.iter().all(is_name);
+        if !is_header || !holds_numbers(&row, self.delimiter) {
+            return self;
+        }
         let skipped: usize = above.iter().map(|line| line.len()).sum();
-        Self { preamble: (bytes + skipped + header, before + line_ends(above)), ..self }
+        Self { preamble: (bytes + skipped + MARK.len(), before + line_ends(above)), ..self }
     }
 
     /// The table as rows of one width, with what is shorter or longer before it, parted by one of `marks`.

@@ -5,6 +5,7 @@ use rerun::datatypes::Vec2D;
 
 use super::bars::{Bars, Columns};
 use super::figure::noise;
+use crate::explain::{Change, Revision};
 use crate::figure::ladder::{self, Rung};
 use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
@@ -39,20 +40,18 @@ struct Ladder<'r> {
 impl<'r> Ladder<'r> {
     fn of(improved: &'r ImprovedJoint<'_>) -> Self {
         let rungs = ladder::rungs(improved.revisions);
-        let names: Vec<String> = improved.revisions.iter().map(change_in_words).collect();
-        let lines = |name: &String| name.split(", ").count();
-        let all: usize = names.iter().map(lines).sum();
-        let apart = all <= MOST_LINES;
+        let names: Vec<Vec<String>> = improved.revisions.iter().map(lines).collect();
+        let apart = names.iter().map(Vec::len).sum::<usize>() <= MOST_LINES;
         let mut next = 0;
-        let row = |name: &String| {
+        let row = |lines: &Vec<String>| {
             let row = next;
-            next += if apart { lines(name) } else { 1 };
+            next += if apart { lines.len() } else { 1 };
             row
         };
         let rows: Vec<usize> = names.iter().map(row).collect();
         // Behind its number.
         let longest =
-            3 + names.iter().flat_map(|name| name.split(", ")).map(str::len).max().unwrap_or(0);
+            3 + names.iter().flatten().map(|line| line.chars().count()).max().unwrap_or(0);
         let bars = Bars::new(COLUMNS, (next, longest), ladder::largest(&rungs));
         Self { rungs, bars, rows }
     }
@@ -71,15 +70,16 @@ impl<'r> Ladder<'r> {
         self.placed().enumerate().flat_map(bar).collect()
     }
 
-    /// The name of the rung at `place`, what left the model below what came.
-    fn name(&self, labels: &mut Labels, place: usize, row: usize, name: &str) {
+    /// The name of the rung at `place` behind its `number`, what left the model below what came.
+    fn name(&self, labels: &mut Labels, (place, row): (usize, usize), number: &str) {
+        let Some(Rung { revision, .. }) = self.rungs.get(place) else { return };
         let next = self.rows.get(place + 1).copied().unwrap_or(self.bars.rows());
-        match name.split_once(", ") {
-            Some((came, gone)) if next > row + 1 => {
-                self.bars.name(labels, row, came);
+        match lines(revision).as_slice() {
+            [came, gone] if next > row + 1 => {
+                self.bars.name(labels, row, &format!("{number}: {came}"));
                 self.bars.name(labels, row + 1, gone);
             }
-            _ => self.bars.name(labels, row, name),
+            _ => self.bars.name(labels, row, &format!("{number}: {}", change_in_words(revision))),
         }
     }
 
@@ -89,6 +89,14 @@ impl<'r> Ladder<'r> {
             Some(self.bars.mark(row, rung.revision.comparison.training?.rmse))
         };
         self.placed().filter_map(mark).collect()
+    }
+}
+
+/// The change of a revision, what left the model on a line of its own.
+fn lines(revision: &Revision) -> Vec<String> {
+    match revision.change {
+        Change::Replaced { old, new } => vec![format!("+ {new}"), format!("− {old}")],
+        _ => vec![change_in_words(revision)],
     }
 }
 
@@ -107,8 +115,7 @@ pub(super) fn around(
     let revisions = improved.numbered().zip(ladder.placed());
     for (place, ((revision, step), (row, rung))) in revisions.enumerate() {
         let here = if place == at { "▶ " } else { "" };
-        let name = format!("{here}{revision}: {}", change_in_words(step));
-        ladder.name(labels, place, row, &name);
+        ladder.name(labels, (place, row), &format!("{here}{revision}"));
         let training = step.comparison.training.map_or(0.0, |error| error.rmse);
         let end = training.max(rung.error);
         bars.value(labels, row, end, format!("{} {unit}", short(rung.error)));

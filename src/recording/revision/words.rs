@@ -113,31 +113,33 @@ fn has_shares(improved: &ImprovedJoint<'_>) -> bool {
 fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::Result {
     // Not as a table, the widest row of which would push the text out of its panel.
     let components = improved.finding.compared.comparison.fit.model.components();
-    let found = improved.finding.attribution.iter().flat_map(|all| &all.found);
-    let shares: Vec<_> = found.map(|one| (one.effect, one.error_share)).collect();
-    let share_of =
-        |id: &str| shares.iter().find(|(effect, _)| *effect == id).map(|(_, share)| *share);
     let id = |component: &Component| component.effect().spec().id;
-    // What explains most comes first, behind what the model had before.
-    let others_of = |id: &str| {
-        let found = improved.finding.attribution.iter().flat_map(|all| &all.found);
-        let others = found.filter(|one| one.effect == id).flat_map(|one| &one.alternatives);
-        others.copied().collect::<Vec<_>>().join(" or ")
+    let contribution = |component: &Component| {
+        let found = &improved.finding.attribution?.found;
+        found.iter().find(|one| one.effect == id(component))
     };
-    let share = |component: &Component| share_of(id(component)).unwrap_or(f64::INFINITY);
+    // What explains most comes first, behind what the model had before.
+    let share = |component: &Component| {
+        contribution(component).map_or(f64::INFINITY, |one| one.error_share)
+    };
     let mut components: Vec<&Component> = components.iter().collect();
     components.sort_by(|a, b| share(b).total_cmp(&share(a)));
-    if has_shares(improved) {
+    // Of one alone it is said above.
+    let has_shares = has_shares(improved);
+    if has_shares {
         writeln!(page, "Share of the first error that returns without each (shares overlap):\n")?;
     }
     for component in components {
-        // Of one alone it is said above.
-        let share = share_of(id(component)).filter(|_| has_shares(improved));
-        let share = share.map_or_else(String::new, |share| format!(" {}", percent(share)));
-        let others = others_of(id(component));
-        let others = if others.is_empty() { others } else { format!(" (or {})", plain(&others)) };
-        let (id, summary) = (plain(id(component)), prose(&component.summary()));
-        writeln!(page, "- **{id}**{share}{others}: {summary}")?;
+        write!(page, "- **{}**", plain(id(component)))?;
+        if let Some(one) = contribution(component) {
+            if has_shares {
+                write!(page, " {}", percent(one.error_share))?;
+            }
+            if !one.alternatives.is_empty() {
+                write!(page, " (or {})", plain(&one.alternatives.join(" or ")))?;
+            }
+        }
+        writeln!(page, ": {}", prose(&component.summary()))?;
     }
     writeln!(page)
 }
@@ -166,25 +168,22 @@ the timeline `revision`. ";
 
 const HOW: &str = "`sample` or `time`: choose it at the bottom.";
 
-/// Which revisions lower the error of what was fitted alone.
+/// Which revisions did not lower the error on what was not fitted.
 fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
-    let revisions: Vec<_> = improved.numbered().collect();
-    let without =
-        revisions.iter().zip(revisions.iter().skip(1)).filter(|((_, before), (_, after))| {
-            let error = |of: &Revision| of.comparison.validation.map(|error| error.rmse);
-            let gained =
-                error(before).zip(error(after)).map(|(before, after)| 1.0 - after / before);
-            // What left the model or was exchanged for a simpler effect is to gain nothing.
-            let least = if matches!(after.change, Change::Added(_)) { GAIN } else { -GAIN };
-            gained.is_some_and(|gained| gained < least)
-        });
-    let numbers: Vec<String> = without.map(|(_, (number, _))| number.to_string()).collect();
-    let (last, before) = numbers.split_last()?;
-    let numbers = match before {
-        [] => last.clone(),
-        before => format!("{} and {last}", before.join(", ")),
+    let revisions: Vec<(u32, &Revision)> = improved.numbered().collect();
+    let is_without = |before: &Revision, after: &Revision| {
+        let error = |of: &Revision| of.comparison.validation.map(|error| error.rmse);
+        let gained = error(before).zip(error(after)).map(|(before, after)| 1.0 - after / before);
+        // What left the model or was exchanged for a simpler effect is to gain nothing.
+        let least = if matches!(after.change, Change::Added(_)) { GAIN } else { -GAIN };
+        gained.is_some_and(|gained| gained < least)
     };
-    Some(format!("{numbers}: a lower error on what was fitted, but not on what was not"))
+    let pairs = revisions.iter().zip(revisions.iter().skip(1));
+    let without = pairs.filter(|((_, before), (_, after))| is_without(before, after));
+    let numbers: Vec<String> = without.map(|(_, (number, _))| number.to_string()).collect();
+    let numbers = numbers.join(", ");
+    (!numbers.is_empty())
+        .then(|| format!("{numbers}: the error on what was not fitted did not fall"))
 }
 
 /// What is a gain at all, as a part of the error.

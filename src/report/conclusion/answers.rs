@@ -1,5 +1,6 @@
 //! The answers to what a reviewer asks first, each in a line.
 
+use super::figures::first_of;
 use crate::diagnosis::failure::FailsWhere;
 use crate::explain::{Contribution, Verdict};
 use crate::report::dead_time::dead_time_answer;
@@ -31,9 +32,6 @@ impl Finding<'_> {
     /// The effects that were added, with what could stand in the place of each, and what they explain:
     /// of many those that carry most.
     fn found(&self) -> String {
-        /// Names that a person takes in, and those that are said of more.
-        const MOST: usize = 4;
-        const FIRST: usize = 3;
         let found = self.attribution.map_or(&[][..], |known| &known.found);
         let Some(explained) = self.explained_share().filter(|_| !found.is_empty()) else {
             return self.follows();
@@ -44,17 +42,15 @@ impl Finding<'_> {
         };
         let mut found: Vec<&Contribution> = found.iter().collect();
         found.sort_by(|a, b| b.error_share.total_cmp(&a.error_share));
-        let shown = if found.len() > MOST { FIRST } else { found.len() };
-        let more = found.len() - shown;
-        let names: Vec<String> = found.iter().take(shown).map(name).collect();
-        let more = if more > 0 { format!(" and {more} more below") } else { String::new() };
+        let names: Vec<String> = found.iter().map(name).collect();
+        let names = first_of(&names).unwrap_or_default();
         let has_no_other = found.iter().all(|one| one.alternatives.is_empty());
         let alone = match found.len() {
             _ if !has_no_other => "",
             1 => "; nothing that was tried leaves as little in its place",
             _ => "; nothing that was tried leaves as little in the place of one of them",
         };
-        format!("{}{more}: {explained}{alone}", names.join(", "))
+        format!("{names}: {explained}{alone}")
     }
 
     /// What no effect accounts for.

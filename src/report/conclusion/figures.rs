@@ -51,23 +51,13 @@ impl Finding<'_> {
 
     /// `dead_band and end_stop`; of many those that carry most: `dead_band, end_stop and 4 more`.
     fn gained_in_words(&self, mut gained: Vec<&'static str>) -> Option<String> {
-        /// Names that a person takes in, and those that are said of more.
-        const MOST: usize = 4;
-        const FIRST: usize = 3;
         let found = self.attribution.map_or(&[][..], |known| &known.found);
         let share =
             |id: &str| found.iter().find(|one| one.effect == id).map_or(0.0, |one| one.error_share);
         if gained.len() > MOST {
             gained.sort_by(|a, b| share(b).total_cmp(&share(a)));
-            let more = gained.len() - FIRST;
-            gained.truncate(FIRST);
-            return Some(format!("{} and {more} more", gained.join(", ")));
         }
-        let last = gained.pop()?;
-        Some(match gained.as_slice() {
-            [] => last.to_owned(),
-            others => format!("{} and {last}", others.join(", ")),
-        })
+        first_of(&gained)
     }
 
     /// What the model explains of the motion: `1 − e/d` with the standard deviation `d` of what
@@ -84,4 +74,23 @@ impl Finding<'_> {
             _ => format!("{model} does not explain the motion"),
         }
     }
+}
+
+/// Names that a person takes in.
+const MOST: usize = 4;
+
+/// `dead_band and end_stop`; of many the first: `dead_band, end_stop, leakage and 4 more`. Nothing of none.
+pub(super) fn first_of(names: &[impl AsRef<str>]) -> Option<String> {
+    /// Names that are said of more.
+    const FIRST: usize = 3;
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+    let (last, others) = names.split_last()?;
+    Some(match others {
+        [] => (*last).to_owned(),
+        others if others.len() < MOST => format!("{} and {last}", others.join(", ")),
+        _ => {
+            let first = names.get(..FIRST).unwrap_or_default().join(", ");
+            format!("{first} and {} more", names.len() - FIRST)
+        }
+    })
 }

@@ -1,0 +1,241 @@
+//! The times of a log: how its clock counts, its grids, and what is odd about them.
+
+use super::{Clock, Log};
+use crate::experiment::error::ReadError;
+use crate::experiment::even;
+use crate::experiment::format::date_of_seconds;
+use crate::experiment::origin::{Counting, origin_s};
+use crate::experiment::period::is_period;
+use crate::experiment::sampling::{Fault, Grid, Repair};
+use crate::experiment::table::TrialRows;
+use crate::experiment::time_column::TimeSource;
+
+impl Log<'_> {
+    /// The grid of each trial, and what should be known of the clock.
+    pub(in crate::experiment) fn grids(
+        &self,
+        time: TimeSource,
+        trials: &[TrialRows],
+        repair: Repair,
+    ) -> Result<(Vec<Grid>, Vec<String>), ReadError> {
+        let times = match self.times(time)? {
+            Clock::Stamps(times) => times,
+            Clock::Rows(period) => {
+                let grid =
+                    |trial: &TrialRows| Grid::of_rows(trial.end - trial.start, period, repair);
+                return Ok((trials.iter().map(grid).collect(), Vec::new()));
+            }
+        };
+        let rows = |trial: &TrialRows| (trial.start..trial.end).collect();
+        let rows: Vec<Vec<usize>> = trials.iter().map(rows).collect();
+        let (grids, mut notes) = self.grids_of(&times, &rows, trials, repair)?;
+        self.check_unit(time, &grids)?;
+        self.check_periods(time, trials, &grids)?;
+        notes.extend(self.origin_note(time));
+        notes.extend(self.rate_note(time, &grids));
+        Ok((grids, notes))
+    }
+
+    /// The first time, as it stands in the log.
+    fn first_time(&self, column: usize) -> Option<f64> {
+        self.column(column)?.values.iter().copied().find(|value| !value.is_nan())
+    }
+
+    /// What the clock shows where times are counted from, in seconds.
+    pub(super) fn origin_s(&self, time: TimeSource) -> f64 {
+        let TimeSource::Times(column, scale) = time else { return 0.0 };
+        let first = self.first_time(column).unwrap_or_default();
+        origin_s(self.counting(column, scale).seconds_of(first))
+    }
+
+    /// How times count: dates in seconds, numbers in the unit of `scale` seconds that is named, else as
+    /// their size says.
+    fn counting(&self, column: usize, scale: Option<f64>) -> Counting {
+        let scale = scale.filter(|_| !self.are_dates(column));
+        scale.map_or_else(|| self.counting_by_size(column), Counting::in_unit)
+    }
+
+    /// Whether times are written in words.
+    fn are_dates(&self, column: usize) -> bool {
+        self.column(column).is_some_and(|column| column.are_dates)
+    }
+
+    fn counting_by_size(&self, column: usize) -> Counting {
+        let values = self.column(column).map_or(&[][..], |column| &column.values);
+        let mut known = values.iter().copied().filter(|value| !value.is_nan());
+        let first = known.next().unwrap_or(f64::NAN);
+        let later = known.find(|value| *value > first).unwrap_or(f64::NAN);
+        Counting::of(first, later - first)
+    }
+
+    /// What is said of times whose unit was inferred from their size, or that are counted anew.
+    fn origin_note(&self, time: TimeSource) -> Option<String> {
+        let TimeSource::Times(column, scale) = time else { return None };
+        let origin_s = self.origin_s(time);
+        let counted = (origin_s != 0.0).then(|| match date_of_seconds(origin_s) {
+            Some(date) => format!("times count from {date} ({origin_s} s of its clock)"),
+            None => format!("times count from {origin_s} s of its clock"),
+        });
+        let unit = self.counting(column, scale).inferred_unit();
+        let name = self.header(column);
+        let unit = unit.map(|unit| format!("`{name}` is taken for {unit}"));
+        let said: Vec<String> = unit.into_iter().chain(counted).collect();
+        (!said.is_empty()).then(|| said.join("; "))
+    }
+
+    /// Refuses times that are so far apart that their unit is another, named or supposed.
+    fn check_unit(&self, time: TimeSource, grids: &[Grid]) -> Result<(), ReadError> {
+        /// No joint is logged so seldom as every quarter of an hour, and nothing that moves once a day.
+        const SELDOM_S: (f64, f64) = (900.0, 86_400.0);
+        let TimeSource::Times(column, scale) = time else { return Ok(()) };
+        // The size of times since 1970 shows their unit, and so does a date.
+        let is_known = scale.is_some() || self.counting(column, scale).is_recognized();
+        let most = if is_known { SELDOM_S.1 } else { SELDOM_S.0 };
+        let mut periods = grids.iter().map(|grid| grid.period().seconds());
+        match periods.find(|period| *period > most) {
+            Some(period) => Err(ReadError::WrongTimeUnit {
+                path: self.head.path.clone(),
+                column: self.header(column),
+                period,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses times whose period is none that may be given as an option.
+    fn check_periods(
+        &self,
+        time: TimeSource,
+        trials: &[TrialRows],
+        grids: &[Grid],
+    ) -> Result<(), ReadError> {
+        let Some(column) = time.column() else { return Ok(()) };
+        let periods = grids.iter().map(|grid| grid.period().seconds());
+        match trials.iter().zip(periods).find(|(_, period)| !is_period(*period)) {
+            Some((trial, period)) => Err(ReadError::NoPeriod {
+                path: self.head.path.clone(),
+                row: self.row(trial.start),
+                column: self.header(column),
+                period,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// A question where no machine is sampled like this, or where seconds are only supposed.
+    fn rate_note(&self, time: TimeSource, grids: &[Grid]) -> Option<String> {
+        /// Samples in a second that are plausible at all, and where the unit is a guess: counts of
+        /// milliseconds at 50 Hz or more are no more than 20 to a second.
+        const PLAUSIBLE: (f64, f64) = (0.01, 1e5);
+        const GUESSED_FROM: f64 = 20.5;
+        let TimeSource::Times(column, scale) = time else { return None };
+        let is_known = scale.is_some() || self.counting(column, scale).is_recognized();
+        let lowest = if is_known || self.are_dates(column) { PLAUSIBLE.0 } else { GUESSED_FROM };
+        let rates = grids.iter().map(|grid| 1.0 / grid.period().seconds());
+        let odd = rates.into_iter().find(|rate| !(lowest..=PLAUSIBLE.1).contains(rate))?;
+        let (name, digits) = (self.header(column), format!("{odd:.2e}"));
+        let rate = digits.parse::<f64>().unwrap_or(odd);
+        Some(format!(
+            "are {rate} samples a second right? If not, say the unit of the time column: \
+             `{name} [ms]`, [us], [ns] or [s]"
+        ))
+    }
+
+    /// The grids of `rows` of each trial, which are some of its rows or all.
+    pub(super) fn grids_of(
+        &self,
+        times: &[f64],
+        rows: &[Vec<usize>],
+        trials: &[TrialRows],
+        repair: Repair,
+    ) -> Result<(Vec<Grid>, Vec<String>), ReadError> {
+        let of = |rows: &Vec<usize>| {
+            rows.iter().map(|&row| times.get(row).copied().unwrap_or(f64::NAN)).collect()
+        };
+        let of_trials: Vec<Vec<f64>> = rows.iter().map(of).collect();
+        let error = |index: usize, fault: Fault| {
+            let rows = rows.get(index).map_or(&[][..], Vec::as_slice);
+            let times = of_trials.get(index).map_or(&[][..], Vec::as_slice);
+            let label = trials.get(index).map_or("", |trial| &trial.label);
+            self.time_error(fault, label, rows, times)
+        };
+        let lay = |(index, times): (usize, &Vec<f64>)| {
+            Grid::lay(times, repair).map_err(|fault| (index, fault))
+        };
+        match of_trials.iter().enumerate().map(lay).collect::<Result<Vec<_>, _>>() {
+            Ok(grids) => return Ok((grids, Vec::new())),
+            Err((index, fault)) if repair.as_it_stands || !fault.is_mended() => {
+                return Err(error(index, fault));
+            }
+            Err(_) => {}
+        }
+        let number = |trial: usize, row: usize| {
+            rows.get(trial).and_then(|rows| rows.get(row)).map_or(0, |&row| self.row(row))
+        };
+        let times: Vec<&[f64]> = of_trials.iter().map(Vec::as_slice).collect();
+        even::grids(&times, repair, &number).map_err(|(index, fault)| error(index, fault))
+    }
+
+    /// The times of all rows, in seconds; or how far apart they are, where nothing says when.
+    pub(super) fn times(&self, time: TimeSource) -> Result<Clock, ReadError> {
+        let (column, scale) = match time {
+            TimeSource::Times(column, scale) => (column, scale),
+            TimeSource::SampleNumbers(column, period) => (column, Some(period.seconds())),
+            TimeSource::Rows(period) => return Ok(Clock::Rows(period)),
+        };
+        let values = self.column(column).map_or(&[][..], |column| &column.values);
+        let counting = self.counting(column, scale);
+        let times: Vec<f64> = values.iter().map(|value| counting.seconds_of(*value)).collect();
+        self.check_times(column, &times)?;
+        Ok(Clock::Stamps(times))
+    }
+
+    /// Every row needs a time.
+    fn check_times(&self, column: usize, times: &[f64]) -> Result<(), ReadError> {
+        if let Some(error) = self.bad_cell(column) {
+            return Err(match error {
+                ReadError::NotANumber { path, row, column, text } => {
+                    ReadError::NotATime { path, row, column, text }
+                }
+                error => error,
+            });
+        }
+        match times.iter().position(|time| time.is_nan()) {
+            Some(index) => Err(ReadError::NoTimeInRow {
+                path: self.head.path.clone(),
+                row: self.row(index),
+                column: self.header(column),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// `fault` in the clock of the trial `label`, of whose `rows` these are the `times`.
+    fn time_error(&self, fault: Fault, label: &str, rows: &[usize], times: &[f64]) -> ReadError {
+        let path = self.head.path.clone();
+        let at = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
+        let number = |row: usize| rows.get(row).map_or(0, |&row| self.row(row));
+        let trial = label.to_owned();
+        match fault {
+            Fault::NotIncreasing { row } => ReadError::TimeNotIncreasing {
+                path,
+                row: number(row),
+                previous: row.checked_sub(1).map_or(f64::NAN, at),
+                time: at(row),
+            },
+            Fault::NotUniform { row, step, period } => {
+                ReadError::NotUniform { path, row: number(row), step, period }
+            }
+            Fault::FewStamps { stamps, grain_s } => {
+                ReadError::FewTimes { path, row: number(0), rows: rows.len(), stamps, grain_s }
+            }
+            Fault::Coarse { row, grain_s, period } => {
+                ReadError::CoarseTimes { path, row: number(row), grain_s, period }
+            }
+            Fault::TooMany { samples, period } => {
+                ReadError::TooManySamples { path, trial, samples, period }
+            }
+            Fault::SingleRow => ReadError::SingleRow { path, row: number(0), trial },
+        }
+    }
+}
