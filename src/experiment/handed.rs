@@ -179,7 +179,8 @@ fn read(
     let column = |place: &usize| log.columns.get_mut(*place).map(|column| column.values.column());
     let columns = numeric.iter().filter_map(column).collect();
     let (rows, trials) = (RowNumbers::counted(rows), labels.runs());
-    let table = Table { source, rows, columns, trials, notes: Vec::new() };
+    let mut table = Table { source, rows, columns, trials, notes: Vec::new() };
+    table.oldest_first(layout.place_of_time(&numeric), &head.path);
     let log = Log { head: &head, numeric: &numeric, table: &table, budget };
     found.add_log(&log, &layout, stem, options.repair)?;
     Ok(found)

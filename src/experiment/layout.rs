@@ -146,6 +146,11 @@ impl Layout {
         columns
     }
 
+    /// Where the times are among the `numeric` columns.
+    pub(super) fn place_of_time(&self, numeric: &[usize]) -> Option<usize> {
+        self.time.column().and_then(|column| numeric.binary_search(&column).ok())
+    }
+
     fn add_mapped_joints(
         &mut self,
         columns: &Columns<'_>,

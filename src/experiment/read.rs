@@ -342,7 +342,10 @@ impl Experiment {
             return Ok(());
         }
         let numeric = layout.numeric_columns();
-        let table = table.read(&numeric, layout.trial, layout.time.column(), layout.clock())?;
+        let mut table = table.read(&numeric, layout.trial, layout.time.column(), layout.clock())?;
+        if !repair.as_it_stands {
+            table.oldest_first(layout.place_of_time(&numeric), &head.path);
+        }
         let log = Log { head: &head, numeric: &numeric, table: &table, budget };
         self.add_log(&log, layout, stem, repair)
     }

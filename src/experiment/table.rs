@@ -157,6 +157,26 @@ pub(super) struct Table {
 }
 
 impl Table {
+    /// Turns a table of the log at `path` round that a program wrote with the newest row first: the
+    /// numbers in its column of times, the `time`-th, fall.
+    pub(super) fn oldest_first(&mut self, time: Option<usize>, path: &Path) {
+        if !time.and_then(|time| self.columns.get(time)).is_some_and(Column::falls) {
+            return;
+        }
+        let rows = self.rows.len();
+        self.rows.turn();
+        // What ends at a bad cell is refused anyhow.
+        for column in self.columns.iter_mut().filter(|column| column.error.is_none()) {
+            column.values.reverse();
+        }
+        self.trials.reverse();
+        for trial in &mut self.trials {
+            (trial.start, trial.end) = (rows - trial.end, rows - trial.start);
+        }
+        let note = "the newest row is first: the rows are read from the last to the first";
+        self.notes.push(format!("{}: {note}", path.display()));
+    }
+
     /// The rows of a file that has no lines, counted from 1.
     #[cfg(any(feature = "mat", feature = "parquet"))]
     pub(super) fn counted(
@@ -182,12 +202,14 @@ pub(super) struct RowNumbers {
     /// Where numbers are left out: a row's index, and its number.
     runs: Vec<(usize, u64)>,
     count: usize,
+    /// Whether the last row of the file is the first of the table.
+    turned: bool,
 }
 
 impl RowNumbers {
     /// So many rows, counted from 1.
     pub(super) fn counted(count: usize) -> Self {
-        Self { runs: vec![(0, 1)], count }
+        Self { runs: vec![(0, 1)], count, turned: false }
     }
 
     pub(super) fn push(&mut self, number: u64) {
@@ -205,8 +227,14 @@ impl RowNumbers {
         self.count == 0
     }
 
+    /// Goes on from the last row to the first; no row is added later.
+    fn turn(&mut self) {
+        self.turned = !self.turned;
+    }
+
     /// What messages call the row with this index.
     pub(super) fn number(&self, index: usize) -> u64 {
+        let index = if self.turned { (self.count - 1).saturating_sub(index) } else { index };
         let later = self.runs.partition_point(|(first, _)| *first <= index);
         let run = later.checked_sub(1).and_then(|run| self.runs.get(run));
         run.map_or(0, |(first, number)| number + (index - first) as u64)
@@ -258,6 +286,16 @@ impl Column {
             column.error = Some((row as u64 + 1, bad));
         }
         column
+    }
+
+    /// Whether each of its numbers but a few is smaller than the one before it.
+    fn falls(&self) -> bool {
+        /// Part of the rows that may be out of order, and how many show an order (chosen).
+        const OUT_OF_ORDER: f64 = 0.1;
+        const FEWEST: usize = 3;
+        let falling = self.values.windows(2).filter(|pair| pair[1] < pair[0]).count();
+        let rising = self.values.windows(2).filter(|pair| pair[1] > pair[0]).count();
+        falling >= FEWEST && rising as f64 <= OUT_OF_ORDER * falling as f64
     }
 
     /// Its largest number, where that is too small to be squared and is not zero.
@@ -414,6 +452,33 @@ mod tests {
         }
         assert_eq!(column.values.len(), 2);
         assert_eq!(column.error, Some((3, BadCell::Infinite)));
+    }
+
+    #[test]
+    fn a_table_with_its_newest_row_first_is_turned_round() {
+        let times = |values: &[f64]| Column { values: values.to_vec(), ..Column::default() };
+        let trial = |label: &str, start, end| TrialRows { label: label.to_owned(), start, end };
+        let mut rows = RowNumbers::default();
+        [3, 4, 6, 7].into_iter().for_each(|row| rows.push(row));
+        let table = |values: &[f64]| Table {
+            source: Source { path: PathBuf::new(), bytes: 0, sha256: String::new() },
+            rows: rows.clone(),
+            columns: vec![times(values), times(&[1.0, 2.0, 3.0, 4.0])],
+            trials: vec![trial("b", 0, 1), trial("a", 1, 4)],
+            notes: Vec::new(),
+        };
+        let mut newest_first = table(&[3.0, 2.0, 1.0, 0.0]);
+        newest_first.oldest_first(Some(0), Path::new("log.csv"));
+        assert_eq!(newest_first.columns[1].values, [4.0, 3.0, 2.0, 1.0]);
+        assert_eq!(newest_first.trials, [trial("a", 0, 3), trial("b", 3, 4)]);
+        assert_eq!([0, 1, 2, 3].map(|row| newest_first.rows.number(row)), [7, 6, 4, 3]);
+        assert_eq!(newest_first.notes.len(), 1);
+        // One that restarts or stands still is no such table.
+        for values in [[0.0, 1.0, 0.0, 1.0], [0.0; 4], [0.0, 1.0, 2.0, 1.5]] {
+            let mut other = table(&values);
+            other.oldest_first(Some(0), Path::new("log.csv"));
+            assert_eq!((other.columns[0].values.as_slice(), other.notes.len()), (&values[..], 0));
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! [`OpenTable`](super::table::OpenTable), and an entry in `registry.rs`: its name, the
 //! endings of its files, its first bytes, its feature and `open`.
 
+mod blanks;
 mod cell;
 mod csv;
 mod date;

@@ -1,15 +1,20 @@
 //! How the rows of a text are written: delimiter, lines before the header, units below it.
 
+use super::blanks::tabbed;
 use super::cell::{Time, is_of_thousands, parse_time};
 use crate::experiment::unit::is_unit;
 
 /// What parts the cells, and what stands before the header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Spelling {
+    /// The mark between cells, or [`BLANK`].
     pub(super) delimiter: u8,
     /// Bytes and lines before the header that belong to no table.
     pub(super) preamble: (usize, u64),
 }
+
+/// What stands for runs of blanks and tabs between cells.
+const BLANK: u8 = b' ';
 
 /// Marks that part cells, the least likely first: the comma is taken where none is found.
 const DELIMITERS: [u8; 4] = [b'|', b'\t', b';', b','];
@@ -24,13 +29,55 @@ impl Spelling {
     /// How a text is written that starts so, its cells parted by `delimiter` where that is known.
     pub(super) fn of(start: &[u8], delimiter: Option<u8>) -> Self {
         let marks = delimiter.map_or_else(|| DELIMITERS.to_vec(), |known| vec![known]);
-        match behind_labview(start) {
-            Some((behind, lines)) => {
-                let below = start.get(behind..).unwrap_or_default();
-                Self { delimiter: sniff_delimiter(below, &marks), preamble: (behind, lines) }
-            }
-            None => Self::by_widths(start, &marks).past_padding(start).at_marked_header(start),
+        if let Some((behind, lines)) = behind_labview(start) {
+            let below = start.get(behind..).unwrap_or_default();
+            return Self { delimiter: sniff_delimiter(below, &marks), preamble: (behind, lines) };
         }
+        let by_marks = Self::by_marks(start, &marks);
+        by_marks.by_blanks(start).filter(|_| delimiter.is_none()).unwrap_or(by_marks)
+    }
+
+    fn by_marks(start: &[u8], marks: &[u8]) -> Self {
+        Self::by_widths(start, marks).past_padding(start).at_marked_header(start)
+    }
+
+    /// Whether runs of blanks part the cells, for each of which a tab is put.
+    pub(super) fn is_of_blanks(self) -> bool {
+        self.delimiter == BLANK
+    }
+
+    /// The mark between cells, once tabs are put for runs of blanks.
+    pub(super) fn mark(self) -> u8 {
+        if self.is_of_blanks() { b'\t' } else { self.delimiter }
+    }
+
+    /// The table as rows of numbers that blanks part into as many cells as the header, where no mark
+    /// parts that.
+    fn by_blanks(self, start: &[u8]) -> Option<Self> {
+        let (bytes, _) = self.preamble;
+        let header = rows(start.get(bytes..)?).find(|line| is_row(line))?;
+        let is_parted = count(header, self.delimiter) > 0;
+        let whole = start.iter().rposition(|byte| *byte == b'\n').filter(|_| !is_parted)?;
+        let start = start.get(..=whole)?;
+        let made = tabbed(start);
+        let Self { preamble: (bytes, lines), .. } = Self::by_marks(&made, b"\t");
+        let table = made.get(bytes..)?;
+        let mut table = rows(table).filter(|line| is_row(line)).map(|line| split(line, b'\t'));
+        let header = table.next().filter(|header| header.len() > 1)?;
+        let mut below = table.take(LINES).filter(|row| !are_units(row)).peekable();
+        below.peek()?;
+        let is_table = below.all(|row| row.len() == header.len() && holds_numbers(&row, b'\t'));
+        // The mark of a comment may stand before the header.
+        let line = made.get(..bytes)?.rsplit(|byte| *byte == b'\n').next().unwrap_or_default();
+        let before: usize = start
+            .split_inclusive(|byte| *byte == b'\n')
+            .take(usize::try_from(lines).ok()?)
+            .map(<[u8]>::len)
+            .sum();
+        let mark =
+            start.get(before..)?.iter().position(|byte| *byte == b'#').filter(|_| !line.is_empty());
+        let bytes = before + mark.map_or(0, |mark| mark + 1);
+        is_table.then_some(Self { delimiter: BLANK, preamble: (bytes, lines) })
     }
 
     /// The header in the last comment above the table, where that begins with numbers, as NumPy writes it:
@@ -341,6 +388,30 @@ mod tests {
         let log = format!("{before}X_Value\tu\ty\tComment\n0\t1\t2\n0.1\t1\t2\n");
         let found = Spelling::of(log.as_bytes(), None);
         assert_eq!(found, Spelling { delimiter: b'\t', preamble: (before.len(), 7) });
+    }
+
+    #[test]
+    fn runs_of_blanks_part_cells_where_nothing_else_does() {
+        let rows = "  0.00   1.5  20\n  0.01   1.5  20.1\n  0.02  -1.5   9\n";
+        for (before, header) in [
+            ("", "t u  y\n"),
+            ("Rig 7, by hand\n\n", "t [s]   u (V)\ty [deg]\n"),
+            ("# Rig 7\n  #", " t u y\n"),
+            ("", "t u y\n s V deg\n"),
+        ] {
+            let found = Spelling::of(format!("{before}{header}{rows}").as_bytes(), None);
+            let lines = before.bytes().filter(|byte| *byte == b'\n').count() as u64;
+            let expected = Spelling { delimiter: BLANK, preamble: (before.len(), lines) };
+            assert_eq!(found, expected, "{before:?} {header:?}");
+        }
+        // Names of several words, dates and marks between cells make other tables.
+        for text in [
+            format!("time in s  u y\n{rows}"),
+            "time u y\n2024-05-01 12:00:00 1 2\n2024-05-01 12:00:01 1 2\n".to_owned(),
+            "t s;u V\n0 1\n0 2\n".to_owned(),
+        ] {
+            assert!(!Spelling::of(text.as_bytes(), None).is_of_blanks(), "{text:?}");
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@ use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use encoding_rs_io::DecodeReaderBytesBuilder;
 use flate2::read::MultiGzDecoder;
 
+use super::blanks::Tabbed;
 use super::first_bytes::is_gzip;
 use crate::experiment::error::ReadError;
 use crate::experiment::source::{Hashing, Source, source_of};
@@ -54,6 +55,11 @@ impl Bytes {
             None => Ok((Self::Made(Box::new(whole), path.to_owned()), start)),
             Some(encoding) => Self::decoded(path, whole, encoding),
         }
+    }
+
+    /// What is still unread, with a tab for each run of blanks.
+    pub(super) fn tabbed(self, path: &Path) -> Self {
+        Self::Made(Box::new(Tabbed::new(self)), path.to_owned())
     }
 
     /// A text that was made of a file of another kind.

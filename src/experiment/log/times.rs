@@ -1,6 +1,6 @@
 //! The times of a log: how its clock counts, its grids, and what is odd about them.
 
-use super::{Clock, Log};
+use super::cells::Log;
 use crate::experiment::error::ReadError;
 use crate::experiment::even;
 use crate::experiment::format::date_of_seconds;
@@ -9,6 +9,13 @@ use crate::experiment::period::is_period;
 use crate::experiment::sampling::{Fault, Grid, Repair};
 use crate::experiment::table::TrialRows;
 use crate::experiment::time_column::TimeSource;
+use crate::units::SamplePeriod;
+
+/// Times of the rows in seconds, or the period between rows that have none.
+pub(super) enum Clock {
+    Stamps(Vec<f64>),
+    Rows(SamplePeriod),
+}
 
 impl Log<'_> {
     /// The grid of each trial, and what should be known of the clock.

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use super::super::blanks::tabbed;
 use super::super::spelling::Spelling;
 use super::super::text::SNIFFED_BYTES;
 use super::gathered::Gathered;
@@ -33,8 +34,8 @@ pub(in crate::experiment) struct GrowingRows {
 impl GrowingRows {
     /// Nothing has come yet.
     pub(in crate::experiment) fn new(budget: Budget) -> Self {
-        let (spelling, text) = (Spelling::of(b"", None), Vec::new());
-        let start = Vec::new();
+        let (start, text) = (Vec::new(), Vec::new());
+        let spelling = Spelling::of(b"", None);
         Self {
             budget,
             start,
@@ -49,7 +50,7 @@ impl GrowingRows {
 
     /// Adds whole lines.
     pub(in crate::experiment) fn push(&mut self, lines: &[u8]) {
-        self.text.extend_from_slice(lines);
+        self.take(lines);
         let room = SNIFFED_BYTES - self.start.len();
         if room == 0 {
             return;
@@ -61,9 +62,17 @@ impl GrowingRows {
             // What was a table so far stands before it, or its cells are parted otherwise.
             let all = [self.start.as_slice(), others].concat();
             let (before, lines) = spelling.preamble;
-            let text = all.get(before..).unwrap_or_default().to_vec();
             let (start, budget) = (std::mem::take(&mut self.start), self.budget.rest());
-            *self = Self { start, spelling, text, lines, ..Self::new(budget) };
+            *self = Self { start, spelling, lines, ..Self::new(budget) };
+            self.take(all.get(before..).unwrap_or_default());
+        }
+    }
+
+    fn take(&mut self, lines: &[u8]) {
+        if self.spelling.is_of_blanks() {
+            self.text.extend(tabbed(lines));
+        } else {
+            self.text.extend_from_slice(lines);
         }
     }
 
@@ -79,7 +88,7 @@ impl GrowingRows {
             return Ok(self.head.clone());
         }
         let (mut found, mut below, mut above) = (None, false, Vec::new());
-        let delimiter = self.spelling.delimiter;
+        let delimiter = self.spelling.mark();
         let mut sought = |record: &csv::ByteRecord, place: &Place| {
             let Some(known) = &mut found else {
                 check_header_size(path, record.len(), &self.budget)?;
@@ -111,7 +120,7 @@ impl GrowingRows {
         wanted: &Wanted<'_>,
         source: Source,
     ) -> Result<&Table, ReadError> {
-        let (delimiter, budget) = (self.spelling.delimiter, self.budget.rest());
+        let (delimiter, budget) = (self.spelling.mark(), self.budget.rest());
         let gathered = self.gathered.take();
         let mut gathered = gathered.unwrap_or_else(|| {
             let mut gathered = Gathered::new(wanted, delimiter, budget);

@@ -46,8 +46,12 @@ pub(super) fn table(
     budget: Budget,
 ) -> Result<OpenTable, ReadError> {
     let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-    let Spelling { delimiter, preamble: (before, lines) } = Spelling::of(start, delimiter);
+    let spelling = Spelling::of(start, delimiter);
+    let (delimiter, (before, lines)) = (spelling.mark(), spelling.preamble);
     io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink()).map_err(io_error)?;
+    if spelling.is_of_blanks() {
+        bytes = bytes.tabbed(path);
+    }
     let lines = LineEnds::after(bytes, lines).within(&budget);
     let mut reader = reader(delimiter, lines);
     let mut record = csv::ByteRecord::new();

@@ -1,20 +1,18 @@
-//! The numbers of a log as joints: cells checked, trials cut and put on a uniform grid.
-
-mod times;
+//! The joints of a log: cells checked, trials cut and put on a uniform grid.
 
 use std::ops::Range;
 
-use super::error::ReadError;
-use super::gaps::{gap_with_all_steps_s, unlogged};
-use super::joint::{Joint, Signal, Trial};
-use super::layout::JointLayout;
-use super::memory::Budget;
-use super::sampling::{Grid, Piece, Repair, Signals};
-use super::table::{BadCell, Coarse, Column, Head, Table, TrialRows};
-use super::time_column::TimeSource;
-use super::wrap::Wrap;
+use super::cells::Log;
+use super::times::Clock;
+use crate::experiment::error::ReadError;
+use crate::experiment::gaps::{gap_with_all_steps_s, unlogged};
+use crate::experiment::joint::{Joint, Signal, Trial};
+use crate::experiment::layout::JointLayout;
+use crate::experiment::sampling::{Grid, Piece, Repair, Signals};
+use crate::experiment::table::{Coarse, TrialRows};
+use crate::experiment::time_column::TimeSource;
+use crate::experiment::wrap::Wrap;
 use crate::numerics::to_digits_by;
-use crate::units::SamplePeriod;
 
 /// Memory of a sample of a signal: the number as it was read, on its grid and in its trial, and
 /// what is made of it until its delays are known.
@@ -24,32 +22,9 @@ const SAMPLE_SIZE: usize = 8 * size_of::<f64>();
 /// spare, and its allocations.
 const TRIAL_SIZE: usize = 2 * size_of::<Trial>() + 128;
 
-/// A table that was read, with what is needed to speak of its cells.
-pub(super) struct Log<'a> {
-    pub(super) head: &'a Head,
-    pub(super) numeric: &'a [usize],
-    pub(super) table: &'a Table,
-    pub(super) budget: &'a Budget,
-}
-
 impl Log<'_> {
-    /// The trials' rows, named: the whole file is trial `1` unless it says otherwise.
-    pub(super) fn trials(&self, stem: Option<&str>) -> Vec<TrialRows> {
-        let mut trials = self.table.trials.clone();
-        if trials.is_empty() {
-            let label = stem.unwrap_or("1").to_owned();
-            return vec![TrialRows { label, start: 0, end: self.table.rows.len() }];
-        }
-        for trial in &mut trials {
-            if let Some(stem) = stem {
-                trial.label = format!("{stem}/{}", trial.label);
-            }
-        }
-        trials
-    }
-
     /// A joint, and what should be known of how it was read.
-    pub(super) fn joint(
+    pub(in crate::experiment) fn joint(
         &self,
         layout: &JointLayout,
         trials: &[TrialRows],
@@ -103,12 +78,6 @@ impl Log<'_> {
         Ok((joint, notes))
     }
 
-    /// Takes the memory of `count` values of `size` bytes each.
-    fn take(&self, count: usize, size: usize) -> Result<(), ReadError> {
-        let taken = self.budget.take_values(count, size);
-        taken.map_err(|error| error.refuse(&self.head.path))
-    }
-
     /// The turn after which the output of a joint wraps. Of a log that still grows it is
     /// not known.
     fn wrap(&self, layout: &JointLayout, trials: &[TrialRows], repair: Repair) -> Option<Wrap> {
@@ -121,7 +90,7 @@ impl Log<'_> {
     /// The joint once more, where its input changes in gaps alone: these are filled, so that its
     /// steps are those at their ends. `None` where it does not, or where the user says what is to
     /// be filled.
-    pub(super) fn joint_with_gaps(
+    pub(in crate::experiment) fn joint_with_gaps(
         &self,
         read: &Joint,
         layout: &JointLayout,
@@ -356,39 +325,6 @@ impl Log<'_> {
             covariates: layout.covariates.iter().map(|c| cut(c.column)).collect(),
         }
     }
-
-    fn column(&self, index: usize) -> Option<&Column> {
-        let place = self.numeric.binary_search(&index).ok()?;
-        self.table.columns.get(place)
-    }
-
-    fn header(&self, column: usize) -> String {
-        self.head.headers.get(column).map(|header| header.name.clone()).unwrap_or_default()
-    }
-
-    fn row(&self, index: usize) -> u64 {
-        self.table.rows.number(index)
-    }
-
-    /// The first bad cell of a column.
-    fn bad_cell(&self, column: usize) -> Option<ReadError> {
-        let (row, bad) = self.column(column)?.error.clone()?;
-        let (path, column) = (self.head.path.clone(), self.header(column));
-        Some(match bad {
-            BadCell::Kind(found) => ReadError::NotNumbers { path, column, found },
-            BadCell::Text(text) => ReadError::NotANumber { path, row, column, text },
-            BadCell::Thousands(text) => ReadError::Thousands { path, row, column, text },
-            BadCell::DecimalMark(text) => ReadError::DecimalMarks { path, row, column, text },
-            BadCell::Infinite => ReadError::Infinite { path, row, column },
-            BadCell::TooLarge(value) => ReadError::BeyondPrecision { path, row, column, value },
-        })
-    }
-}
-
-/// Times of the rows in seconds, or the period between rows that have none.
-enum Clock {
-    Stamps(Vec<f64>),
-    Rows(SamplePeriod),
 }
 
 /// A length of time to three digits, no longer one shorter: who fills gaps up to it fills this one.

@@ -1,0 +1,7 @@
+//! The numbers of a log as joints: its cells, its times, and the trials of each joint.
+
+mod cells;
+mod joints;
+mod times;
+
+pub(super) use cells::Log;
