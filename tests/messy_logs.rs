@@ -57,6 +57,7 @@ fn every_messy_log_is_read_as_the_clean_one_or_refused_with_the_remedy() {
         texts::texts(),
         texts::programs(),
         texts::marks(),
+        texts::blanks(),
         texts::thousands(),
         texts::words_below(),
         texts::broken(),

@@ -139,6 +139,22 @@ pub(crate) fn marks() -> Vec<Messy> {
     ]
 }
 
+/// Runs of blanks between cells.
+pub(crate) fn blanks() -> Vec<Messy> {
+    let rows = clean();
+    let all = plain(&rows).replace(',', " ");
+    let aligned = table("time_s   boom.input boom.output", &rows, " ", |x| format!("{x:11.6}"));
+    let (_, below) = aligned.split_once('\n').unwrap();
+    vec![
+        messy("numpy.txt", format!("# {all}"), SAME),
+        messy("gnuplot.dat", format!("# Rig 7\n# time_s  boom.input  boom.output\n{below}"), SAME),
+        messy("aligned.txt", format!("Rig 7, by hand\n\n{aligned}"), SAME),
+        messy("units.dat", format!("t [s]  boom.input [V]   boom.output [deg]\n{below}"), SAME),
+        messy("units_below.dat", format!("t  boom.input boom.output\n s V   deg\n{below}"), SAME),
+        messy("decimal_commas.txt", aligned.replace('.', ",").replace("boom,", "boom."), SAME),
+    ]
+}
+
 /// Marks that may stand between thousands.
 pub(crate) fn thousands() -> Vec<Messy> {
     let rows = clean();
@@ -256,9 +272,9 @@ pub(crate) fn broken() -> Vec<Messy> {
             Expected::Refused(&["row 2", "`time_s`", "ISO 8601"]),
         ),
         messy(
-            "blanks.txt",
-            all.replace(',', "  "),
-            Expected::Refused(&["blanks.txt", "parted by blanks", "commas"]),
+            "names_of_several_words.txt",
+            all.replace(',', "  ").replacen("time_s", "time in seconds", 1),
+            Expected::Refused(&["names_of_several_words.txt", "parted by blanks", "commas"]),
         ),
         messy(
             "no_header.csv",

@@ -55,29 +55,29 @@ impl Spelling {
     /// parts that.
     fn by_blanks(self, start: &[u8]) -> Option<Self> {
         let (bytes, _) = self.preamble;
-        let header = rows(start.get(bytes..)?).find(|line| is_row(line))?;
-        let is_parted = count(header, self.delimiter) > 0;
+        let first_rows = rows(start.get(bytes..)?).filter(|line| is_row(line)).take(LINES);
+        let mut below = first_rows.skip(1).map(|line| split(line, self.delimiter));
+        let is_parted = below.any(|row| holds_numbers(&row, self.delimiter));
         let whole = start.iter().rposition(|byte| *byte == b'\n').filter(|_| !is_parted)?;
         let start = start.get(..=whole)?;
         let made = tabbed(start);
-        let Self { preamble: (bytes, lines), .. } = Self::by_marks(&made, b"\t");
-        let table = made.get(bytes..)?;
-        let mut table = rows(table).filter(|line| is_row(line)).map(|line| split(line, b'\t'));
-        let header = table.next().filter(|header| header.len() > 1)?;
-        let mut below = table.take(LINES).filter(|row| !are_units(row)).peekable();
-        below.peek()?;
+        let Self { preamble: (bytes, before), .. } = Self::by_marks(&made, b"\t");
+        let (above, table) = made.split_at_checked(bytes)?;
+        let mut table = rows(table).filter(|line| is_row(line));
+        let is_marked = |line: &&[u8]| b",;|".iter().any(|mark| count(line, *mark) > 0);
+        let header = split(table.next().filter(|line| !is_marked(line))?, b'\t');
+        let below = table.take(LINES).map(|line| split(line, b'\t'));
+        let mut below = below.filter(|row| !are_units(row)).peekable();
+        below.peek().filter(|_| header.len() > 1 && !holds_numbers(&header, b'\t'))?;
         let is_table = below.all(|row| row.len() == header.len() && holds_numbers(&row, b'\t'));
         // The mark of a comment may stand before the header.
-        let line = made.get(..bytes)?.rsplit(|byte| *byte == b'\n').next().unwrap_or_default();
-        let before: usize = start
-            .split_inclusive(|byte| *byte == b'\n')
-            .take(usize::try_from(lines).ok()?)
-            .map(<[u8]>::len)
-            .sum();
-        let mark =
-            start.get(before..)?.iter().position(|byte| *byte == b'#').filter(|_| !line.is_empty());
-        let bytes = before + mark.map_or(0, |mark| mark + 1);
-        is_table.then_some(Self { delimiter: BLANK, preamble: (bytes, lines) })
+        let is_comment = above.last().is_some_and(|byte| *byte != b'\n');
+        let mut lines = start.split_inclusive(|byte| *byte == b'\n');
+        let skipped: usize =
+            lines.by_ref().take(usize::try_from(before).ok()?).map(<[u8]>::len).sum();
+        let mark = lines.next()?.iter().position(|byte| *byte == b'#').filter(|_| is_comment);
+        let bytes = skipped + mark.map_or(0, |mark| mark + 1);
+        is_table.then_some(Self { delimiter: BLANK, preamble: (bytes, before) })
     }
 
     /// The header in the last comment above the table, where that begins with numbers, as NumPy writes it:
