@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use tauscope::delay::{FirstLast, Settings, estimate_joint};
-use tauscope::experiment::{Experiment, ReadOptions};
+use tauscope::experiment::{Experiment, ReadOptions, Repair};
 
 use log::{Expected, Messy, SAME, clean, messy, plain};
 
@@ -38,7 +38,9 @@ fn read_file(log: &Messy) -> Experiment {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(log.name);
     fs::write(&path, &log.bytes).unwrap();
-    let options = ReadOptions { columns: log.columns.clone(), ..ReadOptions::default() };
+    // As the command line reads it.
+    let repair = Repair { joins_steps: true, ..Repair::default() };
+    let options = ReadOptions { columns: log.columns.clone(), repair, ..ReadOptions::default() };
     Experiment::read(&[path], &options)
 }
 

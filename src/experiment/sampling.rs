@@ -222,7 +222,8 @@ impl Repair {
 
     /// Whether nothing was asked for, so that what suits the log is done.
     pub(super) fn is_free(self) -> bool {
-        self == Self::default()
+        let Self { resample, fill_s, as_it_stands, joins_steps: _ } = self;
+        resample.is_none() && fill_s.is_none() && !as_it_stands
     }
 }
 

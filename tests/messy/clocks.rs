@@ -204,6 +204,26 @@ pub(crate) fn in_words() -> Vec<Messy> {
             read(1e-6, "times count from 2024-05-01"),
         ),
         messy(
+            "german_dates.csv",
+            with("time", &|k| date(k).replace("2024-05-01", "01.05.2024")),
+            read(1e-6, "times count from 2024-05-01"),
+        ),
+        messy(
+            "american_dates.csv",
+            with("time", &|k| date(k).replace("2024-05-01", "5/1/2024") + " PM"),
+            read(1e-6, "times count from 2024-05-01"),
+        ),
+        messy(
+            "dates_of_unknown_order.csv",
+            with("time", &|k| date(k).replace("2024-05-01", "5/1/2024")),
+            Expected::Refused(&["row 2", "`time`", "ISO 8601"]),
+        ),
+        messy(
+            "milliseconds_behind_a_colon.csv",
+            with("time", &|k| format!("10:00:{}0", seconds(k).replace('.', ":"))),
+            read(1e-6, "times count from 36000 s"),
+        ),
+        messy(
             "how_it_is_written.csv",
             with("Time [hh:mm:ss]", &|k| format!("00:00:{}", seconds(k))),
             SAME,

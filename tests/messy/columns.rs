@@ -1,5 +1,7 @@
 //! Signals, and the names and units of columns.
 
+use std::fmt::Write as _;
+
 use super::log::*;
 use tauscope::experiment::{ColumnMap, JointColumns};
 
@@ -16,6 +18,12 @@ pub(crate) fn sensors() -> Vec<Messy> {
     for row in spiky.iter_mut().skip(40).step_by(97) {
         row.output += 2.0 * (high - low);
     }
+    // The sensor has one value for two of the valve.
+    let mut seldom = format!("{HEADER}\n");
+    for (k, row) in clean().into_iter().enumerate() {
+        let output = if k % 2 == 0 { row.output.to_string() } else { String::new() };
+        writeln!(seldom, "{:.2},{},{output}", row.time, row.input).unwrap();
+    }
     vec![
         messy(
             "turns.csv",
@@ -23,6 +31,11 @@ pub(crate) fn sensors() -> Vec<Messy> {
             read(1e-6, "wraps at a turn of 360"),
         ),
         messy("spikes.csv", plain(&spiky), read(0.051, "")),
+        messy(
+            "seldom_measured.csv",
+            seldom,
+            read(0.051, "900 of 1800 rows have an output, and are taken as its samples"),
+        ),
     ]
 }
 

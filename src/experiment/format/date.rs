@@ -2,6 +2,7 @@
 
 use jiff::Timestamp;
 use jiff::civil::{Date, DateTime, Time};
+use jiff::tz::TimeZone;
 
 /// Seconds since 1970 of a date and time of ISO 8601, since midnight of a time of day, or of a time that
 /// has passed.
@@ -16,8 +17,9 @@ pub(super) fn seconds_of_date(text: &str) -> Option<f64> {
         return seconds.parse().ok();
     }
     let text = with_dashes(&text).unwrap_or(text);
-    let seconds =
-        |stamp: Timestamp| stamp.as_second() as f64 + f64::from(stamp.subsec_nanosecond()) * 1e-9;
+    if let Some(civil) = spelled(&text).and_then(|civil| civil.to_zoned(TimeZone::UTC).ok()) {
+        return Some(seconds(civil.timestamp()));
+    }
     if let Ok(stamp) = text.parse::<Timestamp>() {
         return Some(seconds(stamp));
     }
@@ -26,8 +28,24 @@ pub(super) fn seconds_of_date(text: &str) -> Option<f64> {
         Ok(time) if !text.contains('-') => Some(midnight.to_datetime(time)),
         _ => text.parse::<DateTime>().ok(),
     };
-    let zoned = civil.and_then(|civil| civil.to_zoned(jiff::tz::TimeZone::UTC).ok());
+    let zoned = civil.and_then(|civil| civil.to_zoned(TimeZone::UTC).ok());
     zoned.map_or_else(|| passed(&text), |zoned| Some(seconds(zoned.timestamp())))
+}
+
+fn seconds(stamp: Timestamp) -> f64 {
+    stamp.as_second() as f64 + f64::from(stamp.subsec_nanosecond()) * 1e-9
+}
+
+/// A date whose order its form tells: `01.03.2026 10:15:00`, with its day first, as everywhere where
+/// dots stand between, and `3/1/2026 10:15:00 AM`, with its month first, as everywhere where clocks count
+/// to twelve. Which comes first in `3/1/2026 10:15:00` is not known.
+fn spelled(text: &str) -> Option<DateTime> {
+    const FORMS: [&str; 4] =
+        ["%d.%m.%Y %H:%M:%S%.f", "%d.%m.%Y %H:%M", "%m/%d/%Y %I:%M:%S%.f %p", "%m/%d/%Y %I:%M %p"];
+    // Most times are numbers or begin with their year.
+    let is_split = text.as_bytes().iter().take(3).any(|byte| b"./".contains(byte));
+    let is_clock = is_split && text.contains(':');
+    is_clock.then(|| FORMS.iter().find_map(|form| DateTime::strptime(form, text).ok()))?
 }
 
 /// The date of ISO 8601 that `2026/03/01 10:15` and MATLAB's `01-Mar-2026 10:15` are.
@@ -57,7 +75,14 @@ fn passed(text: &str) -> Option<f64> {
         }
         None => (0, text),
     };
-    let (before, seconds) = clock.rsplit_once(':')?;
+    // Some loggers write milliseconds behind a colon, too.
+    let with_point = match clock.rsplit_once(':') {
+        Some((before, after)) if after.len() == 3 && before.matches(':').count() == 2 => {
+            format!("{before}.{after}")
+        }
+        _ => clock.to_owned(),
+    };
+    let (before, seconds) = with_point.rsplit_once(':')?;
     let (hours, minutes) = match before.split_once(':') {
         Some(parts) => parts,
         // `12:30` may be hours and minutes.
@@ -114,6 +139,25 @@ pub(super) fn days_since_1970(year: u16, month: u8, day: u8) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn dates_are_read_where_their_form_tells_day_from_month() {
+        let expected = Some(1_772_359_190.125);
+        for text in [
+            "2026-03-01T09:59:50.125",
+            "01.03.2026 09:59:50.125",
+            "1.3.2026 9:59:50,125",
+            "3/1/2026 9:59:50.125 AM",
+            "03/01/2026 09:59:50.125 am",
+        ] {
+            assert_eq!(seconds_of_date(text), expected, "{text}");
+        }
+        assert_eq!(seconds_of_date("3/1/2026 12:30 PM"), Some(1_772_368_200.0));
+        assert_eq!(seconds_of_date("09:59:50:125"), Some(35_990.125));
+        for text in ["3/1/2026 09:59:50.125", "01.13.2026 09:59:50", "09:59:50:12", "1.3.2026"] {
+            assert_eq!(seconds_of_date(text), None, "{text}");
+        }
+    }
 
     #[test]
     fn the_date_of_a_time_since_1970_is_known_and_of_another_is_not() {
