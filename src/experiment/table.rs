@@ -459,7 +459,9 @@ mod tests {
         let times = |values: &[f64]| Column { values: values.to_vec(), ..Column::default() };
         let trial = |label: &str, start, end| TrialRows { label: label.to_owned(), start, end };
         let mut rows = RowNumbers::default();
-        [3, 4, 6, 7].into_iter().for_each(|row| rows.push(row));
+        for row in [3, 4, 6, 7] {
+            rows.push(row);
+        }
         let table = |values: &[f64]| Table {
             source: Source { path: PathBuf::new(), bytes: 0, sha256: String::new() },
             rows: rows.clone(),
