@@ -47,8 +47,11 @@ def texts():
     trial = ["first"] * (ROWS // 2) + ['"the, second"'] * (ROWS // 2)
     clock = [f"2024-05-01T12:00:{value:05.2f}Z" for value in TIME]
     semicolons = "\ufeff# a log\nt;u;y\n" + rows(";", columns).replace(".", ",")
+    cells = [[f"{value:9.4f}" for value in column] for column in columns]
     files = {
         "plain": plain,
+        "blanks": "by hand\n\n  t [s]  a.input [V] \t a.output [deg]\n" + rows("  ", cells),
+        "newest_first": "time_s,a.input,a.output\n" + rows(",", [c[::-1] for c in columns]),
         "trials": "time_s,trial,a.input,a.output\n" + rows(",", [TIME, trial, INPUT, OUTPUT]),
         "clock": "timestamp,cmd,angle\n" + rows(",", [clock, INPUT, OUTPUT]),
         "semicolons": semicolons,

@@ -48,6 +48,9 @@ impl JointLayout {
 /// What every column of a log means.
 pub(super) struct Layout {
     pub(super) time: TimeSource,
+    /// Further columns of the name of the times, which must say the same: some programs write one for each
+    /// signal.
+    pub(super) time_again: Vec<usize>,
     pub(super) trial: Option<usize>,
     pub(super) joints: Vec<JointLayout>,
     /// Joints that were not asked for.
@@ -75,8 +78,9 @@ impl Layout {
             None => find_trial(head),
         };
         let time = find_time(&columns, map, period)?;
+        let time_again = if map.time.is_some() { Vec::new() } else { named_alike(head, time) };
         let (joints, others) = (Vec::new(), Vec::new());
-        let mut layout = Self { time, trial, joints, others, incomplete: Vec::new() };
+        let mut layout = Self { time, time_again, trial, joints, others, incomplete: Vec::new() };
         if map.joints.is_empty() {
             layout.add_native_joints(&columns)?;
         } else {
@@ -105,7 +109,9 @@ impl Layout {
                 joints.cloned().collect::<Vec<_>>()
             };
             let (joints, others) = (of_clock(&self.joints), of_clock(&self.others));
-            Self { time: self.time, trial: self.trial, joints, others, incomplete: Vec::new() }
+            let time_again = self.time_again.clone();
+            let (time, trial) = (self.time, self.trial);
+            Self { time, time_again, trial, joints, others, incomplete: Vec::new() }
         };
         clocks.into_iter().map(of).collect()
     }
@@ -137,6 +143,7 @@ impl Layout {
     /// Indices of all columns that hold numbers, each once.
     pub(super) fn numeric_columns(&self) -> Vec<usize> {
         let mut columns: Vec<usize> = self.time.column().into_iter().collect();
+        columns.extend(&self.time_again);
         for joint in self.joints.iter().chain(&self.others) {
             columns.extend([joint.input.column, joint.output.column]);
             columns.extend(joint.covariates.iter().map(|covariate| covariate.column));
@@ -264,7 +271,7 @@ fn find_time(
         (Some(period), None) => return Ok(TimeSource::Rows(period)),
         (None, _) => {}
     }
-    match one_time_column(columns)? {
+    match find_time_column(head) {
         Some(column) => times(head, column, None),
         None => Err(ReadError::NoTime { path: head.path.clone(), row: head.header_row }),
     }
@@ -334,9 +341,10 @@ pub(super) fn find_trial(head: &Head) -> Option<usize> {
     find_any(head, &TRIAL_NAMES)
 }
 
-/// The one time column: of two of a name it is not known which is meant.
-fn one_time_column(columns: &Columns<'_>) -> Result<Option<usize>, ReadError> {
-    let Some(index) = find_time_column(columns.head) else { return Ok(None) };
-    let text = columns.head.headers.get(index).map_or("", |header| &header.text);
-    columns.find(text).map(Some)
+/// The other columns that are named as that of the times is.
+fn named_alike(head: &Head, time: TimeSource) -> Vec<usize> {
+    let TimeSource::Times(column, _) = time else { return Vec::new() };
+    let text = head.headers.get(column).map_or("", |header| &header.text);
+    let alike = head.headers.iter().enumerate().filter(|(_, header)| header.text == text);
+    alike.map(|(index, _)| index).filter(|index| *index != column).collect()
 }

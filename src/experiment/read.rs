@@ -358,6 +358,7 @@ impl Experiment {
         stem: Option<&str>,
         repair: Repair,
     ) -> Result<(), ReadError> {
+        log.check_times_agree(layout.time, &layout.time_again)?;
         let trials = log.trials(stem);
         let (grids, notes) = log.grids(layout.time, &trials, repair)?;
         self.notes.extend(notes.iter().map(|note| format!("{}: {note}", log.head.path.display())));

@@ -136,9 +136,11 @@ pub(super) fn find_time_column(head: &Head) -> Option<usize> {
 pub(super) fn note_on_times(head: &Head, column: usize) -> Option<String> {
     /// Columns that are named.
     const MOST: usize = 3;
+    let text = &head.headers.get(column)?.text;
     let others = head.headers.iter().enumerate().filter(|(other, header)| {
         let is_within = *other > 0 && other + 1 < head.headers.len();
-        *other != column && (is_like_a_time(header) || header.name.is_empty() && is_within)
+        // Those of its name say the same.
+        header.text != *text && (is_like_a_time(header) || header.name.is_empty() && is_within)
     });
     let names: Vec<String> = others.map(|(other, header)| named(other, header)).collect();
     let header = head.headers.get(column)?;

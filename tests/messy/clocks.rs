@@ -138,6 +138,12 @@ pub(crate) fn which_times() -> Vec<Messy> {
     let warm = |k: usize| 35.0 + 0.1 * (k / 100) as f64;
     let signals = "boom.input,boom.output";
     vec![
+        // TwinCAT and LabVIEW write one for each signal.
+        messy(
+            "clock_for_each_signal.csv",
+            with(&format!("time_s,time_s,{signals}"), &|k| k as f64 * PERIOD),
+            SAME,
+        ),
         messy(
             "second_clock.csv",
             with(&format!("time_s,time_s.1,{signals}"), &half),
@@ -163,71 +169,82 @@ pub(crate) fn which_times() -> Vec<Messy> {
     ]
 }
 
+/// The clean log with the times of its rows in words.
+fn with(header: &str, time: impl Fn(usize) -> String) -> String {
+    let mut text = format!("{header},boom.input,boom.output\n");
+    for (k, row) in clean().iter().enumerate() {
+        writeln!(text, "{},{:.6},{:.6}", time(k), row.input, row.output).unwrap();
+    }
+    text
+}
+
+/// Seconds of a minute, with two digits behind the point.
+fn seconds(k: usize) -> String {
+    format!("{:02}.{:02}", k / 100 % 60, k % 100)
+}
+
 /// Times in words: dates, times of day, and times that have passed.
 pub(crate) fn in_words() -> Vec<Messy> {
-    let rows = clean();
-    let with = |header: &str, time: &dyn Fn(usize) -> String| {
-        let mut text = format!("{header},boom.input,boom.output\n");
-        for (k, row) in rows.iter().enumerate() {
-            writeln!(text, "{},{:.6},{:.6}", time(k), row.input, row.output).unwrap();
-        }
-        text
-    };
-    let seconds = |k: usize| format!("{:02}.{:02}", k / 100 % 60, k % 100);
-    let mixed = with("time_s", &|k| match k {
+    let mixed = with("time_s", |k| match k {
         617 => "2024-05-01 12:00:06.17".to_owned(),
         _ => format!("{:.2}", k as f64 * PERIOD),
     });
     vec![
         // A unit that a program writes into each header does not change what a date is.
-        messy("date_under_ms.csv", with("time [ms]", &date), read(1e-6, "times count from 2024")),
+        messy("date_under_ms.csv", with("time [ms]", date), read(1e-6, "times count from 2024")),
         messy(
             "time_of_day_under_min.csv",
-            with("time [min]", &|k| format!("10:00:{}", seconds(k))),
+            with("time [min]", |k| format!("10:00:{}", seconds(k))),
             read(1e-6, "times count from 36000 s"),
         ),
-        messy("pandas.csv", with("time", &|k| format!("0 days 00:00:{}", seconds(k))), SAME),
-        messy("minutes.csv", with("time", &|k| format!("00:{}", seconds(k))), SAME),
+        messy("pandas.csv", with("time", |k| format!("0 days 00:00:{}", seconds(k))), SAME),
+        messy("minutes.csv", with("time", |k| format!("00:{}", seconds(k))), SAME),
         messy(
             "more_than_a_day.csv",
-            with("time", &|k| format!("25:00:{}", seconds(k))),
+            with("time", |k| format!("25:00:{}", seconds(k))),
             read(1e-6, "times count from 90000 s"),
         ),
         messy(
             "matlab_durations.csv",
-            with("time", &|k| format!("{:.2} sec", k as f64 * PERIOD)),
+            with("time", |k| format!("{:.2} sec", k as f64 * PERIOD)),
             SAME,
         ),
         messy(
             "matlab_dates.csv",
-            with("time", &|k| date(k).replace("2024-05-01", "01-May-2024")),
+            with("time", |k| date(k).replace("2024-05-01", "01-May-2024")),
             read(1e-6, "times count from 2024-05-01"),
         ),
         messy(
+            "how_it_is_written.csv",
+            with("Time [hh:mm:ss]", |k| format!("00:00:{}", seconds(k))),
+            SAME,
+        ),
+        messy("date_among_numbers.csv", mixed, Expected::Refused(&["row 619", "`time_s`"])),
+    ]
+}
+
+/// Forms that are not those of ISO 8601.
+pub(crate) fn other_dates() -> Vec<Messy> {
+    vec![
+        messy(
             "german_dates.csv",
-            with("time", &|k| date(k).replace("2024-05-01", "01.05.2024")),
+            with("time", |k| date(k).replace("2024-05-01", "01.05.2024")),
             read(1e-6, "times count from 2024-05-01"),
         ),
         messy(
             "american_dates.csv",
-            with("time", &|k| date(k).replace("2024-05-01", "5/1/2024") + " PM"),
+            with("time", |k| date(k).replace("2024-05-01", "5/1/2024") + " PM"),
             read(1e-6, "times count from 2024-05-01"),
         ),
         messy(
             "dates_of_unknown_order.csv",
-            with("time", &|k| date(k).replace("2024-05-01", "5/1/2024")),
+            with("time", |k| date(k).replace("2024-05-01", "5/1/2024")),
             Expected::Refused(&["row 2", "`time`", "ISO 8601"]),
         ),
         messy(
             "milliseconds_behind_a_colon.csv",
-            with("time", &|k| format!("10:00:{}0", seconds(k).replace('.', ":"))),
+            with("time", |k| format!("10:00:{}0", seconds(k).replace('.', ":"))),
             read(1e-6, "times count from 36000 s"),
         ),
-        messy(
-            "how_it_is_written.csv",
-            with("Time [hh:mm:ss]", &|k| format!("00:00:{}", seconds(k))),
-            SAME,
-        ),
-        messy("date_among_numbers.csv", mixed, Expected::Refused(&["row 619", "`time_s`"])),
     ]
 }

@@ -7,7 +7,7 @@ use crate::experiment::format::date_of_seconds;
 use crate::experiment::origin::{Counting, origin_s};
 use crate::experiment::period::is_period;
 use crate::experiment::sampling::{Fault, Grid, Repair};
-use crate::experiment::table::TrialRows;
+use crate::experiment::table::{Column, TrialRows};
 use crate::experiment::time_column::TimeSource;
 use crate::units::SamplePeriod;
 
@@ -195,6 +195,31 @@ impl Log<'_> {
         let times: Vec<f64> = values.iter().map(|value| counting.seconds_of(*value)).collect();
         self.check_times(column, &times)?;
         Ok(Clock::Stamps(times))
+    }
+
+    /// Refuses columns of one name that say other times: it is not known which are meant.
+    pub(in crate::experiment) fn check_times_agree(
+        &self,
+        time: TimeSource,
+        again: &[usize],
+    ) -> Result<(), ReadError> {
+        let Some(first) = time.column().and_then(|column| self.column(column)) else {
+            return Ok(());
+        };
+        let is_same = |other: &Column| {
+            let mut pairs = first.values.iter().zip(&other.values);
+            first.values.len() == other.values.len()
+                && pairs.all(|(one, other)| one == other || one.is_nan() && other.is_nan())
+        };
+        let differs = |column: &&usize| !self.column(**column).is_some_and(is_same);
+        match again.iter().find(differs) {
+            Some(column) => Err(ReadError::DuplicateColumn {
+                path: self.head.path.clone(),
+                row: self.head.header_row,
+                column: self.header(*column),
+            }),
+            None => Ok(()),
+        }
     }
 
     /// Every row needs a time.
