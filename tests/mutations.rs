@@ -138,7 +138,7 @@ fn growing_logs_with_some_bytes_and_words_changed_say_what_the_whole_file_says()
     seeds.sort();
     for path in seeds {
         let seed = fs::read(&path).unwrap();
-        for number in 0..count(200) {
+        for number in 0..count(60) {
             let mut rng = ChaCha8Rng::seed_from_u64(number);
             // The first byte says how long the pieces are.
             let (length, text) = seed.split_first().unwrap();

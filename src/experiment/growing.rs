@@ -1,5 +1,6 @@
 //! A log of text that somebody else still writes: what has come is parsed once.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest as _, Sha256};
@@ -101,8 +102,12 @@ impl GrowingLog {
         if table.rows.is_empty() {
             return Err(ReadError::HeaderOnly { path: path() });
         }
+        let mut table = Cow::Borrowed(table);
+        if !self.options.repair.as_it_stands {
+            table.to_mut().oldest_first(layout.place_of_time(&numeric), &self.path);
+        }
         let budget = Budget::new(self.options.memory);
-        let log = Log { head, numeric: &numeric, table, budget: &budget };
+        let log = Log { head, numeric: &numeric, table: &table, budget: &budget };
         found.add_log(&log, &layout, None, self.options.repair)?;
         Ok(found)
     }
