@@ -32,6 +32,7 @@ fn uneven() -> Vec<Row> {
 /// Clocks that run, but not evenly.
 pub(crate) fn clocks() -> Vec<Messy> {
     let at = |k: usize| PERIOD * k as f64;
+    let newest_first: Vec<Row> = clean().into_iter().rev().collect();
     vec![
         messy(
             "jitter.csv",
@@ -55,6 +56,7 @@ pub(crate) fn clocks() -> Vec<Messy> {
             read(0.002, "the clock jitters by"),
         ),
         messy("uneven.csv", plain(&uneven()), read(0.055, "interpolated")),
+        messy("newest_first.csv", plain(&newest_first), read(1e-3, "the newest row is first")),
     ]
 }
 
@@ -77,7 +79,6 @@ pub(crate) fn jumps() -> Vec<Messy> {
     for k in 0..100 {
         mixed.swap(17 * k, 1799 - 3 * k);
     }
-    let newest_first: Vec<Row> = clean().into_iter().rev().collect();
     let still = timed(|k| at(if (870..901).contains(&k) { 870 } else { k }));
     let slower: Vec<Row> = clean()
         .into_iter()
@@ -96,7 +97,6 @@ pub(crate) fn jumps() -> Vec<Messy> {
         messy("row_twice.csv", plain(&twice), read(1e-3, "1 row is there twice")),
         messy("out_of_order.csv", plain(&swapped), read(1e-3, "out of order")),
         messy("far_out_of_order.csv", plain(&mixed), read(1e-3, "out of order")),
-        messy("newest_first.csv", plain(&newest_first), read(1e-3, "the newest row is first")),
         messy(
             "clock_rests.csv",
             plain(&still),

@@ -209,7 +209,7 @@ impl Log<'_> {
         let is_same = |other: &Column| {
             let mut pairs = first.values.iter().zip(&other.values);
             first.values.len() == other.values.len()
-                && pairs.all(|(one, other)| one == other || one.is_nan() && other.is_nan())
+                && pairs.all(|(one, other)| one.to_bits() == other.to_bits())
         };
         let differs = |column: &&usize| !self.column(**column).is_some_and(is_same);
         match again.iter().find(differs) {
