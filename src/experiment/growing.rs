@@ -96,7 +96,7 @@ impl GrowingLog {
             return Ok(found);
         }
         let numeric = layout.numeric_columns();
-        let (label, time, clock) = (layout.trial, layout.time.column(), layout.clock());
+        let (label, time, clock) = (layout.trial, layout.time_column(), layout.clock());
         let wanted = Wanted { head, numeric: &numeric, label, time, clock };
         let table = self.rows.read(&wanted, source)?;
         if table.rows.is_empty() {

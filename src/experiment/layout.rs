@@ -48,6 +48,9 @@ impl JointLayout {
 /// What every column of a log means.
 pub(super) struct Layout {
     pub(super) time: TimeSource,
+    /// A column of times that are not used, since a period was given; they say whether the newest row is
+    /// first.
+    pub(super) unused_time: Option<usize>,
     /// Further columns of the name of the times, which must say the same: some programs write one for each
     /// signal.
     pub(super) time_again: Vec<usize>,
@@ -79,8 +82,16 @@ impl Layout {
         };
         let time = find_time(&columns, map, period)?;
         let time_again = if map.time.is_some() { Vec::new() } else { named_alike(head, time) };
-        let (joints, others) = (Vec::new(), Vec::new());
-        let mut layout = Self { time, time_again, trial, joints, others, incomplete: Vec::new() };
+        let is_period = matches!(time, TimeSource::Rows(_));
+        let mut layout = Self {
+            time,
+            unused_time: find_time_column(head).filter(|_| is_period),
+            time_again,
+            trial,
+            joints: Vec::new(),
+            others: Vec::new(),
+            incomplete: Vec::new(),
+        };
         if map.joints.is_empty() {
             layout.add_native_joints(&columns)?;
         } else {
@@ -109,9 +120,13 @@ impl Layout {
                 joints.cloned().collect::<Vec<_>>()
             };
             let (joints, others) = (of_clock(&self.joints), of_clock(&self.others));
-            let time_again = self.time_again.clone();
-            let (time, trial) = (self.time, self.trial);
-            Self { time, time_again, trial, joints, others, incomplete: Vec::new() }
+            Self {
+                time_again: self.time_again.clone(),
+                joints,
+                others,
+                incomplete: Vec::new(),
+                ..self
+            }
         };
         clocks.into_iter().map(of).collect()
     }
@@ -142,7 +157,7 @@ impl Layout {
 
     /// Indices of all columns that hold numbers, each once.
     pub(super) fn numeric_columns(&self) -> Vec<usize> {
-        let mut columns: Vec<usize> = self.time.column().into_iter().collect();
+        let mut columns: Vec<usize> = self.time_column().into_iter().collect();
         columns.extend(&self.time_again);
         for joint in self.joints.iter().chain(&self.others) {
             columns.extend([joint.input.column, joint.output.column]);
@@ -153,9 +168,14 @@ impl Layout {
         columns
     }
 
+    /// The column of the times, used or not.
+    pub(super) fn time_column(&self) -> Option<usize> {
+        self.time.column().or(self.unused_time)
+    }
+
     /// Where the times are among the `numeric` columns.
     pub(super) fn place_of_time(&self, numeric: &[usize]) -> Option<usize> {
-        self.time.column().and_then(|column| numeric.binary_search(&column).ok())
+        self.time_column().and_then(|column| numeric.binary_search(&column).ok())
     }
 
     fn add_mapped_joints(

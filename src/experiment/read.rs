@@ -342,7 +342,7 @@ impl Experiment {
             return Ok(());
         }
         let numeric = layout.numeric_columns();
-        let mut table = table.read(&numeric, layout.trial, layout.time.column(), layout.clock())?;
+        let mut table = table.read(&numeric, layout.trial, layout.time_column(), layout.clock())?;
         if !repair.as_it_stands {
             table.oldest_first(layout.place_of_time(&numeric), &head.path);
         }

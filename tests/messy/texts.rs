@@ -119,6 +119,9 @@ pub(crate) fn programs() -> Vec<Messy> {
     ]
 }
 
+/// Names as some programs write them, with a blank behind each mark.
+const QUOTED: &str = "\"time_s\", \"boom.input [V]\", \"boom.output [deg]\"";
+
 /// Marks between cells behind the last one, and within numbers.
 pub(crate) fn marks() -> Vec<Messy> {
     let rows = clean();
@@ -136,6 +139,13 @@ pub(crate) fn marks() -> Vec<Messy> {
         ),
         messy("quoted_commas.csv", table(HEADER, &rows, ",", quoted), SAME),
         messy("numpy.csv", format!("# {all}"), SAME),
+        messy("numpy_below_words.csv", format!("Rig 7\n# by hand\n# {all}"), SAME),
+        messy("quoted_behind_blanks.csv", all.replacen(HEADER, QUOTED, 1), SAME),
+        messy(
+            "cell_without_a_name.csv",
+            format!("{HEADER},\n{}", below.replace('\n', ",5\n")),
+            Expected::Refused(&["row 1", "4 cells", "3 names"]),
+        ),
     ]
 }
 
@@ -151,6 +161,8 @@ pub(crate) fn blanks() -> Vec<Messy> {
         messy("aligned.txt", format!("Rig 7, by hand\n\n{aligned}"), SAME),
         messy("units.dat", format!("t [s]  boom.input [V]   boom.output [deg]\n{below}"), SAME),
         messy("units_below.dat", format!("t  boom.input boom.output\n s V   deg\n{below}"), SAME),
+        messy("behind_a_mark.txt", format!("\u{feff}  {aligned}"), SAME),
+        messy("numpy_behind_a_mark.txt", format!("\u{feff}# {all}"), SAME),
         messy("decimal_commas.txt", aligned.replace('.', ",").replace("boom,", "boom."), SAME),
     ]
 }

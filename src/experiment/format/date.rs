@@ -12,7 +12,7 @@ pub(super) fn seconds_of_date(text: &str) -> Option<f64> {
     if !text.starts_with(|first: char| first.is_ascii_digit() || "+-".contains(first)) {
         return None;
     }
-    let text = text.replace(',', ".");
+    let text = with_point(&text.replace(',', "."));
     if let Some(seconds) = text.strip_suffix(" sec") {
         return seconds.parse().ok();
     }
@@ -40,12 +40,28 @@ fn seconds(stamp: Timestamp) -> f64 {
 /// dots stand between, and `3/1/2026 10:15:00 AM`, with its month first, as everywhere where clocks count
 /// to twelve. Which comes first in `3/1/2026 10:15:00` is not known.
 fn spelled(text: &str) -> Option<DateTime> {
-    const FORMS: [&str; 4] =
-        ["%d.%m.%Y %H:%M:%S%.f", "%d.%m.%Y %H:%M", "%m/%d/%Y %I:%M:%S%.f %p", "%m/%d/%Y %I:%M %p"];
-    // Most times are numbers or begin with their year.
-    let is_split = text.as_bytes().iter().take(3).any(|byte| b"./".contains(byte));
-    let is_clock = is_split && text.contains(':');
-    is_clock.then(|| FORMS.iter().find_map(|form| DateTime::strptime(form, text).ok()))?
+    const DAY_FIRST: [&str; 2] = ["%d.%m.%Y %H:%M:%S%.f", "%d.%m.%Y %H:%M"];
+    const MONTH_FIRST: [&str; 2] = ["%m/%d/%Y %I:%M:%S%.f %p", "%m/%d/%Y %I:%M %p"];
+    let (date, _) = text.split_once(' ')?;
+    let (mark, forms) = if date.contains('.') { ('.', DAY_FIRST) } else { ('/', MONTH_FIRST) };
+    // Of two digits it is not known which century they are of.
+    date.rsplit_once(mark).filter(|(_, year)| year.len() == 4)?;
+    forms.iter().find_map(|form| DateTime::strptime(form, text).ok())
+}
+
+/// `10:00:01.250`, with the milliseconds behind a point that some loggers write behind a colon.
+fn with_point(text: &str) -> String {
+    let clock = text
+        .rsplit_once(' ')
+        .filter(|(_, half)| half.eq_ignore_ascii_case("am") || half.eq_ignore_ascii_case("pm"));
+    let clock = clock.map_or(text, |(clock, _)| clock);
+    match clock.rsplit_once(':') {
+        Some((before, millis)) if millis.len() == 3 && before.matches(':').count() == 2 => {
+            let behind = text.get(clock.len()..).unwrap_or_default();
+            format!("{before}.{millis}{behind}")
+        }
+        _ => text.to_owned(),
+    }
 }
 
 /// The date of ISO 8601 that `2026/03/01 10:15` and MATLAB's `01-Mar-2026 10:15` are.
@@ -75,14 +91,7 @@ fn passed(text: &str) -> Option<f64> {
         }
         None => (0, text),
     };
-    // Some loggers write milliseconds behind a colon, too.
-    let with_point = match clock.rsplit_once(':') {
-        Some((before, after)) if after.len() == 3 && before.matches(':').count() == 2 => {
-            format!("{before}.{after}")
-        }
-        _ => clock.to_owned(),
-    };
-    let (before, seconds) = with_point.rsplit_once(':')?;
+    let (before, seconds) = clock.rsplit_once(':')?;
     let (hours, minutes) = match before.split_once(':') {
         Some(parts) => parts,
         // `12:30` may be hours and minutes.
@@ -154,7 +163,11 @@ mod tests {
         }
         assert_eq!(seconds_of_date("3/1/2026 12:30 PM"), Some(1_772_368_200.0));
         assert_eq!(seconds_of_date("09:59:50:125"), Some(35_990.125));
-        for text in ["3/1/2026 09:59:50.125", "01.13.2026 09:59:50", "09:59:50:12", "1.3.2026"] {
+        assert_eq!(seconds_of_date("01.03.2026 09:59:50:125"), expected);
+        assert_eq!(seconds_of_date("3/1/2026 9:59:50:125 AM"), expected);
+        for text in
+            ["3/1/2026 09:59:50.125", "01.13.2026 09:59:50", "01.03.26 09:59:50", "09:59:50:12"]
+        {
             assert_eq!(seconds_of_date(text), None, "{text}");
         }
     }

@@ -22,6 +22,8 @@ const DELIMITERS: [u8; 4] = [b'|', b'\t', b';', b','];
 /// What ends the lines before a table of LabVIEW (`.lvm`): once for the file, once for the table.
 const LABVIEW: (&[u8], &[u8]) = (b"LabVIEW Measurement", b"***End_of_Header***");
 
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Lines that are looked at to separate the table from what precedes it.
 const LINES: usize = 200;
 
@@ -55,12 +57,15 @@ impl Spelling {
     /// parts that.
     fn by_blanks(self, start: &[u8]) -> Option<Self> {
         let (bytes, _) = self.preamble;
-        let first_rows = rows(start.get(bytes..)?).filter(|line| is_row(line)).take(LINES);
-        let mut below = first_rows.skip(1).map(|line| split(line, self.delimiter));
-        let is_parted = below.any(|row| holds_numbers(&row, self.delimiter));
+        let mut by_marks = rows(start.get(bytes..)?).filter(|line| is_row(line)).take(LINES);
+        let by_marks = by_marks.by_ref().map(|line| split(line, self.delimiter));
+        let mut are_numbers = by_marks.map(|row| holds_numbers(&row, self.delimiter));
+        // A decimal comma parts all rows but the header.
+        let is_parted = !are_numbers.next()? && are_numbers.any(|is_of_numbers| is_of_numbers);
         let whole = start.iter().rposition(|byte| *byte == b'\n').filter(|_| !is_parted)?;
         let start = start.get(..=whole)?;
-        let made = tabbed(start);
+        let text = start.strip_prefix(BYTE_ORDER_MARK).unwrap_or(start);
+        let made = tabbed(text);
         let Self { preamble: (bytes, before), .. } = Self::by_marks(&made, b"\t");
         let (above, table) = made.split_at_checked(bytes)?;
         let mut table = rows(table).filter(|line| is_row(line));
@@ -72,34 +77,39 @@ impl Spelling {
         let is_table = below.all(|row| row.len() == header.len() && holds_numbers(&row, b'\t'));
         // The mark of a comment may stand before the header.
         let is_comment = above.last().is_some_and(|byte| *byte != b'\n');
-        let mut lines = start.split_inclusive(|byte| *byte == b'\n');
-        let skipped: usize =
-            lines.by_ref().take(usize::try_from(before).ok()?).map(<[u8]>::len).sum();
-        let mark = lines.next()?.iter().position(|byte| *byte == b'#').filter(|_| is_comment);
+        let mut lines = text.split_inclusive(|byte| *byte == b'\n');
+        let above = lines.by_ref().take(usize::try_from(before).ok()?);
+        let skipped: usize = above.map(<[u8]>::len).sum::<usize>() + (start.len() - text.len());
+        let header = lines.next()?;
+        let row = lines.find(|line| is_row(line) && line.iter().any(u8::is_ascii_digit));
+        let mark = header.iter().position(|byte| *byte == b'#').filter(|_| is_comment);
         let bytes = skipped + mark.map_or(0, |mark| mark + 1);
-        is_table.then_some(Self { delimiter: BLANK, preamble: (bytes, before) })
+        let is_shifted = mark.is_none() && row.is_some_and(|row| is_shifted(header, row));
+        (is_table && !is_shifted).then_some(Self { delimiter: BLANK, preamble: (bytes, before) })
     }
 
     /// The header in the last comment above the table, where that begins with numbers, as NumPy writes it:
     /// `# time,u,y`.
     fn at_marked_header(self, start: &[u8]) -> Self {
         const MARK: &[u8] = b"#";
-        let (bytes, before) = self.preamble;
-        let lines: Vec<&[u8]> = rows(start.get(bytes..).unwrap_or_default()).take(LINES).collect();
-        let first = lines.iter().position(|line| is_row(line)).unwrap_or(0);
-        let (above, from_first) = lines.split_at(first);
-        let (Some(row), Some((comment, above))) = (from_first.first(), above.split_last()) else {
-            return self;
+        let found = || {
+            let (bytes, _) = self.preamble;
+            let lines = rows(start.get(bytes..)?).take(LINES);
+            let comments = lines.take_while(|line| !is_row(line)).map(<[u8]>::len);
+            let (above, table) = start.split_at_checked(bytes + comments.sum::<usize>())?;
+            let comment = above.split_inclusive(|byte| *byte == b'\n').next_back()?;
+            let names = comment.strip_prefix(BYTE_ORDER_MARK).unwrap_or(comment);
+            let names = names.strip_prefix(MARK)?;
+            let cells = split(names, self.delimiter);
+            let row = split(rows(table).next()?, self.delimiter);
+            let is_name = |cell: &[u8]| parse_time(cell.trim_ascii(), self.delimiter).is_err();
+            let is_header =
+                cells.len() > 1 && cells.len() == row.len() && cells.iter().all(is_name);
+            let before = line_ends(&[above.get(..above.len() - comment.len())?]);
+            let preamble = (above.len() - names.len(), before);
+            (is_header && holds_numbers(&row, self.delimiter)).then_some(Self { preamble, ..self })
         };
-        let row = split(row, self.delimiter);
-        let names = split(comment.strip_prefix(MARK).unwrap_or_default(), self.delimiter);
-        let is_name = |cell: &[u8]| parse_time(cell.trim_ascii(), self.delimiter).is_err();
-        let is_header = names.len() > 1 && names.len() == row.len() && names.iter().all(is_name);
-        if !is_header || !holds_numbers(&row, self.delimiter) {
-            return self;
-        }
-        let skipped: usize = above.iter().map(|line| line.len()).sum();
-        Self { preamble: (bytes + skipped + MARK.len(), before + line_ends(above)), ..self }
+        found().unwrap_or(self)
     }
 
     /// The table as rows of one width, with what is shorter or longer before it, parted by one of `marks`.
@@ -107,7 +117,7 @@ impl Spelling {
         /// Rows that are not parted alike by chance.
         const MANY: usize = 5;
         let plain = Self { delimiter: sniff_delimiter(start, marks), preamble: (0, 0) };
-        let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+        let text = start.strip_prefix(BYTE_ORDER_MARK).unwrap_or(start);
         // The last line may be cut off.
         let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
         let lines: Vec<&[u8]> = rows(text.get(..whole).unwrap_or_default()).take(LINES).collect();
@@ -180,7 +190,7 @@ impl Spelling {
 /// Where the table of a log of LabVIEW begins, in bytes and in lines.
 fn behind_labview(start: &[u8]) -> Option<(usize, u64)> {
     let (first, end) = LABVIEW;
-    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    let text = start.strip_prefix(BYTE_ORDER_MARK).unwrap_or(start);
     let lines: Vec<&[u8]> = rows(text).collect();
     lines.first().filter(|line| line.starts_with(first))?;
     // One for the file and one for its first table: of more tables the next header is a row that is wrong.
@@ -209,6 +219,25 @@ fn rows(text: &[u8]) -> impl Iterator<Item = &[u8]> {
         rest = behind;
         Some(row)
     })
+}
+
+/// Whether the first cell of a `row` between blanks has no name above it, and its second one the first
+/// name of the `header`: the name of the last column has nothing below it.
+fn is_shifted(header: &[u8], row: &[u8]) -> bool {
+    let is_blank = |byte: &u8| b" \t".contains(byte);
+    let word = |line: &[u8], from: usize| {
+        let rest = line.get(from..)?;
+        let first = from + rest.iter().position(|byte| !is_blank(byte))?;
+        let length = line.get(first..)?.iter().position(is_blank)?;
+        Some((first, first + length))
+    };
+    let shifted = || {
+        let (name, name_end) = word(header, 0)?;
+        let (_, end) = word(row, 0)?;
+        let (second, _) = word(row, end)?;
+        Some(end < name && second < name_end)
+    };
+    shifted().unwrap_or(false)
 }
 
 fn line_ends(rows: &[&[u8]]) -> u64 {
@@ -312,7 +341,7 @@ fn count(line: &[u8], delimiter: u8) -> usize {
 
 /// The one of `marks` that is most frequent in the first line that is no comment.
 fn sniff_delimiter(start: &[u8], marks: &[u8]) -> u8 {
-    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    let text = start.strip_prefix(BYTE_ORDER_MARK).unwrap_or(start);
     let line = text.split(|&byte| byte == b'\n').find(|line| is_row(line)).unwrap_or_default();
     let counts = marks.iter().map(|delimiter| (*delimiter, count(line, *delimiter)));
     // The comma is last, so that it wins when nothing is found.
@@ -404,11 +433,15 @@ mod tests {
             let expected = Spelling { delimiter: BLANK, preamble: (before.len(), lines) };
             assert_eq!(found, expected, "{before:?} {header:?}");
         }
+        let marked = format!("\u{feff}  t u y\n{rows}");
+        let behind_mark = Spelling { delimiter: BLANK, preamble: (3, 0) };
+        assert_eq!(Spelling::of(marked.as_bytes(), None), behind_mark);
         // Names of several words, dates and marks between cells make other tables.
         for text in [
             format!("time in s  u y\n{rows}"),
             "time u y\n2024-05-01 12:00:00 1 2\n2024-05-01 12:00:01 1 2\n".to_owned(),
             "t s;u V\n0 1\n0 2\n".to_owned(),
+            "     t  u  y note\n0 0.0  1  2\n1 0.1  1  2\n".to_owned(),
         ] {
             assert!(!Spelling::of(text.as_bytes(), None).is_of_blanks(), "{text:?}");
         }

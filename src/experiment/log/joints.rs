@@ -12,7 +12,7 @@ use crate::experiment::sampling::{Grid, Piece, Repair, Signals};
 use crate::experiment::table::{Coarse, TrialRows};
 use crate::experiment::time_column::TimeSource;
 use crate::experiment::wrap::Wrap;
-use crate::numerics::to_digits_by;
+use crate::numerics::{median, to_digits_by};
 
 /// Memory of a sample of a signal: the number as it was read, on its grid and in its trial, and
 /// what is made of it until its delays are known.
@@ -34,7 +34,10 @@ impl Log<'_> {
     ) -> Result<(Joint, Vec<String>), ReadError> {
         self.check_joint(layout, repair)?;
         let (own, mut notes) = match self.sparse_rows(layout, trials, repair) {
-            Some(rows) => self.sparse_grids(layout, trials, rows, time)?,
+            Some(rows) => match self.filled_grids(layout, trials, &rows, time, repair)? {
+                Some((grids, notes)) => (Some(grids), notes),
+                None => self.sparse_grids(layout, trials, rows, time)?,
+            },
             None => (None, self.missing_notes(layout)),
         };
         notes.extend(self.coarse_notes(layout));
@@ -158,6 +161,41 @@ impl Log<'_> {
         };
         let is_sparse = repair.is_free() && missing > SPARSE * output.len() as f64;
         is_sparse.then(|| trials.iter().map(measured).collect())
+    }
+
+    /// Grids of all rows, between which an output that only `rows` have is interpolated, so that steps
+    /// of the input keep their times. `None` where rows of one time complete one another.
+    fn filled_grids(
+        &self,
+        layout: &JointLayout,
+        trials: &[TrialRows],
+        rows: &[Vec<usize>],
+        time: TimeSource,
+        repair: Repair,
+    ) -> Result<Option<(Vec<Grid>, Vec<String>)>, ReadError> {
+        /// Times the usual distance of two outputs beyond which nothing is known between them (chosen).
+        const LONGEST: f64 = 3.0;
+        let Clock::Stamps(times) = self.times(time)? else { return Ok(None) };
+        let of_trials = trials.iter().filter_map(|trial| times.get(trial.start..trial.end));
+        let increase = |times: &[f64]| times.windows(2).all(|pair| pair[0] < pair[1]);
+        if !of_trials.into_iter().all(increase) {
+            return Ok(None);
+        }
+        let apart = |pair: &[usize]| Some(times.get(pair[1])? - times.get(pair[0])?);
+        let apart: Vec<f64> =
+            rows.iter().flat_map(|rows| rows.windows(2).filter_map(apart)).collect();
+        let Some(usual_s) = median(&apart) else { return Ok(None) };
+        let repair = Repair { fill_s: Some(LONGEST * usual_s), ..repair };
+        let (grids, _) = self.grids(time, trials, repair)?;
+        let count: usize = rows.iter().map(Vec::len).sum();
+        let note = format!(
+            "joint `{}`: {count} of {} rows have an output, which is interpolated between them, so that \
+             steps of the input keep their times; what follows from its noise, as intervals, takes all \
+             samples for measured",
+            layout.name,
+            self.table.rows.len()
+        );
+        Ok(Some((grids, vec![note])))
     }
 
     /// Grids of the rows with an output, each trial's own.

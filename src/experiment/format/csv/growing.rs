@@ -7,7 +7,7 @@ use super::super::blanks::tabbed;
 use super::super::spelling::Spelling;
 use super::super::text::SNIFFED_BYTES;
 use super::gathered::Gathered;
-use super::header::{check_header_size, check_parted, describes, head};
+use super::header::{check_header_size, check_last_name, check_parted, describes, head};
 use super::lines::{Piece, Place, Taken, each};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
@@ -102,6 +102,7 @@ impl GrowingRows {
                 above.push((record.clone(), *place));
                 return Ok(ControlFlow::Continue(Taken::Done));
             }
+            check_last_name(known, record, place.row)?;
             below = true;
             Ok(ControlFlow::Break(Taken::Held))
         };

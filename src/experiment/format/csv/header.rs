@@ -48,6 +48,36 @@ pub(super) fn check_parted(head: &Head, first: &csv::ByteRecord) -> Result<(), R
     })
 }
 
+/// A name without the quotation marks that a blank before them makes part of the cell.
+fn unquoted(cell: &str) -> &str {
+    let behind = cell.trim().strip_prefix('"');
+    behind.and_then(|name| name.strip_suffix('"')).unwrap_or(cell)
+}
+
+/// Refuses a table whose first row of numbers, `first`, has one cell more than there are names: the header
+/// ends with a mark, and it is not known which cell is too many.
+pub(super) fn check_last_name(
+    head: &Head,
+    first: &csv::ByteRecord,
+    row: u64,
+) -> Result<(), ReadError> {
+    let (cells, names) = (head.headers.len(), head.headers.len().saturating_sub(1));
+    let is_nameless = names > 0 && head.headers.last().is_some_and(|last| last.text.is_empty());
+    let is_filled = first.get(names).is_some_and(|cell| !cell.trim_ascii().is_empty());
+    if !is_nameless || first.len() != cells || !is_filled {
+        return Ok(());
+    }
+    let header = head.header_row;
+    Err(ReadError::Format {
+        path: head.path.clone(),
+        format: "a table of text",
+        reason: format!(
+            "row {header} has {names} names and a mark behind the last, and row {row} has {cells} cells"
+        ),
+        remedy: "name each column",
+    })
+}
+
 /// Rows of words that may stand between the header and the first row of numbers.
 const MOST_ABOVE: usize = 3;
 
@@ -68,7 +98,9 @@ pub(super) fn describes(
     for (column, (header, cell)) in head.headers.iter_mut().zip(record).enumerate() {
         let unit = bare_unit(&String::from_utf8_lossy(cell));
         let is_of_time = time == Some(column) && is_time(&unit);
-        let is_meant = are_all_units && !unit.is_empty() || is_unit(&unit) || is_of_time;
+        // The times of a table that says `-` below them are in words, or in seconds.
+        let is_none = unit.is_empty() || time == Some(column) && unit == "-";
+        let is_meant = are_all_units && !is_none || is_unit(&unit) && !is_none || is_of_time;
         if header.unit.is_none() && is_meant {
             header.unit = Some(unit);
         }
@@ -84,7 +116,7 @@ pub(super) fn head(
 ) -> Result<Head, ReadError> {
     let text = |(cell, column): (&[u8], usize)| {
         let not_utf8 = |_| ReadError::NotUtf8 { path: path.to_owned(), row: header_row, column };
-        std::str::from_utf8(cell).map(Header::parse).map_err(not_utf8)
+        std::str::from_utf8(cell).map(unquoted).map(Header::parse).map_err(not_utf8)
     };
     let headers = record.iter().zip(1..).map(text).collect::<Result<_, _>>()?;
     Ok(Head { path: path.to_owned(), headers, header_row })

@@ -14,7 +14,7 @@ use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
 use gathered::{Gathered, memory_of};
-use header::{check_header_size, check_parted, describes, head};
+use header::{check_header_size, check_last_name, check_parted, describes, head};
 use lines::{LineEnds, Lines, Place, next, place_just_read, reader};
 
 pub(in crate::experiment) use growing::GrowingRows;
@@ -46,7 +46,7 @@ pub(super) fn table(
     budget: Budget,
 ) -> Result<OpenTable, ReadError> {
     let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-    let spelling = Spelling::of(start, delimiter);
+    let (spelling, is_text) = (Spelling::of(start, delimiter), delimiter.is_none());
     let (delimiter, (before, lines)) = (spelling.mark(), spelling.preamble);
     io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink()).map_err(io_error)?;
     if spelling.is_of_blanks() {
@@ -70,6 +70,10 @@ pub(super) fn table(
         if describes(&mut head, &record, delimiter, above.len()) {
             above.push(row);
         } else {
+            // Sheets say which cell is of which column.
+            if is_text {
+                check_last_name(&head, &record, row.1.row)?;
+            }
             first = Some(row);
         }
     }
