@@ -315,7 +315,7 @@ fn on_grid(signals: &Signals, first: usize, places: &[usize]) -> Signals {
 }
 
 /// Replaces each NaN by the number before it, the first ones by the first number.
-fn hold(values: &mut [f64]) {
+pub(super) fn hold(values: &mut [f64]) {
     let first = values.iter().find(|value| !value.is_nan()).copied();
     let mut last = first.unwrap_or(f64::NAN);
     for value in values {

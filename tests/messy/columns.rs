@@ -32,6 +32,11 @@ pub(crate) fn sensors() -> Vec<Messy> {
         ),
         messy("spikes.csv", plain(&spiky), read(0.051, "")),
         messy(
+            "seldom_measured_by_other_names.csv",
+            seldom.replacen(HEADER, "time,u_boom,y_boom", 1),
+            read(0.021, "boom (input `u_boom`, output `y_boom`)"),
+        ),
+        messy(
             "seldom_measured.csv",
             seldom,
             read(0.021, "900 of 1800 rows have an output, which is interpolated between them"),

@@ -139,6 +139,7 @@ pub(crate) fn marks() -> Vec<Messy> {
         ),
         messy("quoted_commas.csv", table(HEADER, &rows, ",", quoted), SAME),
         messy("numpy.csv", format!("# {all}"), SAME),
+        messy("numpy_behind_a_mark.csv", format!("\u{feff}# {all}"), SAME),
         messy("numpy_below_words.csv", format!("Rig 7\n# by hand\n# {all}"), SAME),
         messy("quoted_behind_blanks.csv", all.replacen(HEADER, QUOTED, 1), SAME),
         messy(

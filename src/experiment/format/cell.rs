@@ -1,6 +1,6 @@
 //! Cells of a text: numbers, times, and what stands for a missing value.
 
-use super::date::seconds_of_date;
+use super::date::{seconds_of_compact_date, seconds_of_date};
 use crate::experiment::table::BadCell;
 
 /// What programs write for a value that is missing, in lower case.
@@ -56,6 +56,10 @@ pub(super) enum Time {
 
 /// The time in a cell.
 pub(super) fn parse_time(cell: &[u8], delimiter: u8) -> Result<Time, BadCell> {
+    // As a number it would be some thousand years, in steps that a double does not have.
+    if let Some(seconds) = std::str::from_utf8(cell).ok().and_then(seconds_of_compact_date) {
+        return Ok(Time::Written(seconds));
+    }
     let number = parse_cell(cell, delimiter).map(Time::Number);
     let Err(BadCell::Text(text)) = &number else { return number };
     seconds_of_date(text).map(Time::Written).map_or(number, Ok)
@@ -180,6 +184,8 @@ mod tests {
         }
         for (text, seconds) in [
             ("12:00:00.5", 43_200.5),
+            ("20240501120000250", 1_714_564_800.25),
+            ("20240501120000.25", 1_714_564_800.25),
             ("26:00:00.25", 93_600.25),
             ("00:01.5", 1.5),
             ("1.5 sec", 1.5),

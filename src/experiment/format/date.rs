@@ -49,6 +49,22 @@ fn spelled(text: &str) -> Option<DateTime> {
     forms.iter().find_map(|form| DateTime::strptime(form, text).ok())
 }
 
+/// Seconds since 1970 of `20260301101500`, or with milliseconds, `20260301101500120`. Counts of seconds,
+/// ms, µs and ns since 1970 have 10, 13, 16 and 19 digits.
+pub(super) fn seconds_of_compact_date(text: &str) -> Option<f64> {
+    let (whole, part) = text.split_once(['.', ',']).unwrap_or((text, ""));
+    let is_date = [14, 17].contains(&whole.len()) && ["19", "20"].contains(&whole.get(..2)?);
+    let is_number = |digits: &str| digits.bytes().all(|digit| digit.is_ascii_digit());
+    if !is_date || !is_number(whole) || !is_number(part) {
+        return None;
+    }
+    let (seconds_of, millis) = whole.split_at_checked(14)?;
+    let civil =
+        DateTime::strptime("%Y%m%d%H%M%S", seconds_of).ok()?.to_zoned(TimeZone::UTC).ok()?;
+    let behind: f64 = format!("0.{millis}{part}").parse().ok()?;
+    Some(seconds(civil.timestamp()) + behind)
+}
+
 /// `10:00:01.250`, with the milliseconds behind a point that some loggers write behind a colon.
 fn with_point(text: &str) -> String {
     let clock = text

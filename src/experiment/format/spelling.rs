@@ -288,6 +288,7 @@ pub(super) fn is_over_lines(record: &csv::ByteRecord) -> bool {
 }
 
 fn is_row(line: &[u8]) -> bool {
+    let line = line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line);
     !line.starts_with(b"#") && !line.trim_ascii().is_empty()
 }
 

@@ -1,5 +1,6 @@
 //! A column of numbers as a survey sees it, and whether one follows another.
 
+use crate::experiment::sampling::hold;
 use crate::experiment::table::Column;
 
 /// A column of numbers.
@@ -19,8 +20,16 @@ impl Signal {
         if column.error.is_some() || column.values.len() < 2 {
             return None;
         }
-        let values = column.values.clone();
-        let pairs = values.windows(2).filter(|pair| pair.iter().all(|value| !value.is_nan()));
+        /// Part of the rows without a value above which a column has few of its own.
+        const SPARSE: f64 = 0.3;
+        let mut values = column.values.clone();
+        let known: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
+        let is_sparse = (known.len() as f64) < (1.0 - SPARSE) * values.len() as f64;
+        if is_sparse {
+            hold(&mut values);
+        }
+        let pairs = if is_sparse { &known } else { &values }.windows(2);
+        let pairs = pairs.filter(|pair| pair.iter().all(|value| !value.is_nan()));
         #[expect(clippy::float_cmp, reason = "whether a value is held")]
         let (all, changes) = pairs.fold((0_usize, 0_usize), |(all, changes), pair| {
             (all + 1, changes + usize::from(pair[0] != pair[1]))
