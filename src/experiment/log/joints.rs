@@ -22,6 +22,9 @@ const SAMPLE_SIZE: usize = 8 * size_of::<f64>();
 /// spare, and its allocations.
 const TRIAL_SIZE: usize = 2 * size_of::<Trial>() + 128;
 
+/// Grids of a joint, where they are not those of its log, and what should be known of them.
+type OwnGrids = (Option<Vec<Grid>>, Vec<String>);
+
 impl Log<'_> {
     /// A joint, and what should be known of how it was read.
     pub(in crate::experiment) fn joint(
@@ -35,7 +38,7 @@ impl Log<'_> {
         self.check_joint(layout, repair)?;
         let (own, mut notes) = match self.sparse_rows(layout, trials, repair) {
             Some(rows) => match self.filled_grids(layout, trials, &rows, time, repair)? {
-                Some((grids, notes)) => (Some(grids), notes),
+                Some(own) => own,
                 None => self.sparse_grids(layout, trials, rows, time)?,
             },
             None => (None, self.missing_notes(layout)),
@@ -172,7 +175,7 @@ impl Log<'_> {
         rows: &[Vec<usize>],
         time: TimeSource,
         repair: Repair,
-    ) -> Result<Option<(Vec<Grid>, Vec<String>)>, ReadError> {
+    ) -> Result<Option<OwnGrids>, ReadError> {
         /// Times the usual distance of two outputs beyond which nothing is known between them (chosen).
         const LONGEST: f64 = 3.0;
         let Clock::Stamps(times) = self.times(time)? else { return Ok(None) };
@@ -195,7 +198,7 @@ impl Log<'_> {
             layout.name,
             self.table.rows.len()
         );
-        Ok(Some((grids, vec![note])))
+        Ok(Some((Some(grids), vec![note])))
     }
 
     /// Grids of the rows with an output, each trial's own.
@@ -205,7 +208,7 @@ impl Log<'_> {
         trials: &[TrialRows],
         rows: Vec<Vec<usize>>,
         time: TimeSource,
-    ) -> Result<(Option<Vec<Grid>>, Vec<String>), ReadError> {
+    ) -> Result<OwnGrids, ReadError> {
         let Clock::Stamps(times) = self.times(time)? else {
             return Ok((None, self.missing_notes(layout)));
         };

@@ -17,11 +17,11 @@ const HOLDS: f64 = 0.1;
 impl Signal {
     /// `None` where the column does not hold numbers.
     pub(super) fn of(column: &Column) -> Option<Self> {
+        /// Part of the rows without a value above which a column has few of its own.
+        const SPARSE: f64 = 0.3;
         if column.error.is_some() || column.values.len() < 2 {
             return None;
         }
-        /// Part of the rows without a value above which a column has few of its own.
-        const SPARSE: f64 = 0.3;
         let mut values = column.values.clone();
         let known: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
         let is_sparse = (known.len() as f64) < (1.0 - SPARSE) * values.len() as f64;

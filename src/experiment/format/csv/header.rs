@@ -100,7 +100,7 @@ pub(super) fn describes(
         let is_of_time = time == Some(column) && is_time(&unit);
         // The times of a table that says `-` below them are in words, or in seconds.
         let is_none = unit.is_empty() || time == Some(column) && unit == "-";
-        let is_meant = are_all_units && !is_none || is_unit(&unit) && !is_none || is_of_time;
+        let is_meant = !is_none && (are_all_units || is_unit(&unit)) || is_of_time;
         if header.unit.is_none() && is_meant {
             header.unit = Some(unit);
         }
