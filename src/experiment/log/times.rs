@@ -132,8 +132,8 @@ impl Log<'_> {
     /// A question where no machine is sampled like this, or where seconds are only supposed.
     fn rate_note(&self, time: TimeSource, grids: &[Grid]) -> Option<String> {
         /// Samples in a second that are plausible at all, and where the unit is a guess: counts of
-        /// milliseconds at 50 Hz or more are no more than 20 to a second.
-        const PLAUSIBLE: (f64, f64) = (0.01, 1e5);
+        /// milliseconds at 50 Hz or more are no more than 20 to a second. Above, `5.010` ms may be 5010.
+        const PLAUSIBLE: (f64, f64) = (0.01, 2e4);
         const GUESSED_FROM: f64 = 20.5;
         let TimeSource::Times(column, scale) = time else { return None };
         let is_known = scale.is_some() || self.counting(column, scale).is_recognized();
