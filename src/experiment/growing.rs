@@ -103,8 +103,9 @@ impl GrowingLog {
             return Err(ReadError::HeaderOnly { path: path() });
         }
         let mut table = Cow::Borrowed(table);
-        if !self.options.repair.as_it_stands {
-            table.to_mut().oldest_first(layout.place_of_time(&numeric), &self.path);
+        let place = layout.place_of_time(&numeric);
+        if !self.options.repair.as_it_stands && table.is_newest_first(place) {
+            table.to_mut().oldest_first(place, &self.path);
         }
         let budget = Budget::new(self.options.memory);
         let log = Log { head, numeric: &numeric, table: &table, budget: &budget };

@@ -158,10 +158,15 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Turns a table of the log at `path` round that a program wrote with the newest row first: the
-    /// numbers in its column of times, the `time`-th, fall.
+    /// Whether a program wrote the newest row first: the numbers in the column of times, the `time`-th,
+    /// fall.
+    pub(super) fn is_newest_first(&self, time: Option<usize>) -> bool {
+        time.and_then(|time| self.columns.get(time)).is_some_and(Column::falls)
+    }
+
+    /// Turns the table of the log at `path` round where the newest row is first.
     pub(super) fn oldest_first(&mut self, time: Option<usize>, path: &Path) {
-        if !time.and_then(|time| self.columns.get(time)).is_some_and(Column::falls) {
+        if !self.is_newest_first(time) {
             return;
         }
         let rows = self.rows.len();
