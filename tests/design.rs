@@ -459,6 +459,7 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
         ("--levels 1", "expected two levels or more"),
         ("--trials 0", "expected a whole number from 1 up"),
         ("--hold 2,1", "expected two numbers, the lower one first"),
+        ("--hold 0.001,2", "less than a sample of 0.01 s"),
         ("--output-range=-1,1", "give --model or a log"),
         ("--dead-band avoid", "no model has it"),
         ("--model plain.toml --dead-band avoid", "the model has none"),

@@ -215,6 +215,14 @@ pub(crate) fn in_words() -> Vec<Messy> {
             read(1e-6, "times count from 2024-05-01"),
         ),
         messy(
+            "over_midnight.csv",
+            with("time", |k| match k {
+                0..900 => format!("23:59:{:05.2}", 51.0 + PERIOD * k as f64),
+                _ => format!("00:00:{:05.2}", PERIOD * k as f64 - 9.0),
+            }),
+            read(1e-6, "times count from 86391 s"),
+        ),
+        messy(
             "how_it_is_written.csv",
             with("Time [hh:mm:ss]", |k| format!("00:00:{}", seconds(k))),
             SAME,

@@ -164,6 +164,16 @@ pub(crate) fn blanks() -> Vec<Messy> {
         messy("units_below.dat", format!("t  boom.input boom.output\n s V   deg\n{below}"), SAME),
         messy("behind_a_mark.txt", format!("\u{feff}  {aligned}"), SAME),
         messy("numpy_behind_a_mark.txt", format!("\u{feff}# {all}"), SAME),
+        messy(
+            "short_row.dat",
+            cell(&plain(&rows), 617, 1, "").replacen(",,", ",", 1).replace(',', " "),
+            Expected::Refused(&["row 617", "2 cells", "has 3"]),
+        ),
+        messy(
+            "short_row_at_the_top.dat",
+            cell(&plain(&rows), 17, 1, "").replacen(",,", ",", 1).replace(',', " "),
+            Expected::Refused(&["row 17", "2 cells", "has 3"]),
+        ),
         messy("decimal_commas.txt", aligned.replace('.', ",").replace("boom,", "boom."), SAME),
     ]
 }

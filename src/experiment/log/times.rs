@@ -192,8 +192,11 @@ impl Log<'_> {
         };
         let values = self.column(column).map_or(&[][..], |column| &column.values);
         let counting = self.counting(column, scale);
-        let times: Vec<f64> = values.iter().map(|value| counting.seconds_of(*value)).collect();
+        let mut times: Vec<f64> = values.iter().map(|value| counting.seconds_of(*value)).collect();
         self.check_times(column, &times)?;
+        if self.are_dates(column) {
+            count_over_midnight(&mut times);
+        }
         Ok(Clock::Stamps(times))
     }
 
@@ -268,6 +271,41 @@ impl Log<'_> {
                 ReadError::TooManySamples { path, trial, samples, period }
             }
             Fault::SingleRow => ReadError::SingleRow { path, row: number(0), trial },
+        }
+    }
+}
+
+/// Counts times of day on over midnight, where they fall by more than half a day.
+fn count_over_midnight(times: &mut [f64]) {
+    const DAY_S: f64 = 86_400.0;
+    let are_of_day = times.iter().all(|time| (0.0..DAY_S).contains(time));
+    if !are_of_day {
+        return;
+    }
+    let (mut days, mut last) = (0.0, f64::NAN);
+    for time in times {
+        if last - *time > DAY_S / 2.0 {
+            days += 1.0;
+        }
+        last = *time;
+        *time += days * DAY_S;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_of_day_count_on_over_midnight() {
+        let mut times = [86_399.98, 86_399.99, 0.0, 0.01];
+        count_over_midnight(&mut times);
+        assert_eq!(times, [86_399.98, 86_399.99, 86_400.0, 86_400.01]);
+        // A log that begins anew, and a time that has passed, of which hours are more than 24.
+        for times in [[50.0, 60.0, 40.0, 50.0], [86_399.0, 86_400.0, 0.0, 1.0]] {
+            let mut counted = times;
+            count_over_midnight(&mut counted);
+            assert_eq!(counted, times);
         }
     }
 }

@@ -124,7 +124,8 @@ impl Known {
     }
 }
 
-/// Refuses an input that is too long to be searched, and a delay that none would outlast.
+/// Refuses an input that is too long to be searched, holds below a sample, and a delay that no input would
+/// outlast.
 fn check_length(
     args: &Args,
     (file, names): (&ModelFile, &[String]),
@@ -138,6 +139,12 @@ fn check_length(
         bail!(
             "--duration and --rate: an input of {length:.1e} samples is longer than the {MOST:.0e} \
              that are searched; choose a shorter one, or a lower rate"
+        );
+    }
+    if let Some((shortest, _)) = args.hold.filter(|(shortest, _)| samples(*shortest) < 1.0) {
+        let period = period.seconds();
+        bail!(
+            "--hold: {shortest} s is less than a sample of {period} s; choose longer holds, or a higher --rate"
         );
     }
     for name in names {

@@ -1,8 +1,14 @@
 //! How the rows of a text are written: delimiter, lines before the header, units below it.
 
-use super::blanks::tabbed;
-use super::cell::{Time, is_of_thousands, parse_time};
+mod by_blanks;
+mod rows;
+
+use super::cell::{is_of_thousands, parse_time};
 use crate::experiment::unit::is_unit;
+use rows::{
+    cells, count, ends_unevenly, ends_with, filled, holds_numbers, is_row, line_ends, rows, split,
+    usual,
+};
 
 /// What parts the cells, and what stands before the header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,41 +57,6 @@ impl Spelling {
     /// The mark between cells, once tabs are put for runs of blanks.
     pub(super) fn mark(self) -> u8 {
         if self.is_of_blanks() { b'\t' } else { self.delimiter }
-    }
-
-    /// The table as rows of numbers that blanks part into as many cells as the header, where no mark
-    /// parts that.
-    fn by_blanks(self, start: &[u8]) -> Option<Self> {
-        let (bytes, _) = self.preamble;
-        let mut by_marks = rows(start.get(bytes..)?).filter(|line| is_row(line)).take(LINES);
-        let by_marks = by_marks.by_ref().map(|line| split(line, self.delimiter));
-        let mut are_numbers = by_marks.map(|row| holds_numbers(&row, self.delimiter));
-        // A decimal comma parts all rows but the header.
-        let is_parted = !are_numbers.next()? && are_numbers.any(|is_of_numbers| is_of_numbers);
-        let whole = start.iter().rposition(|byte| *byte == b'\n').filter(|_| !is_parted)?;
-        let start = start.get(..=whole)?;
-        let text = start.strip_prefix(BYTE_ORDER_MARK).unwrap_or(start);
-        let made = tabbed(text);
-        let Self { preamble: (bytes, before), .. } = Self::by_marks(&made, b"\t");
-        let (above, table) = made.split_at_checked(bytes)?;
-        let mut table = rows(table).filter(|line| is_row(line));
-        let is_marked = |line: &&[u8]| b",;|".iter().any(|mark| count(line, *mark) > 0);
-        let header = split(table.next().filter(|line| !is_marked(line))?, b'\t');
-        let below = table.take(LINES).map(|line| split(line, b'\t'));
-        let mut below = below.filter(|row| !are_units(row)).peekable();
-        below.peek().filter(|_| header.len() > 1 && !holds_numbers(&header, b'\t'))?;
-        let is_table = below.all(|row| row.len() == header.len() && holds_numbers(&row, b'\t'));
-        // The mark of a comment may stand before the header.
-        let is_comment = above.last().is_some_and(|byte| *byte != b'\n');
-        let mut lines = text.split_inclusive(|byte| *byte == b'\n');
-        let above = lines.by_ref().take(usize::try_from(before).ok()?);
-        let skipped: usize = above.map(<[u8]>::len).sum::<usize>() + (start.len() - text.len());
-        let header = lines.next()?;
-        let row = lines.find(|line| is_row(line) && line.iter().any(u8::is_ascii_digit));
-        let mark = header.iter().position(|byte| *byte == b'#').filter(|_| is_comment);
-        let bytes = skipped + mark.map_or(0, |mark| mark + 1);
-        let is_shifted = mark.is_none() && row.is_some_and(|row| is_shifted(header, row));
-        (is_table && !is_shifted).then_some(Self { delimiter: BLANK, preamble: (bytes, before) })
     }
 
     /// The header in the last comment above the table, where that begins with numbers, as NumPy writes it:
@@ -201,77 +172,6 @@ fn behind_labview(start: &[u8]) -> Option<(usize, u64)> {
     Some((start.len() - text.len() + bytes, line_ends(before)))
 }
 
-/// The lines of a text; those that one quoted cell goes over are one. A quotation mark that nothing
-/// answers soon is a mark like any other.
-fn rows(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    /// Lines of a cell, at most.
-    const LINES_OF_CELL: usize = 5;
-    let mut rest = text;
-    std::iter::from_fn(move || {
-        let ends =
-            rest.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
-        let mut ends = ends.take(LINES_OF_CELL);
-        let first = ends.next().unwrap_or(rest.len());
-        let is_open = |line: &[u8]| line.iter().fold(false, |open, byte| open ^ (*byte == b'"'));
-        let is_whole = |end: &usize| rest.get(..*end).is_some_and(|line| !is_open(line));
-        let end = std::iter::once(first).chain(ends).find(is_whole).unwrap_or(first);
-        let (row, behind) = rest.split_at_checked(end).filter(|(row, _)| !row.is_empty())?;
-        rest = behind;
-        Some(row)
-    })
-}
-
-/// Whether the first cell of a `row` between blanks has no name above it, and its second one the first
-/// name of the `header`: the name of the last column has nothing below it.
-fn is_shifted(header: &[u8], row: &[u8]) -> bool {
-    let is_blank = |byte: &u8| b" \t".contains(byte);
-    let word = |line: &[u8], from: usize| {
-        let rest = line.get(from..)?;
-        let first = from + rest.iter().position(|byte| !is_blank(byte))?;
-        let length = line.get(first..)?.iter().position(is_blank)?;
-        Some((first, first + length))
-    };
-    let shifted = || {
-        let (name, name_end) = word(header, 0)?;
-        let (_, end) = word(row, 0)?;
-        let (second, _) = word(row, end)?;
-        Some(end < name && second < name_end)
-    };
-    shifted().unwrap_or(false)
-}
-
-fn line_ends(rows: &[&[u8]]) -> u64 {
-    rows.iter().flat_map(|row| row.iter()).fold(0, |ends, byte| ends + u64::from(*byte == b'\n'))
-}
-
-/// The cells of a line.
-fn split(line: &[u8], delimiter: u8) -> csv::ByteRecord {
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(delimiter)
-        .flexible(true)
-        .has_headers(false)
-        .from_reader(line);
-    let mut record = csv::ByteRecord::new();
-    // What cannot be parted is no row of numbers.
-    let is_row = reader.read_byte_record(&mut record).unwrap_or(false);
-    if is_row { record } else { csv::ByteRecord::new() }
-}
-
-/// Cells that are not empty.
-fn filled(record: &csv::ByteRecord) -> usize {
-    record.iter().filter(|cell| !cell.trim_ascii().is_empty()).count()
-}
-
-/// Whether most cells of a row are numbers or times, and two at least.
-fn holds_numbers(record: &csv::ByteRecord, delimiter: u8) -> bool {
-    let is_value = |cell: &[u8]| match parse_time(cell.trim_ascii(), delimiter) {
-        Ok(Time::Number(value) | Time::Written(value)) => value.is_finite(),
-        Err(_) => false,
-    };
-    let values = record.iter().filter(|cell| is_value(cell)).count();
-    values > 1 && 2 * values > record.len()
-}
-
 /// Whether a row says something, and no cell of it is a number or a time: the words below a table.
 pub(super) fn is_remark(record: &csv::ByteRecord, delimiter: u8) -> bool {
     let cells = record.iter().map(<[u8]>::trim_ascii).filter(|cell| !cell.is_empty());
@@ -285,59 +185,6 @@ pub(super) fn is_remark(record: &csv::ByteRecord, delimiter: u8) -> bool {
 /// rest of the table.
 pub(super) fn is_over_lines(record: &csv::ByteRecord) -> bool {
     record.iter().any(|cell| cell.trim_ascii().contains(&b'\n'))
-}
-
-fn is_row(line: &[u8]) -> bool {
-    let line = line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line);
-    !line.starts_with(b"#") && !line.trim_ascii().is_empty()
-}
-
-/// Cells of a line, as long as no quotation goes over it; 0 of a line that is no row.
-fn cells(line: &[u8], delimiter: u8) -> usize {
-    if is_row(line) { 1 + count(line, delimiter) } else { 0 }
-}
-
-/// Whether a mark between cells is the last of a line.
-fn ends_with(line: &[u8], delimiter: u8) -> bool {
-    let line = line.strip_suffix(b"\n").unwrap_or(line);
-    line.strip_suffix(b"\r").unwrap_or(line).ends_with(&[delimiter])
-}
-
-/// Whether a mark stands behind the last cell of each row below the header and not of the header, or
-/// the other way round: it makes no cell.
-fn ends_unevenly(lines: &[&[u8]], delimiter: u8) -> bool {
-    let rows = lines.iter().filter(|line| cells(line, delimiter) > 1);
-    let ends = rows.map(|line| (ends_with(line, delimiter), cells(line, delimiter)));
-    let ends: Vec<(bool, usize)> = ends.collect();
-    let Some((last, _)) = ends.last() else { return false };
-    let Some(header) = ends.iter().rposition(|(ends, _)| ends != last) else { return false };
-    let width = |(ends, cells): &(bool, usize)| cells - usize::from(*ends);
-    let below = ends.get(header + 1..).unwrap_or_default();
-    below.len() > 1
-        && below.iter().all(|row| ends.get(header).is_some_and(|it| width(it) == width(row)))
-}
-
-/// The count that most rows have.
-fn usual(counts: &[usize]) -> usize {
-    let rows: Vec<usize> = counts.iter().copied().filter(|count| *count > 0).collect();
-    let times = |count: &usize| rows.iter().filter(|other| *other == count).count();
-    rows.iter().copied().max_by_key(|count| (times(count), *count)).unwrap_or_default()
-}
-
-/// Delimiters of a line, units and quoted cells left out.
-fn count(line: &[u8], delimiter: u8) -> usize {
-    let mut enclosed = None;
-    let mut count = 0;
-    for &byte in line {
-        enclosed = match (enclosed, byte) {
-            (None, b'[') => Some(b']'),
-            (None, b'"') => Some(b'"'),
-            (Some(end), byte) if end == byte => None,
-            (enclosed, _) => enclosed,
-        };
-        count += usize::from(enclosed.is_none() && delimiter == byte);
-    }
-    count
 }
 
 /// The one of `marks` that is most frequent in the first line that is no comment.
