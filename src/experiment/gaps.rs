@@ -18,12 +18,14 @@ pub(crate) fn longest_gap_s(trials: &[Trial]) -> Option<f64> {
     Some(to_digits_by(longest, 3, f64::ceil))
 }
 
+/// The longest gap that is filled so that its steps get delays, seconds. Chosen: a gap that is longer
+/// parts two experiments.
+pub(crate) const LONGEST_JOINED_S: f64 = 2.0;
+
 /// The longest gap of a joint whose input changes in gaps and nowhere else: a logger that pauses
 /// while the valve is switched leaves no step in any trial. `None` where a gap is longer than the
 /// pause of one stroke.
 pub(super) fn gap_with_all_steps_s(joint: &Joint) -> Option<f64> {
-    /// Chosen: a gap that is longer parts two experiments.
-    const LONGEST_S: f64 = 2.0;
     #[expect(clippy::float_cmp, reason = "a step is any change")]
     let differs = |pair: &[Trial]| match pair {
         [before, behind] => are_of_one(before, behind) && before.input()[0] != behind.input()[0],
@@ -32,7 +34,7 @@ pub(super) fn gap_with_all_steps_s(joint: &Joint) -> Option<f64> {
     #[expect(clippy::float_cmp, reason = "a step is any change")]
     let is_constant = |trial: &Trial| trial.input().windows(2).all(|pair| pair[0] == pair[1]);
     let in_gaps = joint.trials.windows(2).any(differs) && joint.trials.iter().all(is_constant);
-    longest_gap_s(&joint.trials).filter(|gap| in_gaps && *gap <= LONGEST_S)
+    longest_gap_s(&joint.trials).filter(|gap| in_gaps && *gap <= LONGEST_JOINED_S)
 }
 
 /// The samples of `whole`, in which gaps are filled, of the gaps between those of its `parts` behind

@@ -40,7 +40,7 @@ pub use conditions::conditions;
 pub(crate) use conditions::has_word;
 pub use error::ReadError;
 pub(crate) use format::format_names;
-pub(crate) use gaps::longest_gap_s;
+pub(crate) use gaps::{LONGEST_JOINED_S, longest_gap_s};
 pub use growing::GrowingLog;
 pub use handed::{HandedColumn, HandedLog, HandedValues};
 pub use joint::{Joint, Signal, Trial, TrialError};

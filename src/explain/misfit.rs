@@ -4,7 +4,7 @@ use crate::diagnosis::{ErrorFigures, sensor_noise};
 use crate::fit::{Fit, FitRecord, Part};
 
 /// The share of the misfit from which an effect has a practical consequence.
-pub(super) const CONSEQUENCE: f64 = 0.01;
+pub(crate) const CONSEQUENCE: f64 = 0.01;
 
 /// The part of the misfit below which what a model leaves is explained.
 const HARDLY: f64 = 0.05;

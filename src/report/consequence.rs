@@ -35,7 +35,7 @@ pub(super) fn in_proportion(error: ErrorFigures, noise: Option<f64>) -> String {
     match noise.map(|noise| error.rmse / noise) {
         Some(times) if times < MANY_TIMES_NOISE => format!("{} times the noise", rounded(times)),
         _ => match error.fit_percent / 100.0 {
-            fit if fit > 0.0 => format!("a fit of {}", percent(fit)),
+            fit if fit > 0.0 => format!("a fit of {} to the output", percent(fit)),
             // A model that runs away, or an output that hardly moves.
             _ => "no better than the mean of the output".to_owned(),
         },

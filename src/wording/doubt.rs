@@ -60,7 +60,7 @@ pub(crate) fn doubt_in_short(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
     let [explained, placed, meeting] = doubt.margins();
     let mut reasons = vec![
         (explained, format!("error left {}", percent(1.0 - explained))),
-        (placed, format!("± {} s fits alike", seconds(doubt.spread))),
+        (placed, format!("breaks {} s apart fit alike", seconds(doubt.spread))),
         (meeting, format!("lines cross {} s off", seconds(doubt.crossing))),
     ];
     reasons.extend(near.map(|(condition, margin)| (margin, format!("near {}", condition.id()))));

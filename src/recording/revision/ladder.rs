@@ -78,6 +78,7 @@ impl<'r> Ladder<'r> {
             [came, gone] if next > row + 1 => {
                 self.bars.name(labels, row, &format!("{number}: {came}"));
                 self.bars.name(labels, row + 1, gone);
+                self.bars.value(labels, row + 1, 0.0, "taken out".to_owned());
             }
             _ => self.bars.name(labels, row, &format!("{number}: {}", change_in_words(revision))),
         }

@@ -5,7 +5,7 @@ use rerun::datatypes::Vec2D;
 
 use super::bars::{Bars, Columns};
 use super::figure::noise;
-use crate::explain::{Candidate, Revision, Verdict};
+use crate::explain::{CONSEQUENCE, Candidate, Revision, Verdict};
 use crate::figure::ladder::judged;
 use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
@@ -14,6 +14,7 @@ use crate::recording::palette::{self, Rgb, color};
 use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
 use crate::report::{ImprovedJoint, change_in_words};
+use crate::wording::percent;
 
 const COLUMNS: Columns = Columns { left: 1270.0, names: (1570.0, 1660.0), right: 1890.0 };
 
@@ -50,12 +51,13 @@ pub(super) fn around(
     let bars = bars_of(revision, &all);
     let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
     let is_last = at + 1 == improved.revisions.len();
+    let least = percent(CONSEQUENCE);
     let title = match (all.as_slice(), revision.ranking.as_slice()) {
         ([], _) if is_adequate(revision) => "no effect is missing",
         ([], _) => "nothing more was looked for",
         (_, []) => "error at the next revision",
         _ if is_last && improved.finding.verdict == Verdict::Unexplained => {
-            "error with one effect more: none gains enough"
+            &format!("error with one effect more: none surely takes {least} off")
         }
         _ => "error with one effect more",
     };

@@ -36,6 +36,9 @@ fn written(
     for (question, answer) in improved.finding.answers() {
         writeln!(page, "**{question}:** {}\n", prose(&answer))?;
     }
+    if is_last && let Some(sentence) = without_gain(improved) {
+        writeln!(page, "**No gain:** {}\n", plain(&sentence))?;
+    }
     writeln!(page, "## Revision {revision} of {last}: {}\n", plain(&change_in_words(step)))?;
     // Where nothing is missing that is said in the conclusion.
     if conclusion.passages.iter().all(|passage| passage.topic != Topic::Error) {
@@ -45,9 +48,6 @@ fn written(
         what_was_found(&mut page, improved)?;
     } else {
         writeln!(page, "**At revision {revision}:** {}\n", plain(&conclusion.headline))?;
-    }
-    if is_last && let Some(sentence) = without_gain(improved) {
-        writeln!(page, "**Doubtful revisions:** {}\n", plain(&sentence))?;
     }
     for passage in &conclusion.passages {
         if passage.topic == Topic::WhereItFails {
@@ -127,11 +127,15 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
     // Of one alone it is said above.
     let has_shares = has_shares(improved);
     if has_shares {
-        writeln!(page, "Share of the first error that returns without each (shares overlap):\n")?;
+        writeln!(page, "{SHARES}\n")?;
     }
     for component in components {
         write!(page, "- **{}**", plain(id(component)))?;
-        if let Some(one) = contribution(component) {
+        let one = contribution(component);
+        if has_shares && one.is_none() {
+            write!(page, " (from the start)")?;
+        }
+        if let Some(one) = one {
             if has_shares {
                 write!(page, " {}", percent(one.error_share))?;
             }
@@ -141,7 +145,23 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
         }
         writeln!(page, ": {}", prose(&component.summary()))?;
     }
-    writeln!(page)
+    writeln!(page)?;
+    if let Some(id) = improved.revisions.last().and_then(of_some_trials) {
+        writeln!(
+            page,
+            "Brackets, as in `{}`, name the trials in which alone it acts.\n",
+            plain(id)
+        )?;
+    }
+    Ok(())
+}
+
+/// An effect of some trials alone that is in the model of a revision, or among what was tried there.
+fn of_some_trials(revision: &Revision) -> Option<&str> {
+    let of_model = revision.comparison.fit.model.components().iter();
+    let of_model = of_model.map(|component| component.effect().spec().id);
+    let tried = revision.ranking.iter().flat_map(|candidate| candidate.effects.iter().copied());
+    of_model.chain(tried).find(|id| id.ends_with(']'))
 }
 
 /// A line for each of the worst segments: where it is, also in the plots where these go through several
@@ -163,6 +183,9 @@ fn worst_segments(layout: &JointLayout<'_>, comparison: &Comparison) -> String {
     (1..).zip(worst_spans(layout, comparison)).take(MOST).map(line).collect()
 }
 
+const SHARES: &str = "Share of the first error that returns when one alone is left out (they overlap; \
+how far a bar falls depends on the order):";
+
 const SEVERAL: &str = "This opens on the last revision; the right arrow begins with the first one, on \
 the timeline `revision`. ";
 
@@ -172,6 +195,9 @@ const HOW: &str = "`sample` or `time`: choose it at the bottom.";
 fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
     let revisions: Vec<(u32, &Revision)> = improved.numbered().collect();
     let is_without = |before: &Revision, after: &Revision| {
+        if matches!(after.change, Change::Replaced { .. }) {
+            return false;
+        }
         let error = |of: &Revision| of.comparison.validation.map(|error| error.rmse);
         let gained = error(before).zip(error(after)).map(|(before, after)| 1.0 - after / before);
         // What left the model or was exchanged for a simpler effect is to gain nothing.
@@ -181,9 +207,24 @@ fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
     let pairs = revisions.iter().zip(revisions.iter().skip(1));
     let without = pairs.filter(|((_, before), (_, after))| is_without(before, after));
     let numbers: Vec<String> = without.map(|(_, (number, _))| number.to_string()).collect();
-    let numbers = numbers.join(", ");
-    (!numbers.is_empty())
-        .then(|| format!("{numbers}: the error on what was not fitted did not fall"))
+    let not_fallen = match numbers.as_slice() {
+        [] => None,
+        [one] => Some(format!(
+            "revision {one}, after which the error on what was not fitted is no smaller"
+        )),
+        several => Some(format!(
+            "revisions {}, after which the error on what was not fitted is no smaller",
+            several.join(", ")
+        )),
+    };
+    let exchanges = revisions.iter().filter_map(|(number, revision)| match revision.change {
+        Change::Replaced { old, new } => Some(format!(
+            "revision {number}, which exchanges {old} for {new}, which fits about as well"
+        )),
+        _ => None,
+    });
+    let all: Vec<String> = not_fallen.into_iter().chain(exchanges).collect();
+    (!all.is_empty()).then(|| all.join("; "))
 }
 
 /// What is a gain at all, as a part of the error.

@@ -11,7 +11,7 @@ use rerun::external::re_sdk_types::blueprint::datatypes::{
     ComponentColumnSelector, SelectedColumns,
 };
 
-use crate::delay::Decision;
+use crate::delay::{Condition, Decision, Doubt};
 use crate::experiment::Joint;
 use crate::recording::blueprint::{Builder, Node, View, bounds, clickable};
 use crate::recording::canvas::SHEET;
@@ -25,7 +25,8 @@ use crate::recording::paths::{
 use crate::recording::{
     correlogram, delay_state, difference, error_share, revision, scatter, segment_view,
 };
-use crate::report::{ComparedJoint, EstimatedJoint, by_doubt};
+use crate::report::{ComparedJoint, EstimatedJoint, JointSummary, by_doubt};
+use crate::wording::number;
 
 /// What the lanes of the model that is judged are called.
 const LANES: &str =
@@ -58,10 +59,12 @@ pub(super) fn tab(
     let doubts = by_doubt(EstimatedJoint { joint, estimate });
     let open = doubts.iter().filter(|found| found.decision.reviewer_verdict.is_none());
     let doubtful = open.filter(|found| found.doubt.is_doubtful()).count();
-    let doubtful = format!("{doubtful} of {} doubtful: click a number", doubts.len());
+    let limit = number(Doubt::DOUBTFUL_PERCENT);
+    let doubtful = format!("{doubtful} of {} doubtful (≥ {limit} %): click", doubts.len());
     let decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let longest = decisions.filter_map(Decision::accepted_delay).reduce(f64::max);
-    let mut views = Views { builder, joint, fine, longest, doubtful, others, revisions };
+    let verdicts = verdicts(&JointSummary::of(EstimatedJoint { joint, estimate }));
+    let mut views = Views { builder, joint, fine, longest, doubtful, verdicts, others, revisions };
     let mut pages = Vec::new();
     if revisions > 0 {
         pages.push(views.revisions()?);
@@ -116,6 +119,22 @@ impl Steps {
     }
 }
 
+/// `28 accepted · 26 at_rest: joint at rest, before and after`, the most frequent reasons first.
+fn verdicts(summary: &JointSummary) -> String {
+    /// Reasons that are named.
+    const MOST: usize = 2;
+    let mut rejected = summary.rejected.clone();
+    rejected.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let reason = |(condition, count): &(Condition, usize)| {
+        format!(" · {count} ✗ {condition}: {}", condition.meaning())
+    };
+    let reasons: String = rejected.iter().take(MOST).map(reason).collect();
+    let others: usize = rejected.iter().skip(MOST).map(|(_, count)| count).sum();
+    let others =
+        if others > 0 { format!(" · {others} ✗ for other reasons") } else { String::new() };
+    format!("{} ✓ accepted{reasons}{others}", summary.accepted)
+}
+
 /// Lanes start with all of the record in view: viewers from 0.41 on begin in its middle.
 fn whole_record() -> TimeAxis {
     let infinite = TimeRangeBoundary::Infinite;
@@ -142,6 +161,8 @@ struct Views<'b, 'i> {
     longest: Option<f64>,
     /// How many decisions are doubtful, over their list.
     doubtful: String,
+    /// How many steps were accepted and why others were rejected, over the lanes that say of which.
+    verdicts: String,
     /// Results beside this one.
     others: usize,
     /// Revisions of its model.
@@ -180,9 +201,9 @@ impl Views<'_, '_> {
     fn decisions(&mut self) -> Result<Node, RecordError> {
         let drawing = self.view(self.drawing())?;
         let map = self.view(self.map())?;
-        let (.., lanes) = Steps::Some.titles();
         // The verdict names the trial: a lane for it would hide that of the verdicts in a small window.
-        let lanes = self.view(self.lanes(lanes, &[paths::VERDICT, paths::SEGMENT]))?;
+        let name = self.verdicts.clone();
+        let lanes = self.view(self.lanes(&name, &[paths::VERDICT, paths::SEGMENT]))?;
         let verdict = [self.path(paths::VERDICT)];
         let verdict = self.view(View::new("TextDocument", "Verdict", &verdict))?;
         let lists = self.lists()?;
@@ -213,7 +234,7 @@ impl Views<'_, '_> {
         View::drawing(name, &self.at(map::ROOT), &map::PARTS, (MAP_WIDTH, MAP_HEIGHT))
     }
 
-    fn lanes(&self, name: &'static str, lanes: &[&str]) -> View<'static> {
+    fn lanes<'n>(&self, name: &'n str, lanes: &[&str]) -> View<'n> {
         let paths: Vec<_> = lanes.iter().map(|lane| self.path(lane)).collect();
         View::new("StateTimeline", name, &paths).with("TimeAxis", whole_record())
     }

@@ -2,12 +2,12 @@
 
 use super::figures::first_of;
 use crate::diagnosis::failure::FailsWhere;
-use crate::explain::{Contribution, Verdict};
+use crate::explain::{CONSEQUENCE, Contribution, Verdict};
 use crate::report::dead_time::dead_time_answer;
 use crate::report::doubt::doubted;
 use crate::report::finding::Finding;
 use crate::report::{EstimatedJoint, JointSummary};
-use crate::wording::{doubtful_sentence, misfit_units};
+use crate::wording::{doubtful_sentence, misfit_units, percent};
 
 /// What a reviewer asks of a model first: question and answer.
 pub(crate) type Answer = (&'static str, String);
@@ -59,9 +59,21 @@ impl Finding<'_> {
             Verdict::Adequate => format!("nothing: {}", self.test()),
             _ if self.is_down_to_noise() => "no more than the sensor's noise".to_owned(),
             Verdict::Unexplained => {
-                format!("{}; no effect that was tried gains enough", self.consequence().remains())
+                format!("{}; {}", self.consequence().remains(), self.why_no_more())
             }
             Verdict::MissingEffect => self.consequence().remains(),
+        }
+    }
+
+    /// Why no effect is named for what is left.
+    fn why_no_more(&self) -> String {
+        match self.before {
+            // Effects were added until none did.
+            Some(_) => {
+                let least = percent(CONSEQUENCE);
+                format!("no other effect is sure to take {least} of the first error off")
+            }
+            None => "no effect that was tried gains enough".to_owned(),
         }
     }
 
