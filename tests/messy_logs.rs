@@ -117,3 +117,25 @@ fn with_causes(error: &dyn std::error::Error) -> String {
     }
     text
 }
+
+/// A logger that notes the input when it changes does not note it where a trial begins.
+#[test]
+fn an_input_that_is_noted_at_its_changes_is_held_into_the_next_trial() {
+    let log = |at_changes: bool| {
+        let mut text = format!("trial,{}\n", log::HEADER);
+        let mut last = f64::NAN;
+        for (k, row) in clean().into_iter().enumerate() {
+            let is_noted = !at_changes || row.input.to_bits() != last.to_bits();
+            last = row.input;
+            let input = if is_noted { row.input.to_string() } else { String::new() };
+            let trial = if k < 855 { "a" } else { "b" };
+            writeln!(text, "{trial},{:.2},{input},{}", row.time, row.output).unwrap();
+        }
+        read_file(&messy("trials.csv", text, SAME))
+    };
+    let (whole, noted) = (log(false), log(true));
+    assert_eq!(whole.joints[0].trials.len(), 2);
+    for (whole, noted) in whole.joints[0].trials.iter().zip(&noted.joints[0].trials) {
+        assert_eq!(whole.input(), noted.input());
+    }
+}

@@ -26,7 +26,7 @@ pub struct DirectionGain;
 static SPEC: Spec = Spec::new(
     "direction_gain",
     Stage::Input,
-    "single-rod cylinder: another gain where the input is negative",
+    "single-rod cylinder: another gain in the negative direction",
 )
 .equation("out = in where in >= 0, negative_factor in where in < 0")
 .source("Jelali and Kroll, 2003, Hydraulic Servo-systems")

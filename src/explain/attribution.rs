@@ -157,6 +157,7 @@ impl Grown<'_, '_> {
         let contribution = |one: &LeftOut| Contribution {
             effect: one.effect,
             error_share: one.share,
+            error_without: one.fit.errors.judged(),
             alternatives: alternatives(one.effect),
         };
         refinements.extend(small.iter().map(|one| one.effect));

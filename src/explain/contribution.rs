@@ -7,6 +7,9 @@ pub struct Contribution {
     pub effect: &'static str,
     /// What the error beyond the noise grows by without it, in parts of that of the first model.
     pub error_share: f64,
+    /// The error that the model has without it, the rest fitted again, output units: on the part that
+    /// was not fitted, where there is one.
+    pub error_without: f64,
     /// Effects that leave as little in its place.
     pub alternatives: Vec<&'static str>,
 }

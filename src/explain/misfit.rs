@@ -44,6 +44,11 @@ impl Errors {
             unseen: on(Part::Validation),
         }
     }
+
+    /// That by which a model is judged.
+    pub(super) fn judged(self) -> f64 {
+        self.unseen.or(self.seen).unwrap_or(self.whole)
+    }
 }
 
 impl Misfit {

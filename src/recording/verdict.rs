@@ -317,7 +317,12 @@ impl Facts<'_, '_> {
         let decision = self.segment.decision;
         match (decision.program_verdict(), decision.program_delay()) {
             (Verdict::Accepted, Some(delay)) => {
-                format!("## ✓ accepted: delay {}\n{}", self.delay(delay), self.why_accepted())
+                let doubtful = if self.segment.doubt.is_doubtful() { ", doubtful" } else { "" };
+                format!(
+                    "## ✓ accepted{doubtful}: delay {}\n{}",
+                    self.delay(delay),
+                    self.why_accepted()
+                )
             }
             (Verdict::Accepted, None) => "## ✓ accepted".to_owned(),
             (Verdict::Rejected(first), _) => {

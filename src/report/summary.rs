@@ -130,8 +130,8 @@ impl JointSummary {
         match (self.is_continuous, self.levels_differ, self.gap_s) {
             (true, _, _) => "the input moves all the time".to_owned(),
             (false, true, Some(gap_s)) if gap_s <= LONGEST_JOINED_S => format!(
-                "the input changes only between trials or in gaps of up to {gap_s} s, which \
-                 `tauscope estimate` fills"
+                "the input changes only in gaps of the log of up to {gap_s} s, to which no model is \
+                 fitted; `tauscope estimate` fills them"
             ),
             (false, true, Some(gap_s)) => format!(
                 "the input changes only between trials or in gaps of up to {gap_s} s, which \

@@ -55,6 +55,16 @@ pub(crate) fn names_alone() -> Vec<Messy> {
         ),
         messy("one_joint.csv", foreign("t_s,valve_cmd,angle"), read(1e-6, "`valve_cmd`")),
         messy(
+            "names_say_it_and_a_cell_is_a_word.csv",
+            cell(&foreign("t_s,u_boom,y_boom"), 617, 2, "stop"),
+            Expected::Refused(&["row 617", "`y_boom`", "stop"]),
+        ),
+        messy(
+            "names_say_it_and_thousands.csv",
+            cell(&foreign("t_s,u_boom,y_boom"), 2, 2, "\"9,993.91\""),
+            Expected::Refused(&["row 2", "`y_boom`", "9,993.91"]),
+        ),
+        messy(
             "names_say_nothing.csv",
             foreign("t_s,a,b"),
             Expected::Refused(&["no joint found", "the columns are: t_s, a, b"]),

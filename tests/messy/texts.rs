@@ -43,7 +43,12 @@ pub(crate) fn texts() -> Vec<Messy> {
             SAME,
         ),
         messy("row_of_units.csv", all.replacen('\n', "\ns,V,deg\n", 1), SAME),
+        messy("row_with_one_unit.csv", all.replacen('\n', "\ns,-,-\n", 1), SAME),
         messy("latin1.csv", latin1, SAME),
+        messy("carriage_returns.csv", old_line_ends(&all), SAME),
+        messy("carriage_returns.csv.gz", gzip(&old_line_ends(&all)), SAME),
+        messy("carriage_returns_utf16.csv", utf16(&old_line_ends(&all)), SAME),
+        messy("numbered_rows.csv", numbered(&all), SAME),
         messy("utf16.csv", utf16(&format!("\u{feff}{degrees}")), SAME),
         messy("utf16_unmarked.csv", utf16(&degrees), SAME),
         messy("packed.csv.gz", gzip(&all), SAME),
@@ -77,6 +82,21 @@ pub(crate) fn texts() -> Vec<Messy> {
         ),
         messy("empty_cell.csv", cell(&all, 617, 2, ""), read(0.051, "1 cell is empty or NaN")),
     ]
+}
+
+/// Lines that end with a carriage return alone, comments among them.
+fn old_line_ends(log: &str) -> String {
+    let commented = log.replacen("\n1.000000,", "\n# here the operator changed\n1.000000,", 1);
+    format!("# by hand\n{commented}").replace('\n', "\r")
+}
+
+/// The log with a column `#` that numbers its rows.
+fn numbered(log: &str) -> String {
+    let row = |(k, line): (usize, &str)| match k {
+        0 => format!("#,{line}\n"),
+        k => format!("{k},{line}\n"),
+    };
+    log.lines().enumerate().map(row).collect()
 }
 
 /// The first lines of a log of LabVIEW, and the header of its table.
@@ -164,6 +184,11 @@ pub(crate) fn blanks() -> Vec<Messy> {
         messy("units_below.dat", format!("t  boom.input boom.output\n s V   deg\n{below}"), SAME),
         messy("behind_a_mark.txt", format!("\u{feff}  {aligned}"), SAME),
         messy("numpy_behind_a_mark.txt", format!("\u{feff}# {all}"), SAME),
+        messy(
+            "words_above.dat",
+            format!("Made by hand\n{all}"),
+            Expected::Refused(&["words_above.dat", "below row 1", "leave out lines above"]),
+        ),
         messy(
             "short_row.dat",
             cell(&plain(&rows), 617, 1, "").replacen(",,", ",", 1).replace(',', " "),

@@ -36,6 +36,7 @@ impl Bytes {
         let whole = Cursor::new(start.clone()).chain(file);
         if !is_gzip(&start) {
             return match encoding_of(&start) {
+                None if has_old_line_ends(&start) => Ok(Self::with_line_feeds(path, whole, start)),
                 None => Ok((Self::Plain(Hashing::new(whole)), start)),
                 Some(encoding) => Self::decoded(path, whole, encoding),
             };
@@ -52,9 +53,24 @@ impl Bytes {
         }
         let whole = Cursor::new(start.clone()).chain(unpacked);
         match encoding_of(&start) {
-            None => Ok((Self::Made(Box::new(whole), path.to_owned()), start)),
+            None => Ok(Self::unpacked(path, whole, start)),
             Some(encoding) => Self::decoded(path, whole, encoding),
         }
+    }
+
+    /// Text that was made of the file at `path`, and its first bytes.
+    fn unpacked(path: &Path, whole: impl Read + 'static, start: Vec<u8>) -> (Self, Vec<u8>) {
+        if has_old_line_ends(&start) {
+            return Self::with_line_feeds(path, whole, start);
+        }
+        (Self::Made(Box::new(whole), path.to_owned()), start)
+    }
+
+    /// A text whose lines end with a carriage return alone.
+    fn with_line_feeds(path: &Path, whole: impl Read + 'static, start: Vec<u8>) -> (Self, Vec<u8>) {
+        let mut start = start;
+        with_feeds(&mut start);
+        (Self::Made(Box::new(LineFeeds(whole)), path.to_owned()), start)
     }
 
     /// What is still unread, with a tab for each run of blanks.
@@ -80,7 +96,7 @@ impl Bytes {
         let mut text = builder.encoding(Some(encoding)).bom_override(true).build(whole);
         let start = start_of(&mut text).map_err(io_error)?;
         let whole = Cursor::new(start.clone()).chain(text);
-        Ok((Self::Made(Box::new(whole), path.to_owned()), start))
+        Ok(Self::unpacked(path, whole, start))
     }
 
     /// The file that was read, all of it.
@@ -99,6 +115,31 @@ impl Read for Bytes {
             Self::Made(bytes, _) => bytes.read(buffer),
         }
     }
+}
+
+/// Bytes with a line feed for each carriage return.
+struct LineFeeds<R>(R);
+
+impl<R: Read> Read for LineFeeds<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.0.read(buffer)?;
+        with_feeds(buffer.get_mut(..count).unwrap_or_default());
+        Ok(count)
+    }
+}
+
+fn with_feeds(bytes: &mut [u8]) {
+    for byte in bytes.iter_mut().filter(|byte| **byte == b'\r') {
+        *byte = b'\n';
+    }
+}
+
+/// Whether the lines of a text that starts so end with a carriage return alone, as those of old
+/// computers do: a comment would go on to the end of the file.
+fn has_old_line_ends(start: &[u8]) -> bool {
+    // The last byte may be the first half of a line end.
+    let before = start.split_last().map_or(start, |(_, before)| before);
+    before.contains(&b'\r') && !start.contains(&b'\n')
 }
 
 fn start_of(bytes: &mut impl Read) -> io::Result<Vec<u8>> {

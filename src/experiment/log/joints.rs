@@ -231,9 +231,19 @@ impl Log<'_> {
 
     /// A line on cells that are missing in the input and the output of a joint.
     fn missing_notes(&self, layout: &JointLayout) -> Vec<String> {
+        let input = self.column(layout.input.column).map_or(&[][..], |column| &column.values);
+        let is_late = input.first().is_some_and(|value| value.is_nan());
         let kinds = [
             (layout.output.column, "short gaps are filled in a line, longer ones part the trial"),
-            (layout.input.column, "the last value is held"),
+            (
+                layout.input.column,
+                if is_late {
+                    "the last value is held, and the first one is taken before it: what the input was \
+                     there is not known, nor a step to it"
+                } else {
+                    "the last value is held"
+                },
+            ),
         ];
         let note = |(column, what): (usize, &str)| {
             let values = &self.column(column)?.values;
@@ -360,8 +370,15 @@ impl Log<'_> {
             let values = self.column(column).map_or(&[][..], |column| &column.values);
             values.get(rows.start..rows.end).unwrap_or_default().to_vec()
         };
+        // A logger that notes an input when it changes does not note it anew where a trial begins.
+        let mut input = cut(layout.input.column);
+        if let Some(first) = input.first_mut().filter(|first| first.is_nan()) {
+            let column = self.column(layout.input.column).map_or(&[][..], |column| &column.values);
+            let mut before = column.get(..rows.start).unwrap_or_default().iter().rev();
+            *first = before.find(|value| !value.is_nan()).copied().unwrap_or(f64::NAN);
+        }
         Signals {
-            input: cut(layout.input.column),
+            input,
             output: cut(layout.output.column),
             covariates: layout.covariates.iter().map(|c| cut(c.column)).collect(),
         }

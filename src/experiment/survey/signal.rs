@@ -1,7 +1,7 @@
 //! A column of numbers as a survey sees it, and whether one follows another.
 
 use crate::experiment::sampling::hold;
-use crate::experiment::table::Column;
+use crate::experiment::table::{BadCell, Column};
 
 /// A column of numbers.
 #[derive(Clone, Debug)]
@@ -15,12 +15,17 @@ pub(super) struct Signal {
 const HOLDS: f64 = 0.1;
 
 impl Signal {
-    /// `None` where the column does not hold numbers.
+    /// `None` where the column does not hold numbers. One that ends at a cell that is no number holds
+    /// those before it: whoever reads it says which cell that is.
     pub(super) fn of(column: &Column) -> Option<Self> {
         /// Part of the rows without a value above which a column has few of its own.
         const SPARSE: f64 = 0.3;
-        if column.error.is_some() || column.values.len() < 2 {
-            return None;
+        let known = column.values.iter().filter(|value| !value.is_nan()).count();
+        match &column.error {
+            Some((_, BadCell::Kind(_))) => return None,
+            Some((_, bad)) if known < 2 => return is_number_like(bad).then(Self::unread),
+            None if column.values.len() < 2 => return None,
+            _ => {}
         }
         let mut values = column.values.clone();
         let known: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
@@ -35,6 +40,11 @@ impl Signal {
             (all + 1, changes + usize::from(pair[0] != pair[1]))
         });
         (all > 0).then(|| Self { values, changing: changes as f64 / all as f64 })
+    }
+
+    /// Numbers of which none can be read.
+    fn unread() -> Self {
+        Self { values: Vec::new(), changing: 1.0 }
     }
 
     pub(super) fn is_constant(&self) -> bool {
@@ -75,6 +85,18 @@ impl Signal {
         let lags = (0..LATE).step_by(OVER).map(correlation);
         let best = lags.max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
         (best.abs() >= CLEAR).then_some(best)
+    }
+}
+
+/// Whether a cell is a number that is written in a way that is not read, as `9,993.91`.
+fn is_number_like(bad: &BadCell) -> bool {
+    match bad {
+        BadCell::Text(text) => {
+            text.contains(|c: char| c.is_ascii_digit())
+                && text.chars().all(|c| c.is_ascii_digit() || "+-., '".contains(c))
+        }
+        BadCell::Kind(_) => false,
+        _ => true,
     }
 }
 

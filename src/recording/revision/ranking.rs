@@ -51,13 +51,12 @@ pub(super) fn around(
     let bars = bars_of(revision, &all);
     let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
     let is_last = at + 1 == improved.revisions.len();
-    let least = percent(CONSEQUENCE);
     let title = match (all.as_slice(), revision.ranking.as_slice()) {
         ([], _) if is_adequate(revision) => "no effect is missing",
         ([], _) => "nothing more was looked for",
         (_, []) => "error at the next revision",
         _ if is_last && improved.finding.verdict == Verdict::Unexplained => {
-            &format!("error with one effect more: none surely takes {least} off")
+            &format!("error with one effect more: {}", none_is(&revision.ranking))
         }
         _ => "error with one effect more",
     };
@@ -75,6 +74,15 @@ pub(super) fn around(
     let Some(noise) = noise(improved) else { return Vec::new() };
     bars.below(floor, noise, format!("noise {} {unit}", short(noise)));
     vec![bars.line(noise)]
+}
+
+/// Why none of the candidates was added.
+fn none_is(candidates: &[Candidate]) -> String {
+    if candidates.iter().any(Candidate::is_significant) {
+        format!("none sure and worth {}", percent(CONSEQUENCE))
+    } else {
+        "none is significant".to_owned()
+    }
 }
 
 /// Whether no lack of fit is shown.

@@ -15,7 +15,7 @@ use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;
 use crate::report::{ImprovedJoint, MANY_TIMES_NOISE, Passage, Topic, change_in_words};
-use crate::wording::{percent, rounded, unit_suffix, worst_segment_text};
+use crate::wording::{measure, percent, rounded, unit_suffix, worst_segment_text};
 
 /// The page of the revision at `place`.
 pub(super) fn page(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>, place: usize) -> String {
@@ -104,15 +104,17 @@ fn where_it_fails(page: &mut String, passage: &Passage) -> std::fmt::Result {
     writeln!(page)
 }
 
-/// Whether the shares of several effects are known, which are named beside them.
-fn has_shares(improved: &ImprovedJoint<'_>) -> bool {
+/// Whether it is known what the model leaves without each of several effects.
+fn are_several(improved: &ImprovedJoint<'_>) -> bool {
     improved.finding.attribution.is_some_and(|known| known.found.len() > 1)
 }
 
 /// What each effect that was found is.
 fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::Result {
     // Not as a table, the widest row of which would push the text out of its panel.
-    let components = improved.finding.compared.comparison.fit.model.components();
+    let compared = &improved.finding.compared;
+    let unit = compared.joint.output_unit.as_deref();
+    let components = compared.comparison.fit.model.components();
     let id = |component: &Component| component.effect().spec().id;
     let contribution = |component: &Component| {
         let found = &improved.finding.attribution?.found;
@@ -125,33 +127,33 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
     let mut components: Vec<&Component> = components.iter().collect();
     components.sort_by(|a, b| share(b).total_cmp(&share(a)));
     // Of one alone it is said above.
-    let has_shares = has_shares(improved);
-    if has_shares {
-        writeln!(page, "{SHARES}\n")?;
+    let are_several = are_several(improved);
+    if are_several {
+        let error = judged(compared.comparison);
+        writeln!(
+            page,
+            "Error with one left out and the rest fitted again ({} with all):\n",
+            measure(error, unit)
+        )?;
     }
     for component in components {
         write!(page, "- **{}**", plain(id(component)))?;
         let one = contribution(component);
-        if has_shares && one.is_none() {
-            write!(page, " (from the start)")?;
+        match one {
+            Some(one) if are_several => {
+                write!(page, " {}", plain(&measure(one.error_without, unit)))?;
+            }
+            None if are_several => write!(page, " (from the start)")?,
+            _ => {}
         }
-        if let Some(one) = one {
-            if has_shares {
-                write!(page, " {}", percent(one.error_share))?;
-            }
-            if !one.alternatives.is_empty() {
-                write!(page, " (or {})", plain(&one.alternatives.join(" or ")))?;
-            }
+        if let Some(one) = one.filter(|one| !one.alternatives.is_empty()) {
+            write!(page, " (or {})", plain(&one.alternatives.join(" or ")))?;
         }
         writeln!(page, ": {}", prose(&component.summary()))?;
     }
     writeln!(page)?;
     if let Some(id) = improved.revisions.last().and_then(of_some_trials) {
-        writeln!(
-            page,
-            "Brackets, as in `{}`, name the trials in which alone it acts.\n",
-            plain(id)
-        )?;
+        writeln!(page, "Brackets, as in `{id}`, name the trials in which alone it acts.\n")?;
     }
     Ok(())
 }
@@ -182,9 +184,6 @@ fn worst_segments(layout: &JointLayout<'_>, comparison: &Comparison) -> String {
     };
     (1..).zip(worst_spans(layout, comparison)).take(MOST).map(line).collect()
 }
-
-const SHARES: &str = "Share of the first error that returns when one alone is left out (they overlap; \
-how far a bar falls depends on the order):";
 
 const SEVERAL: &str = "This opens on the last revision; the right arrow begins with the first one, on \
 the timeline `revision`. ";
@@ -224,7 +223,13 @@ fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
         _ => None,
     });
     let all: Vec<String> = not_fallen.into_iter().chain(exchanges).collect();
-    (!all.is_empty()).then(|| all.join("; "))
+    match all.as_slice() {
+        [] if revisions.len() > 1 => {
+            Some("none: each revision lowered the error on what was not fitted".to_owned())
+        }
+        [] => None,
+        all => Some(all.join("; ")),
+    }
 }
 
 /// What is a gain at all, as a part of the error.

@@ -119,20 +119,25 @@ impl Steps {
     }
 }
 
-/// `28 accepted · 26 at_rest: joint at rest, before and after`, the most frequent reasons first.
+/// `28 accepted · 26 rejected: at_rest 25 (joint at rest, before and after), before_input 1 (…)`, the most
+/// frequent reasons first.
 fn verdicts(summary: &JointSummary) -> String {
     /// Reasons that are named.
     const MOST: usize = 2;
     let mut rejected = summary.rejected.clone();
     rejected.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let reason = |(condition, count): &(Condition, usize)| {
-        format!(" · {count} ✗ {condition}: {}", condition.meaning())
+        format!("{condition} {count} ({})", condition.meaning())
     };
-    let reasons: String = rejected.iter().take(MOST).map(reason).collect();
-    let others: usize = rejected.iter().skip(MOST).map(|(_, count)| count).sum();
-    let others =
-        if others > 0 { format!(" · {others} ✗ for other reasons") } else { String::new() };
-    format!("{} ✓ accepted{reasons}{others}", summary.accepted)
+    let mut reasons: Vec<String> = rejected.iter().take(MOST).map(reason).collect();
+    if rejected.len() > MOST {
+        reasons.push("…".to_owned());
+    }
+    let accepted = format!("{} ✓ accepted", summary.accepted);
+    match summary.steps - summary.accepted {
+        0 => format!("{accepted} · none rejected"),
+        count => format!("{accepted} · {count} ✗ rejected: {}", reasons.join(", ")),
+    }
 }
 
 /// Lanes start with all of the record in view: viewers from 0.41 on begin in its middle.

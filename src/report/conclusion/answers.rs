@@ -2,7 +2,7 @@
 
 use super::figures::first_of;
 use crate::diagnosis::failure::FailsWhere;
-use crate::explain::{CONSEQUENCE, Contribution, Verdict};
+use crate::explain::{CONSEQUENCE, Candidate, Contribution, Verdict};
 use crate::report::dead_time::dead_time_answer;
 use crate::report::doubt::doubted;
 use crate::report::finding::Finding;
@@ -69,10 +69,11 @@ impl Finding<'_> {
     fn why_no_more(&self) -> String {
         match self.before {
             // Effects were added until none did.
-            Some(_) => {
+            Some(_) if self.ranking.iter().any(Candidate::is_significant) => {
                 let least = percent(CONSEQUENCE);
-                format!("no other effect is sure to take {least} of the first error off")
+                format!("no other effect is both sure and worth {least} of the first error")
             }
+            Some(_) => "no other effect is significant".to_owned(),
             None => "no effect that was tried gains enough".to_owned(),
         }
     }

@@ -104,10 +104,12 @@ impl Finding<'_> {
             )
         } else {
             let with = self.output(with);
-            format!(
-                "The likeliest effect, {name}, would leave {with}: too little is gained, or too \
-                 uncertain, for it to be named."
-            )
+            let why = if likeliest.is_significant() {
+                "too little is gained for it to be named"
+            } else {
+                "it is not significant"
+            };
+            format!("The likeliest effect, {name}, would leave {with}: {why}.")
         })
     }
 }

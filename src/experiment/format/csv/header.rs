@@ -38,14 +38,24 @@ pub(super) fn check_parted(head: &Head, first: &csv::ByteRecord) -> Result<(), R
     if first.len() > 1 || names < 2 || values < 2 {
         return Ok(());
     }
-    Err(ReadError::Format {
-        path: head.path.clone(),
-        format: "a table of text",
-        reason: format!(
-            "its cells are parted by blanks, {names} words in the header and {values} in the first row"
-        ),
-        remedy: "part them by commas, semicolons or tabs, or write each name as one word",
-    })
+    let (reason, remedy) = if names == values {
+        let row = head.header_row;
+        (
+            format!(
+                "its cells are parted by blanks, and below row {row}, which has {names} words, the rows \
+                 are not all of {names} numbers"
+            ),
+            "leave out lines above the header, or part the cells by commas, semicolons or tabs",
+        )
+    } else {
+        (
+            format!(
+                "its cells are parted by blanks, {names} words in the header and {values} in the first row"
+            ),
+            "part them by commas, semicolons or tabs, or write each name as one word",
+        )
+    };
+    Err(ReadError::Format { path: head.path.clone(), format: "a table of text", reason, remedy })
 }
 
 /// A name without the quotation marks that a blank before them makes part of the cell.
@@ -98,8 +108,7 @@ pub(super) fn describes(
     for (column, (header, cell)) in head.headers.iter_mut().zip(record).enumerate() {
         let unit = bare_unit(&String::from_utf8_lossy(cell));
         let is_of_time = time == Some(column) && is_time(&unit);
-        // The times of a table that says `-` below them are in words, or in seconds.
-        let is_none = unit.is_empty() || time == Some(column) && unit == "-";
+        let is_none = unit.is_empty() || unit == "-";
         let is_meant = !is_none && (are_all_units || is_unit(&unit)) || is_of_time;
         if header.unit.is_none() && is_meant {
             header.unit = Some(unit);

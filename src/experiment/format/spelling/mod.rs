@@ -74,8 +74,11 @@ impl Spelling {
             let cells = split(names, self.delimiter);
             let row = split(rows(table).next()?, self.delimiter);
             let is_name = |cell: &[u8]| parse_time(cell.trim_ascii(), self.delimiter).is_err();
-            let is_header =
-                cells.len() > 1 && cells.len() == row.len() && cells.iter().all(is_name);
+            // The mark may be the name of a column of numbers of rows.
+            let mut names_of = cells.iter().enumerate();
+            let is_header = cells.len() > 1
+                && cells.len() == row.len()
+                && names_of.all(|(column, cell)| is_name(cell) || column == 0 && cell.is_empty());
             let before = line_ends(&[above.get(..above.len() - comment.len())?]);
             let preamble = (above.len() - names.len(), before);
             (is_header && holds_numbers(&row, self.delimiter)).then_some(Self { preamble, ..self })
@@ -199,7 +202,8 @@ fn sniff_delimiter(start: &[u8], marks: &[u8]) -> u8 {
 /// Whether the cells below a header are its units: none is a number, and one at least is a unit.
 pub(super) fn are_units(record: &csv::ByteRecord) -> bool {
     let texts = record.iter().map(|cell| bare_unit(&String::from_utf8_lossy(cell)));
-    let texts: Vec<String> = texts.filter(|text| !text.is_empty()).collect();
+    // What has no unit has none, or `-`.
+    let texts: Vec<String> = texts.filter(|text| !["", "-"].contains(&text.as_str())).collect();
     let is_number = |text: &String| text.replace(',', ".").parse::<f64>().is_ok();
     !texts.is_empty()
         && !texts.iter().any(is_number)
@@ -313,6 +317,7 @@ mod tests {
     #[test]
     fn units_below_the_header_are_no_samples() {
         let row = |cells: &[&str]| are_units(&csv::ByteRecord::from(cells.to_vec()));
+        assert!(row(&["s", "-", "-"]) && row(&["", "-", "deg"]) && !row(&["-", "-"]));
         assert!(row(&["s", "V", "deg"]) && row(&["[ms]", "(%)", ""]));
         assert!(!row(&["0", "V", "deg"]) && !row(&["", ""]) && !row(&["x", "n/a"]));
     }
