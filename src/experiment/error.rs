@@ -79,6 +79,19 @@ pub enum ReadError {
         /// What it holds.
         found: String,
     },
+    /// A column that is to name trials holds no label per row.
+    #[error(
+        "{}, column `{column}`: it holds {found}, not a label per row; save it as numbers or as a \
+         cell array of texts, or read all as one trial with `--trial none`", path.display()
+    )]
+    NoLabels {
+        /// The log.
+        path: PathBuf,
+        /// The column.
+        column: String,
+        /// What it holds.
+        found: String,
+    },
     /// Two columns that are needed differ in length.
     #[error(
         "{}: column `{column}` has {found} values but `{other}` has {expected}; choose columns \
@@ -614,6 +627,7 @@ impl ReadError {
     pub fn column(&self) -> Option<&str> {
         match self {
             Self::NotNumbers { column, .. }
+            | Self::NoLabels { column, .. }
             | Self::UnequalColumns { column, .. }
             | Self::DuplicateColumn { column, .. }
             | Self::TimeUnit { column, .. }

@@ -261,6 +261,8 @@ pub(super) struct Column {
     pub(super) values: Vec<f64>,
     /// Whether they are dates or times of day, in seconds whatever the unit of the column.
     pub(super) are_dates: bool,
+    /// Whether their type is that of times of day.
+    pub(super) are_of_day: bool,
     /// The first bad cell and its row. The values end before it.
     pub(super) error: Option<(u64, BadCell)>,
 }

@@ -96,10 +96,15 @@ const TIMES: [(&[&str], &[&str], f64); 7] = [
     (&[], &["d", "day", "days", "tag", "tage", "jour", "jours"], 86_400.0),
 ];
 
-/// The seconds of the one unit of time that `text` names, as `Time in ms` or `Millisekunden`; none
-/// where it names none or several.
+/// The seconds of the one unit of time that `text` names, as `Time in ms`, `Millisekunden` or `10 ms`;
+/// none where it names none or several.
 pub(super) fn time_in(text: &str) -> Option<f64> {
     let lower = text.to_lowercase();
+    // `seconds since 1970-01-01 00:00:00`
+    let lower = lower.split(" since ").next()?.trim();
+    if lower.contains(|letter: char| letter.is_ascii_digit() || letter == '/') {
+        return times_in(lower);
+    }
     let words = lower.split(|letter: char| !letter.is_alphabetic());
     let of = |word: &str| {
         let is_it = |(names, words, _): &&(&[&str], &[&str], f64)| {
@@ -111,6 +116,21 @@ pub(super) fn time_in(text: &str) -> Option<f64> {
     let first = found.next()?;
     #[expect(clippy::float_cmp, reason = "each stands in the list above")]
     found.all(|other| other == first).then_some(first)
+}
+
+/// The seconds of a unit of time with a factor before it: `10ms`, `0.01 s`, `x10 ms`.
+fn times_in(text: &str) -> Option<f64> {
+    let is_between = |letter: char| letter.is_whitespace() || "x*·×".contains(letter);
+    let text = text.trim_start_matches(is_between);
+    let end = text.find(|letter: char| !letter.is_ascii_digit() && !".,".contains(letter))?;
+    let (factor, unit) = text.split_at_checked(end)?;
+    let factor: f64 = factor.replace(',', ".").parse().ok()?;
+    let unit = unit.trim_start_matches(is_between);
+    let is_word = unit.chars().all(char::is_alphabetic);
+    Some(factor)
+        .filter(|factor| *factor > 0.0 && is_word)
+        .zip(time_in(unit))
+        .map(|(factor, unit)| factor * unit)
 }
 
 /// Whether `unit` is one of time.
@@ -132,8 +152,8 @@ pub(super) fn seconds_of(unit: &str) -> Option<f64> {
     TIMES.iter().find(|(names, ..)| names.contains(&unit)).map(|(_, _, seconds)| *seconds)
 }
 
-/// Name and unit of a header: a unit in square brackets is any text, one in round brackets
-/// must be known.
+/// Name and unit of a header: a unit in square brackets is any text, one in round brackets or behind a
+/// slash must be known.
 pub(super) fn parted(text: &str) -> (&str, Option<String>) {
     let split = |open: char, close: char| {
         let (name, unit) = text.strip_suffix(close)?.rsplit_once(open)?;
@@ -143,7 +163,10 @@ pub(super) fn parted(text: &str) -> (&str, Option<String>) {
         return (name, Some(unit.to_owned()));
     }
     let is_known = |unit: &str| is_unit(unit) || seconds_of(&unit.to_lowercase()).is_some();
-    let known = split('(', ')').filter(|(name, unit)| is_known(unit) && !name.is_empty());
+    // As standards have it: `angle / deg`.
+    let over = || text.rsplit_once(" / ").map(|(name, unit)| (name.trim(), unit.trim()));
+    let known = split('(', ')').or_else(over);
+    let known = known.filter(|(name, unit)| is_known(unit) && !name.is_empty());
     known.map_or((text, None), |(name, unit)| (name, Some(shown(unit).unwrap_or(unit).to_owned())))
 }
 
@@ -194,6 +217,29 @@ mod tests {
         assert_eq!(parted("angle (rad)"), ("angle", Some("rad".to_owned())));
         assert_eq!(unit("Time (s)").as_deref(), Some("s"));
         assert_eq!((unit("y(2)"), unit("angle (left)"), unit("boom.output")), (None, None, None));
+    }
+
+    #[test]
+    fn a_unit_of_time_may_have_a_factor() {
+        let close = |text: &str, seconds: f64| {
+            time_in(text).is_some_and(|found| (found / seconds - 1.0).abs() < 1e-12)
+        };
+        for (text, seconds) in [
+            ("ms", 1e-3),
+            ("Time in ms", 1e-3),
+            ("seconds since 1970-01-01 00:00:00", 1.0),
+            ("10ms", 0.01),
+            ("x10 ms", 0.01),
+            ("10*ms", 0.01),
+            ("0.01 s", 0.01),
+            ("0,01 s", 0.01),
+            ("100us", 1e-4),
+        ] {
+            assert!(close(text, seconds), "{text}: {:?}", time_in(text));
+        }
+        for text in ["1/100 s", "s/100", "ticks", "10", "0 s", "ms or s", "10 ms or 5"] {
+            assert_eq!(time_in(text), None, "{text}");
+        }
     }
 
     #[test]

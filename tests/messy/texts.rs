@@ -44,6 +44,18 @@ pub(crate) fn texts() -> Vec<Messy> {
         ),
         messy("row_of_units.csv", all.replacen('\n', "\ns,V,deg\n", 1), SAME),
         messy("row_with_one_unit.csv", all.replacen('\n', "\ns,-,-\n", 1), SAME),
+        messy(
+            "labels_with_marks.csv",
+            all.lines()
+                .enumerate()
+                .map(|(k, line)| match k {
+                    0 => format!("trial,{line}\n"),
+                    k => format!("#{},{line}\n", 1 + k / 900),
+                })
+                .collect::<String>(),
+            Expected::Refused(&["row 2", "`#1`", "without `#`"]),
+        ),
+        messy("time_in_tens_of_ms.csv", all.replacen("time_s", "time [1000 ms]", 1), SAME),
         messy("latin1.csv", latin1, SAME),
         messy("carriage_returns.csv", old_line_ends(&all), SAME),
         messy("carriage_returns.csv.gz", gzip(&old_line_ends(&all)), SAME),
@@ -79,6 +91,17 @@ pub(crate) fn texts() -> Vec<Messy> {
             "missing_null.csv",
             cell(&all, 617, 1, "null"),
             read(0.051, "1 cell is empty or NaN"),
+        ),
+        messy(
+            "row_without_a_time.csv",
+            cell(&all, 617, 0, "#N/A"),
+            Expected::Refused(&["row 617", "`time_s`", "the time is missing"]),
+        ),
+        messy(
+            "names_over_units.csv",
+            all.replacen(HEADER, "Time / ms,boom.input / %,boom.output / deg", 1)
+                .replacen("ms", "s", 1),
+            SAME,
         ),
         messy("empty_cell.csv", cell(&all, 617, 2, ""), read(0.051, "1 cell is empty or NaN")),
     ]

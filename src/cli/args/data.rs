@@ -166,7 +166,8 @@ impl DataArgs {
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let (files, _) = expand_folders(&self.data);
         let files = files.iter().chain(&self.reading.columns);
-        files.filter_map(|file| file.canonicalize().ok()).collect()
+        // One that is to be followed may not be there yet.
+        files.map(|file| file.canonicalize().unwrap_or_else(|_| file.clone())).collect()
     }
 
     /// These options as they are typed, for one joint of several where it is named.

@@ -298,7 +298,9 @@ fn cell(data: &Data) -> String {
         Data::Int(value) => value.to_string(),
         Data::Bool(value) => u8::from(*value).to_string(),
         Data::DateTime(time) => {
-            let text = if time.is_datetime() {
+            /// Days of the first of March 1900: before it times of day are shown, and no dates.
+            const FIRST_DATES: f64 = 61.0;
+            let text = if time.is_datetime() && time.as_f64() >= FIRST_DATES {
                 date_of_days(days_of(time))
             } else {
                 passed_of_days(time.as_f64())
@@ -341,6 +343,9 @@ mod tests {
         let date = text(noon, ExcelDateTimeType::DateTime);
         assert!(date.starts_with("2024-03-01T12:00:00.25"), "{date}");
         assert_eq!(text(1.0 + 0.25 / 86_400.0, ExcelDateTimeType::TimeDelta), "24:00:00.250000");
+        let just_before = (3_600.0 - 1e-9) / 86_400.0;
+        assert_eq!(text(just_before, ExcelDateTimeType::TimeDelta), "1:00:00.000000");
+        assert_eq!(text(just_before, ExcelDateTimeType::DateTime), "1:00:00.000000");
         assert_eq!(cell(&Data::Float(0.5)), "0.5");
     }
 }

@@ -138,6 +138,15 @@ impl Log<'_> {
         let TimeSource::Times(column, scale) = time else { return None };
         let is_known = scale.is_some() || self.counting(column, scale).is_recognized();
         let lowest = if is_known || self.are_dates(column) { PLAUSIBLE.0 } else { GUESSED_FROM };
+        /// Seconds since 1970 of the year 5138: what counts more counts in another unit.
+        const LATEST_S: f64 = 1e11;
+        if scale.is_some() && self.origin_s(time) > LATEST_S {
+            let (name, first) = (self.header(column), self.first_time(column).unwrap_or_default());
+            return Some(format!(
+                "is `{first:e}` in `{name}` really in the unit that it names? It looks like a time \
+                 since 1970 in ms, µs or ns; say so with `--time '{name} [ms]'`, [us] or [ns]"
+            ));
+        }
         let rates = grids.iter().map(|grid| 1.0 / grid.period().seconds());
         let odd = rates.into_iter().find(|rate| !(lowest..=PLAUSIBLE.1).contains(rate))?;
         let (name, digits) = (self.header(column), format!("{odd:.2e}"));
@@ -194,7 +203,7 @@ impl Log<'_> {
         let counting = self.counting(column, scale);
         let mut times: Vec<f64> = values.iter().map(|value| counting.seconds_of(*value)).collect();
         self.check_times(column, &times)?;
-        if self.are_dates(column) {
+        if self.column(column).is_some_and(|column| column.are_dates || column.are_of_day) {
             count_over_midnight(&mut times);
         }
         Ok(Clock::Stamps(times))

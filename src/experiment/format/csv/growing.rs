@@ -154,7 +154,8 @@ impl GrowingRows {
 
     /// What was not parsed yet.
     fn piece(&self) -> Piece<'_> {
-        Piece { text: &self.text, lines: self.lines, is_begun: self.head.is_some() }
+        let labels_before = self.spelling.labels_before(&self.start);
+        Piece { text: &self.text, lines: self.lines, is_begun: self.head.is_some(), labels_before }
     }
 
     fn drop_parsed(&mut self, bytes: usize) {

@@ -57,11 +57,13 @@ pub(super) struct Piece<'t> {
     pub(super) lines: u64,
     /// Whether the table begins before it.
     pub(super) is_begun: bool,
+    /// As [`LineEnds::with_labels_before`].
+    pub(super) labels_before: Option<u8>,
 }
 
 /// Hands on the records of a piece that are whole, and says how many bytes are done with.
 pub(super) fn each(
-    Piece { text, lines, is_begun }: Piece<'_>,
+    Piece { text, lines, is_begun, labels_before }: Piece<'_>,
     delimiter: u8,
     path: &Path,
     take: &mut impl FnMut(&csv::ByteRecord, &Place) -> Result<ControlFlow<Taken, Taken>, ReadError>,
@@ -70,7 +72,8 @@ pub(super) fn each(
     // before what goes on.
     let before = u64::from(is_begun && lines > 0);
     let all = b"\n".take(before).chain(text);
-    let mut reader = reader(delimiter, LineEnds::after(all, lines - before));
+    let lines = LineEnds::after(all, lines - before).with_labels_before(labels_before);
+    let mut reader = reader(delimiter, lines);
     let mut record = csv::ByteRecord::new();
     let mut done = 0;
     let mut holds = false;
@@ -136,18 +139,135 @@ pub(super) struct LineEnds<R> {
     row_end: u64,
     /// Bytes that a row may have.
     longest: u64,
+    /// Bytes that were read, and that wait for those behind them.
+    waiting: Vec<u8>,
+    /// What parts the cells, where the first one of each row is the label of its trial: that may begin
+    /// with the mark of a comment.
+    labels_before: Option<u8>,
+}
+
+/// What spreadsheet programs write for a value that is none. At the beginning of a line it is no comment.
+const NO_VALUES: [&[u8]; 12] = [
+    b"#N/A", b"#NV", b"#REF!", b"#BEZUG!", b"#DIV/0!", b"#VALUE!", b"#WERT!", b"#NAME?", b"#NUM!",
+    b"#ZAHL!", b"#NULL!", b"#SPILL!",
+];
+
+/// The longest of them, and the byte behind it.
+const LOOKED_AT: usize = 8;
+
+/// Whether a line begins with the cell of a value that is none.
+fn begins_without_value(line: &[u8]) -> bool {
+    let behind = |cell: &&[u8]| line.strip_prefix(*cell);
+    let ends = |rest: &[u8]| rest.first().is_none_or(|byte| b",;|\t\r\n".contains(byte));
+    NO_VALUES.iter().filter_map(behind).any(ends)
+}
+
+/// Puts a blank for the mark of each line that begins with a value that is none; how many bytes are known
+/// to be right: what begins like one and goes on behind the end, if it goes on, is not.
+fn without_marks(bytes: &mut [u8], begins_a_line: bool, is_all: bool) -> usize {
+    // Most texts have no comment at all.
+    if !bytes.contains(&b'#') {
+        return bytes.len();
+    }
+    let mut start = if begins_a_line { Some(0) } else { next_line(bytes, 0) };
+    while let Some(at) = start {
+        let line = bytes.get(at..).unwrap_or_default();
+        if line.first() == Some(&b'#') {
+            if line.len() <= LOOKED_AT && !is_all {
+                return at;
+            }
+            if begins_without_value(line)
+                && let Some(mark) = bytes.get_mut(at)
+            {
+                *mark = b' ';
+            }
+        }
+        start = next_line(bytes, at);
+    }
+    bytes.len()
+}
+
+/// Where the next line begins behind the byte `from`.
+fn next_line(bytes: &[u8], from: usize) -> Option<usize> {
+    let behind = bytes.get(from..)?.iter().position(|byte| *byte == b'\n')?;
+    Some(from + behind + 1).filter(|start| *start < bytes.len())
 }
 
 impl<R: Read> LineEnds<R> {
     /// Bytes that come after so many `lines`.
     pub(super) fn after(inner: R, lines: u64) -> Self {
         let (ends, longest) = (VecDeque::new(), LONGEST_ROW);
-        Self { inner, bytes: 0, last: b'\n', ends, passed: lines, row_end: 0, longest }
+        Self {
+            inner,
+            bytes: 0,
+            last: b'\n',
+            ends,
+            passed: lines,
+            row_end: 0,
+            longest,
+            waiting: Vec::new(),
+            labels_before: None,
+        }
     }
 
     /// With rows for which there is memory.
     pub(super) fn within(self, budget: &Budget) -> Self {
         Self { longest: LONGEST_ROW.min(budget.left() / ROW_SIZE), ..self }
+    }
+
+    /// Reads bytes with a blank for the mark of a comment at the beginning of a line that is a cell.
+    fn read_cells(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let mut count = 0;
+        loop {
+            let held = self.waiting.len().min(buffer.len() - count);
+            let room = buffer.get_mut(count..count + held).unwrap_or_default();
+            room.copy_from_slice(self.waiting.get(..held).unwrap_or_default());
+            self.waiting.drain(..held);
+            count += held;
+            let new = self.inner.read(buffer.get_mut(count..).unwrap_or_default())?;
+            count += new;
+            let is_all = new == 0;
+            let known = buffer.get_mut(..count).unwrap_or_default();
+            let done = without_marks(known, self.last == b'\n', is_all);
+            if done > 0 || is_all {
+                self.check_labels(known.get(..done).unwrap_or_default())?;
+                self.waiting.splice(0..0, known.get(done..).unwrap_or_default().iter().copied());
+                return Ok(done);
+            }
+        }
+    }
+
+    /// Of a table whose rows begin with labels, where that is so, and with the mark behind these.
+    pub(super) fn with_labels_before(self, mark: Option<u8>) -> Self {
+        Self { labels_before: mark, ..self }
+    }
+
+    /// Refuses a line that begins like a comment and may be a row that begins with a label.
+    fn check_labels(&self, bytes: &[u8]) -> io::Result<()> {
+        let Some(mark) = self.labels_before.filter(|_| bytes.contains(&b'#')) else {
+            return Ok(());
+        };
+        let mut start = if self.last == b'\n' { Some(0) } else { next_line(bytes, 0) };
+        while let Some(at) = start {
+            let line = bytes.get(at..).and_then(|rest| rest.split(|byte| *byte == b'\n').next());
+            let label =
+                line.and_then(|line| line.strip_prefix(b"#")?.split(|byte| *byte == mark).next());
+            let is_label = label.is_some_and(|label| {
+                let is_parted = line.is_some_and(|line| line.len() > label.len() + 1);
+                is_parted && label.first().is_some_and(u8::is_ascii_alphanumeric)
+            });
+            if let Some(label) = label.filter(|_| is_label) {
+                let label = String::from_utf8_lossy(label);
+                let before = bytes.iter().take(at).filter(|byte| **byte == b'\n').count();
+                let row = self.passed + (self.ends.len() + before) as u64 + 1;
+                return Err(io::Error::other(format!(
+                    "row {row} begins with `#{label}`, which may be a comment or the label of a trial: \
+                     write labels without `#`, and a blank behind the mark of a comment"
+                )));
+            }
+            start = next_line(bytes, at);
+        }
+        Ok(())
     }
 
     /// Number of line ends before the byte `place`, which never goes back.
@@ -175,12 +295,49 @@ impl<R: Read> Read for LineEnds<R> {
                 self.passed, self.longest
             )));
         }
-        let count = self.inner.read(buffer)?;
+        let count = self.read_cells(buffer)?;
         let new = buffer.get(..count).unwrap_or_default();
         let ends = new.iter().zip(self.bytes..).filter(|(byte, _)| **byte == b'\n');
         self.ends.extend(ends.map(|(_, place)| place));
         self.last = new.last().copied().unwrap_or(self.last);
         self.bytes += count as u64;
         Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Hands on few bytes at a time.
+    struct Few<'t>(&'t [u8], usize);
+
+    impl Read for Few<'_> {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            let count = self.1.min(buffer.len());
+            self.0.read(&mut buffer[..count])
+        }
+    }
+
+    #[test]
+    fn a_value_that_is_none_is_no_comment() {
+        let text = b"#N/A\n# by hand\n#N/A;1\n#N/Ax,1\n#DIV/0!,2\n0,#N/A\n#\n#NV";
+        let expected = b" N/A\n# by hand\n N/A;1\n#N/Ax,1\n DIV/0!,2\n0,#N/A\n#\n NV";
+        for pieces in 1..20 {
+            for room in [1, 3, 9, 64] {
+                let mut lines = LineEnds::after(Few(text, pieces), 0);
+                let (mut made, mut buffer) = (Vec::new(), vec![0; room]);
+                loop {
+                    let count = lines.read(&mut buffer).unwrap();
+                    made.extend_from_slice(&buffer[..count]);
+                    if count == 0 {
+                        break;
+                    }
+                }
+                // With less room than such a cell takes, a mark may stay.
+                let is_right = made == expected || room < 9 && made.len() == text.len();
+                assert!(is_right, "{pieces} {room} {:?}", String::from_utf8_lossy(&made));
+            }
+        }
     }
 }

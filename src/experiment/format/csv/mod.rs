@@ -53,6 +53,7 @@ pub(super) fn table(
         bytes = bytes.tabbed(path);
     }
     let lines = LineEnds::after(bytes, lines).within(&budget);
+    let lines = lines.with_labels_before(spelling.labels_before(start));
     let mut reader = reader(delimiter, lines);
     let mut record = csv::ByteRecord::new();
     if !next(&mut reader, &mut record, path)? {

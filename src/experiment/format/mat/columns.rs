@@ -110,9 +110,20 @@ impl Unread {
         })
     }
 
+    /// The label of each row.
     fn labels(&self, header: usize, path: &Path) -> Result<Vec<String>, ReadError> {
-        if let Some((Variable { content: Content::Texts(texts), .. }, _)) = self.place(header) {
-            return Ok(texts.clone());
+        let refused = |found: &str| {
+            let column =
+                self.place(header).map_or_else(String::new, |(found, _)| found.name.clone());
+            Err(ReadError::NoLabels { path: path.to_owned(), column, found: found.to_owned() })
+        };
+        match self.place(header) {
+            Some((Variable { content: Content::Texts(texts), .. }, _)) => return Ok(texts.clone()),
+            Some((Variable { content: Content::Other(kind), .. }, _)) => return refused(kind),
+            Some((_, Place { rows: 0, .. })) => {
+                return refused("an array that has no row per sample");
+            }
+            _ => {}
         }
         let values = self.column(header, path)?.values;
         Ok(values.iter().map(ToString::to_string).collect())

@@ -296,7 +296,10 @@ impl Array {
         budget.take_values(1, size_of::<Variable>() + 2 * name.len())?;
         let content = match self.value {
             Value::Numbers(values) => Content::Numbers(Numbers::Read(values)),
-            Value::Text(_) => Content::Other("text"),
+            Value::Text(text) => match self.dims.as_slice() {
+                [rows, _] if *rows > 1 => Content::Texts(rows_of(&text, *rows)),
+                _ => Content::Other("text"),
+            },
             Value::Other(kind) => Content::Other(kind),
             Value::Cells(cells) => texts(cells),
             Value::Structures(elements) => {
@@ -313,6 +316,14 @@ impl Array {
         variables.push(Variable { name, dims: self.dims, content });
         Ok(())
     }
+}
+
+/// The rows of a matrix of characters, which stand column after column, without the blanks that make
+/// them alike long.
+fn rows_of(text: &str, rows: usize) -> Vec<String> {
+    let letters: Vec<char> = text.chars().collect();
+    let row = |row: usize| letters.iter().skip(row).step_by(rows).collect::<String>();
+    (0..rows).map(|at| row(at).trim_end().to_owned()).collect()
 }
 
 const TOO_LONG: &str = "a name is too long";

@@ -121,7 +121,12 @@ impl Rows for Unread {
             for ((column, index), kind) in columns.iter_mut().zip(wanted.numeric).zip(&kinds) {
                 match kind {
                     Some(kind) => *column = Column::not_numbers(kind),
-                    None => read(*index, &mut |cell| column.add(cell.number()))?,
+                    None => {
+                        let kind = schema.column(*index);
+                        column.are_of_day =
+                            matches!(kind.logical_type_ref(), Some(LogicalType::Time(_)));
+                        read(*index, &mut |cell| column.add(cell.number()))?;
+                    }
                 }
             }
             if let Some(index) = wanted.label {

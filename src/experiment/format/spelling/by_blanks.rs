@@ -1,8 +1,8 @@
 //! Tables whose cells are parted by runs of blanks.
 
 use super::super::blanks::tabbed;
-use super::rows::{count, holds_numbers, is_row, rows, split};
-use super::{BLANK, BYTE_ORDER_MARK, LINES, Spelling, are_units};
+use super::marks::{BLANK, Spelling, are_units};
+use super::rows::{BYTE_ORDER_MARK, LINES, count, holds_numbers, is_row, rows, split};
 
 impl Spelling {
     /// The table as rows of numbers that blanks part into as many cells as the header, where no mark

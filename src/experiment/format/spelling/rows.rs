@@ -1,7 +1,11 @@
 //! Rows of a text, before it is known what parts their cells.
 
 use super::super::cell::{Time, parse_time};
-use super::BYTE_ORDER_MARK;
+
+pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Lines that are looked at to separate the table from what precedes it.
+pub(super) const LINES: usize = 200;
 
 /// The lines of a text; those that one quoted cell goes over are one. A quotation mark that nothing
 /// answers soon is a mark like any other.
