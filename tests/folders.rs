@@ -303,6 +303,26 @@ fn a_pipe_under_the_name_of_a_result_is_not_waited_for() {
     workspace.run("merge kept").says("not a file, and a result is one; remove it");
 }
 
+#[test]
+#[cfg(unix)]
+fn a_link_under_the_name_of_a_model_is_not_written_through() {
+    let workspace = Workspace::with_logs(1);
+    let command = "improve logs --results kept --max-effects 0";
+    workspace.run(command).is_whole();
+    let kept = fs::read_dir(workspace.path("kept")).unwrap().map(|entry| entry.unwrap().path());
+    for file in kept.collect::<Vec<_>>() {
+        fs::remove_file(&file).unwrap();
+        if file.extension().unwrap() == "toml" {
+            std::os::unix::fs::symlink(workspace.path("other.csv"), file).unwrap();
+        }
+    }
+    fs::write(workspace.path("other.csv"), "a log").unwrap();
+    let again = workspace.run(command);
+    assert_eq!(again.status, Some(2));
+    again.says("not a file, and results are files of their own; remove it");
+    assert_eq!(workspace.read("other.csv"), "a log");
+}
+
 /// The interpreter for the example, where it has what the example needs.
 fn python() -> Option<String> {
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());

@@ -136,6 +136,7 @@ fn what_cannot_be_followed_is_refused() {
         ("log.csv --follow --alpha auto", "give a number"),
         ("log.csv --follow --fill 1", "`--fill`"),
         ("log.csv --idle 3", "--follow"),
+        ("later.csv --follow --idle 1 --decisions ./later.csv", "a file that is read"),
         ("missing.csv --follow --idle 0", "missing.csv: cannot be read"),
     ];
     for (arguments, why) in refused {

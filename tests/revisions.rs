@@ -259,6 +259,28 @@ fn a_limit_that_is_no_number_is_refused() {
     }
 }
 
+#[test]
+fn what_contradicts_itself_is_refused() {
+    let of = |effects: &str| {
+        let text = format!(
+            "schema = \"tauscope/model/1\"\n[joint.boom]\nstructure = \"integrator\"\n\
+             parameters = {{ gain = 8.0, delay = 0.1 }}\n{effects}"
+        );
+        ModelFile::parse(&text, Path::new("boom.toml")).map_err(|error| error.to_string())
+    };
+    let effect = |kind: &str, parameters: &str| {
+        format!("[[joint.boom.effect]]\nkind = \"{kind}\"\nparameters = {{ {parameters} }}\n")
+    };
+    let stops = of(&effect("end_stop", "low = 10, high = -10")).unwrap_err();
+    assert!(stops.contains("`low` above its `high`"), "{stops}");
+    let band = effect("dead_band", "lower = -1, upper = 1");
+    assert!(of(&band).is_ok());
+    let twice = of(&band.repeat(2)).unwrap_err();
+    assert!(twice.contains("is there twice"), "{twice}");
+    let large = of(&effect("dead_band", "lower = -1e308")).unwrap_err();
+    assert!(large.contains("between -1e12 and 1e12"), "{large}");
+}
+
 fn is_same(a: &JointModel, b: &JointModel) -> bool {
     let is_same = |(a, b): (&Component, &Component)| {
         std::ptr::eq(a.effect().spec(), b.effect().spec()) && a.parameters() == b.parameters()

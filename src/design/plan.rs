@@ -44,6 +44,9 @@ pub fn plan(
         let seed = request.seed;
         let steps = RandomSteps { levels, hold_s, duration_s, seed };
         let schedule = random_steps(&steps, rig, known, index);
+        if schedule.holds().len() < 2 {
+            return Err(PlanError::HoldTooLong { hold_s: hold_s.0, duration_s });
+        }
         let prediction = known.map(|known| rig.prediction(known, &schedule));
         return Ok(Plan::new(schedule, prediction, hold_s));
     };

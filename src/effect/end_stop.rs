@@ -47,6 +47,11 @@ impl Effect for EndStop {
         at.signal.max(low).min(high)
     }
 
+    fn fault(&self, parameters: &[f64]) -> Option<&'static str> {
+        let &[low, high] = parameters else { return None };
+        (low > high).then_some("has its `low` above its `high`")
+    }
+
     /// Each stop on its side of the middle, as far out as one more span.
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
         let (lowest, highest) = record.extent(Dimension::Output);

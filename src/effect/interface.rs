@@ -122,6 +122,11 @@ pub trait Effect: Debug + Send + Sync {
         None
     }
 
+    /// What is wrong with parameters each of which is allowed by itself, for messages.
+    fn fault(&self, _parameters: &[f64]) -> Option<&'static str> {
+        None
+    }
+
     /// Lowest and highest value of each parameter that a fit to `record` should try.
     ///
     /// They lie within those of the [`Spec`]; the neutral value may lie outside, where

@@ -178,6 +178,10 @@ impl Effect for Restricted {
         self.effect.guesses(record)
     }
 
+    fn fault(&self, parameters: &[f64]) -> Option<&'static str> {
+        self.effect.fault(parameters)
+    }
+
     fn in_place_of(&self, other: &Spec, values: &[f64]) -> Option<Vec<f64>> {
         self.effect.in_place_of(other, values)
     }

@@ -157,6 +157,19 @@ pub enum ReadError {
         /// Lines that the row takes up; more than one where a cell is quoted.
         lines: u64,
     },
+    /// A quoted cell holds further rows.
+    #[error(
+        "{}, row {row}: a cell that begins with a quotation mark goes over {lines} lines, which look \
+         like rows; close it, or remove the mark", path.display()
+    )]
+    OpenQuotation {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// Lines that the row takes up.
+        lines: u64,
+    },
     /// Two columns have the name that is looked for.
     #[error(
         "{}{}: two columns are named `{column}`; rename one of them", path.display(), header(*row)
@@ -597,6 +610,7 @@ impl ReadError {
     pub fn row(&self) -> Option<u64> {
         match self {
             Self::UnequalRow { row, .. }
+            | Self::OpenQuotation { row, .. }
             | Self::DuplicateColumn { row, .. }
             | Self::NotUtf8 { row, .. }
             | Self::TimeUnit { row, .. }

@@ -45,6 +45,13 @@ pub(crate) fn texts() -> Vec<Messy> {
         messy("row_of_units.csv", all.replacen('\n', "\ns,V,deg\n", 1), SAME),
         messy("row_with_one_unit.csv", all.replacen('\n', "\ns,-,-\n", 1), SAME),
         messy(
+            "quotation_not_closed.csv",
+            noted(&all, "\"open"),
+            Expected::Refused(&["row 617", "quotation mark", "close it"]),
+        ),
+        messy("lines_in_a_cell.csv", noted(&all, "\"two\nlines\""), SAME),
+        messy("words_between_tabs.tsv", between_words(&rows), read(1e-6, "is not used")),
+        messy(
             "labels_with_marks.csv",
             all.lines()
                 .enumerate()
@@ -111,6 +118,24 @@ pub(crate) fn texts() -> Vec<Messy> {
 fn old_line_ends(log: &str) -> String {
     let commented = log.replacen("\n1.000000,", "\n# here the operator changed\n1.000000,", 1);
     format!("# by hand\n{commented}").replace('\n', "\r")
+}
+
+/// The log with a column of notes, of which row 617 has one.
+fn noted(log: &str, note: &str) -> String {
+    let row = |(k, line): (usize, &str)| match k {
+        0 => format!("{line},note\n"),
+        616 => format!("{line},{note}\n"),
+        _ => format!("{line},\n"),
+    };
+    log.lines().enumerate().map(row).collect()
+}
+
+/// The log between columns most of which are words or empty.
+fn between_words(rows: &[Row]) -> String {
+    let header = "time_s\t\tstate\tboom.input\tboom.output\tmode\tstep\n";
+    let row =
+        |row: &Row| format!("{}\t\tok\t{}\t{}\tauto\tstep 1\n", row.time, row.input, row.output);
+    header.to_owned() + &rows.iter().map(row).collect::<String>()
 }
 
 /// The log with a column `#` that numbers its rows.

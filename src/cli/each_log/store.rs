@@ -63,10 +63,7 @@ impl Kept {
     }
 
     pub(crate) fn write(&self, path: &Path) -> anyhow::Result<()> {
-        // It may lead to a log, or be a pipe that nobody reads.
-        if path.symlink_metadata().is_ok_and(|found| !found.is_file()) {
-            bail!("{}: not a file, and results are files of their own; remove it", path.display());
-        }
+        check_own_file(path)?;
         write_file(path, |file| Ok(serde_json::to_writer(file, self)?))
     }
 
@@ -74,6 +71,15 @@ impl Kept {
     pub(crate) fn result(self) -> LogResult {
         LogResult { file: self.file, document: self.document }
     }
+}
+
+/// Refuses what is not a file of its own under the name of a result: it may lead to a log, or be a pipe
+/// that nobody reads.
+pub(crate) fn check_own_file(path: &Path) -> anyhow::Result<()> {
+    if path.symlink_metadata().is_ok_and(|found| !found.is_file()) {
+        bail!("{}: not a file, and results are files of their own; remove it", path.display());
+    }
+    Ok(())
 }
 
 /// The name of a log's file in the folder, without its ending: readable, and its own also

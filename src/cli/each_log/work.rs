@@ -13,7 +13,7 @@ use anyhow::{Context as _, anyhow, bail};
 use sha2::{Digest as _, Sha256};
 
 use super::each::Each;
-use super::store::{Kept, name_of, text_of};
+use super::store::{Kept, check_own_file, name_of, text_of};
 use super::typed::Typed;
 use super::with_parent;
 use crate::cli::console::{Bar, Verbosity, message};
@@ -154,6 +154,7 @@ impl Work<'_> {
         command.arg(self.each.command).args(&self.typed.words);
         command.args(["--format=json", "--quiet"]).arg(format!("--threads={threads}"));
         if let Some(model) = self.model_of(log) {
+            check_own_file(&model)?;
             let mut write = OsString::from("--write=");
             write.push(model);
             command.arg(write);

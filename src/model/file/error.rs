@@ -96,7 +96,7 @@ pub enum ModelError {
     /// A value is not finite, or lies outside its bounds.
     #[error(
         "{}, joint `{joint}`: `{owner}.{name}` = {} is not {}",
-        path.display(), plain(*value), allowed(*min, *max)
+        path.display(), plain(*value), allowed(*value, (*min, *max))
     )]
     OutOfBounds {
         /// The file.
@@ -160,7 +160,10 @@ pub enum ModelError {
 }
 
 /// What a value may be.
-fn allowed(min: f64, max: f64) -> String {
+fn allowed(value: f64, (min, max): (f64, f64)) -> String {
+    if value.abs() > UNLIMITED && value.is_finite() {
+        return format!("between -{UNLIMITED:e} and {UNLIMITED:e}");
+    }
     match (min > -UNLIMITED, max < UNLIMITED) {
         (true, true) => format!("between {} and {}", plain(min), plain(max)),
         (true, false) => format!("{} or more", plain(min)),

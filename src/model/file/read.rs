@@ -80,6 +80,13 @@ impl Own<'_> {
         Ok(())
     }
 
+    fn check_once(&self, others: &[&'static dyn Effect], id: &str) -> Result<(), ModelError> {
+        if others.iter().any(|other| other.spec().id == id) {
+            return Err(self.error(id, "is there twice; remove one of them"));
+        }
+        Ok(())
+    }
+
     fn define(&self, given: &EffectToml, start: Start) -> Result<&'static dyn Effect, ModelError> {
         if given.kind != expression::KIND {
             let problem = "is not of this file: a candidate has kind = \"expression\"; those of \
@@ -175,6 +182,7 @@ impl JointReader<'_> {
         } else {
             self.known_effect(given)?
         };
+        self.own().check_once(before, effect.spec().id)?;
         let parameters = effect.spec().parameters;
         let bounds: Vec<_> = parameters.iter().map(|p| (p.name, p.min, p.max)).collect();
         let mut values = self.values(effect.spec().id, &bounds, &given.parameters)?;
@@ -185,7 +193,13 @@ impl JointReader<'_> {
             }
         }
         let or_neutral = values.iter().zip(parameters).map(|(v, p)| v.unwrap_or(p.neutral.into()));
-        Ok(Component::new(effect, or_neutral.collect()).unwrap_or(Component::neutral(effect)))
+        let component =
+            Component::new(effect, or_neutral.collect()).unwrap_or(Component::neutral(effect));
+        let parameters: Vec<f64> = component.parameters().iter().map(|value| value.value).collect();
+        match effect.fault(&parameters) {
+            Some(fault) => Err(self.own().error(effect.spec().id, fault)),
+            None => Ok(component),
+        }
     }
 
     fn own_effect(

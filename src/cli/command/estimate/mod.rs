@@ -70,6 +70,10 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let further = left_over(&against, &args.data);
     let notes: Vec<_> = notes(first_joints).into_iter().chain(further).collect();
     session.warn(&failures, &notes);
+    if args.follow.is_on {
+        // The log may have come as a link to what is written.
+        Files::check(&args.output, &args.inputs(), csv_text)?;
+    }
     files.write(&result, &session.stream, verbosity)?;
     let all_notes: Vec<_> = experiment.notes.iter().cloned().chain(notes).collect();
     let json = || EstimateJson::new(experiment, &runs, &against, (&all_notes, &failures));

@@ -64,6 +64,7 @@ impl Gathered {
         wanted: &Wanted<'_>,
     ) -> Result<(), ReadError> {
         self.check_width(wanted, place, record)?;
+        self.check_quotation(wanted, place, record)?;
         let row = place.row;
         let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
         let label = wanted.label.map_or(&b""[..], cell);
@@ -114,6 +115,31 @@ impl Gathered {
         }
         let (path, row, lines) = (wanted.path().to_owned(), place.row, place.lines);
         Err(ReadError::UnequalRow { path, row, found, expected: width, lines })
+    }
+
+    /// Refuses a row one cell of which holds further rows: a quotation mark in it is never closed, or far
+    /// behind.
+    fn check_quotation(
+        &self,
+        wanted: &Wanted<'_>,
+        place: &Place,
+        record: &csv::ByteRecord,
+    ) -> Result<(), ReadError> {
+        if place.lines < 2 {
+            return Ok(());
+        }
+        let marks = wanted.head.headers.len().saturating_sub(1);
+        let is_row = |line: &[u8]| {
+            let found = line.iter().filter(|byte| **byte == self.delimiter).count();
+            marks > 0 && found >= marks
+        };
+        // The first line of a cell is the rest of its own row.
+        let holds_rows = |cell: &[u8]| cell.split(|byte| *byte == b'\n').skip(1).any(is_row);
+        if !record.iter().any(holds_rows) {
+            return Ok(());
+        }
+        let (path, row, lines) = (wanted.path().to_owned(), place.row, place.lines);
+        Err(ReadError::OpenQuotation { path, row, lines })
     }
 
     /// Says which rows below the header were left out that are no units.

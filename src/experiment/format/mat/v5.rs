@@ -439,6 +439,12 @@ fn texts(cells: Vec<Array>) -> Content {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_matrix_of_characters_is_a_text_per_row() {
+        // `char('free', 'loaded')`, column after column.
+        assert_eq!(rows_of("flroeaed e d", 2), ["free", "loaded"]);
+    }
     use crate::experiment::MemoryLimit;
 
     fn of(file: &[u8]) -> Result<Vec<Variable>, Fault> {

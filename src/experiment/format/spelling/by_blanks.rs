@@ -4,12 +4,16 @@ use super::super::blanks::tabbed;
 use super::marks::{BLANK, Spelling, are_units};
 use super::rows::{BYTE_ORDER_MARK, LINES, count, holds_numbers, is_row, rows, split};
 
+/// One row in so many may have lost a cell, which is a fault of the row.
+const ODD: usize = 10;
+
 impl Spelling {
     /// The table as rows of numbers that blanks part into as many cells as the header, where no mark
     /// parts that.
     pub(super) fn by_blanks(self, start: &[u8]) -> Option<Self> {
         let (bytes, _) = self.preamble;
-        if self.parts_numbers(start.get(bytes..)?) {
+        let table = start.get(bytes..)?;
+        if self.parts_numbers(table) || self.are_even_tabs(table) {
             return None;
         }
         let end = start.iter().rposition(|byte| *byte == b'\n')?;
@@ -36,6 +40,21 @@ impl Spelling {
         Some(Self { delimiter: BLANK, preamble: (bytes, before) })
     }
 
+    /// Whether single tabs part the rows as they part the header, as in a table whose cells are words for
+    /// the most part.
+    fn are_even_tabs(self, table: &[u8]) -> bool {
+        if self.delimiter != b'\t' {
+            return false;
+        }
+        let mut lines = rows(table).filter(|line| is_row(line)).take(LINES);
+        let width = |line: &[u8]| split(line, self.delimiter).len();
+        let Some(header) = lines.next().map(width).filter(|width| *width > 1) else { return false };
+        let (rows, odd) = lines.fold((0_usize, 0_usize), |(rows, odd), line| {
+            (rows + 1, odd + usize::from(width(line) != header))
+        });
+        rows > 0 && ODD * odd <= rows
+    }
+
     /// Whether the mark between cells makes numbers of a row of `table`, as a decimal comma does of all
     /// rows but the header.
     fn parts_numbers(self, table: &[u8]) -> bool {
@@ -46,8 +65,6 @@ impl Spelling {
 
 /// Whether a header of several names stands above rows of as many numbers, all parted by single tabs.
 fn is_table(table: &[u8]) -> bool {
-    /// One row in so many may have lost a cell, which is a fault of the row.
-    const ODD: usize = 10;
     let mut lines = rows(table).filter(|line| is_row(line));
     let is_marked = |line: &[u8]| b",;|".iter().any(|mark| count(line, *mark) > 0);
     let Some(header) = lines.next().filter(|line| !is_marked(line)) else { return false };
