@@ -8,6 +8,8 @@ mod clocks;
 mod columns;
 #[path = "messy/log.rs"]
 mod log;
+#[path = "messy/marks.rs"]
+mod marks;
 #[path = "messy/texts.rs"]
 mod texts;
 
@@ -57,6 +59,8 @@ fn every_messy_log_is_read_as_the_clean_one_or_refused_with_the_remedy() {
         columns::sensors(),
         columns::names_alone(),
         columns::units_and_names(),
+        marks::ends_and_comments(),
+        marks::cells_and_units(),
         texts::texts(),
         texts::programs(),
         texts::marks(),

@@ -9,11 +9,11 @@ use flate2::write::GzEncoder;
 use super::clocks::date;
 use super::log::*;
 
-fn utf16(text: &str) -> Vec<u8> {
+pub(crate) fn utf16(text: &str) -> Vec<u8> {
     text.encode_utf16().flat_map(u16::to_le_bytes).collect()
 }
 
-fn gzip(text: &str) -> Vec<u8> {
+pub(crate) fn gzip(text: &str) -> Vec<u8> {
     let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
     packed.write_all(text.as_bytes()).unwrap();
     packed.finish().unwrap()
@@ -43,31 +43,7 @@ pub(crate) fn texts() -> Vec<Messy> {
             SAME,
         ),
         messy("row_of_units.csv", all.replacen('\n', "\ns,V,deg\n", 1), SAME),
-        messy("row_with_one_unit.csv", all.replacen('\n', "\ns,-,-\n", 1), SAME),
-        messy(
-            "quotation_not_closed.csv",
-            noted(&all, "\"open"),
-            Expected::Refused(&["row 617", "quotation mark", "close it"]),
-        ),
-        messy("lines_in_a_cell.csv", noted(&all, "\"two\nlines\""), SAME),
-        messy("words_between_tabs.tsv", between_words(&rows), read(1e-6, "is not used")),
-        messy(
-            "labels_with_marks.csv",
-            all.lines()
-                .enumerate()
-                .map(|(k, line)| match k {
-                    0 => format!("trial,{line}\n"),
-                    k => format!("#{},{line}\n", 1 + k / 900),
-                })
-                .collect::<String>(),
-            Expected::Refused(&["row 2", "`#1`", "without `#`"]),
-        ),
-        messy("time_in_tens_of_ms.csv", all.replacen("time_s", "time [1000 ms]", 1), SAME),
         messy("latin1.csv", latin1, SAME),
-        messy("carriage_returns.csv", old_line_ends(&all), SAME),
-        messy("carriage_returns.csv.gz", gzip(&old_line_ends(&all)), SAME),
-        messy("carriage_returns_utf16.csv", utf16(&old_line_ends(&all)), SAME),
-        messy("numbered_rows.csv", numbered(&all), SAME),
         messy("utf16.csv", utf16(&format!("\u{feff}{degrees}")), SAME),
         messy("utf16_unmarked.csv", utf16(&degrees), SAME),
         messy("packed.csv.gz", gzip(&all), SAME),
@@ -99,52 +75,8 @@ pub(crate) fn texts() -> Vec<Messy> {
             cell(&all, 617, 1, "null"),
             read(0.051, "1 cell is empty or NaN"),
         ),
-        messy(
-            "row_without_a_time.csv",
-            cell(&all, 617, 0, "#N/A"),
-            Expected::Refused(&["row 617", "`time_s`", "the time is missing"]),
-        ),
-        messy(
-            "names_over_units.csv",
-            all.replacen(HEADER, "Time / ms,boom.input / %,boom.output / deg", 1)
-                .replacen("ms", "s", 1),
-            SAME,
-        ),
         messy("empty_cell.csv", cell(&all, 617, 2, ""), read(0.051, "1 cell is empty or NaN")),
     ]
-}
-
-/// Lines that end with a carriage return alone, comments among them.
-fn old_line_ends(log: &str) -> String {
-    let commented = log.replacen("\n1.000000,", "\n# here the operator changed\n1.000000,", 1);
-    format!("# by hand\n{commented}").replace('\n', "\r")
-}
-
-/// The log with a column of notes, of which row 617 has one.
-fn noted(log: &str, note: &str) -> String {
-    let row = |(k, line): (usize, &str)| match k {
-        0 => format!("{line},note\n"),
-        616 => format!("{line},{note}\n"),
-        _ => format!("{line},\n"),
-    };
-    log.lines().enumerate().map(row).collect()
-}
-
-/// The log between columns most of which are words or empty.
-fn between_words(rows: &[Row]) -> String {
-    let header = "time_s\t\tstate\tboom.input\tboom.output\tmode\tstep\n";
-    let row =
-        |row: &Row| format!("{}\t\tok\t{}\t{}\tauto\tstep 1\n", row.time, row.input, row.output);
-    header.to_owned() + &rows.iter().map(row).collect::<String>()
-}
-
-/// The log with a column `#` that numbers its rows.
-fn numbered(log: &str) -> String {
-    let row = |(k, line): (usize, &str)| match k {
-        0 => format!("#,{line}\n"),
-        k => format!("{k},{line}\n"),
-    };
-    log.lines().enumerate().map(row).collect()
 }
 
 /// The first lines of a log of LabVIEW, and the header of its table.

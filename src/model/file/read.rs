@@ -80,13 +80,6 @@ impl Own<'_> {
         Ok(())
     }
 
-    fn check_once(&self, others: &[&'static dyn Effect], id: &str) -> Result<(), ModelError> {
-        if others.iter().any(|other| other.spec().id == id) {
-            return Err(self.error(id, "is there twice; remove one of them"));
-        }
-        Ok(())
-    }
-
     fn define(&self, given: &EffectToml, start: Start) -> Result<&'static dyn Effect, ModelError> {
         if given.kind != expression::KIND {
             let problem = "is not of this file: a candidate has kind = \"expression\"; those of \
@@ -182,7 +175,6 @@ impl JointReader<'_> {
         } else {
             self.known_effect(given)?
         };
-        self.own().check_once(before, effect.spec().id)?;
         let parameters = effect.spec().parameters;
         let bounds: Vec<_> = parameters.iter().map(|p| (p.name, p.min, p.max)).collect();
         let mut values = self.values(effect.spec().id, &bounds, &given.parameters)?;

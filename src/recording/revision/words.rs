@@ -36,7 +36,7 @@ fn written(
     for (question, answer) in improved.finding.answers() {
         writeln!(page, "**{question}:** {}\n", prose(&answer))?;
     }
-    if is_last && let Some(sentence) = without_gain(improved) {
+    if let Some(sentence) = without_gain(improved) {
         writeln!(page, "**No gain:** {}\n", plain(&sentence))?;
     }
     writeln!(page, "## Revision {revision} of {last}: {}\n", plain(&change_in_words(step)))?;

@@ -130,8 +130,8 @@ impl Gathered {
         }
         let marks = wanted.head.headers.len().saturating_sub(1);
         let is_row = |line: &[u8]| {
-            let found = line.iter().filter(|byte| **byte == self.delimiter).count();
-            marks > 0 && found >= marks
+            // A row of `marks + 1` cells.
+            marks > 0 && line.split(|byte| *byte == self.delimiter).nth(marks).is_some()
         };
         // The first line of a cell is the rest of its own row.
         let holds_rows = |cell: &[u8]| cell.split(|byte| *byte == b'\n').skip(1).any(is_row);

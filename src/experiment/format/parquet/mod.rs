@@ -119,15 +119,14 @@ impl Rows for Unread {
                 self.group(group, index, cells).map_err(|error| damaged(wanted.path(), &error))
             };
             for ((column, index), kind) in columns.iter_mut().zip(wanted.numeric).zip(&kinds) {
-                match kind {
-                    Some(kind) => *column = Column::not_numbers(kind),
-                    None => {
-                        let kind = schema.column(*index);
-                        column.are_of_day =
-                            matches!(kind.logical_type_ref(), Some(LogicalType::Time(_)));
-                        read(*index, &mut |cell| column.add(cell.number()))?;
-                    }
+                if let Some(kind) = kind {
+                    *column = Column::not_numbers(kind);
+                    continue;
                 }
+                let described = schema.column(*index);
+                column.are_of_day =
+                    matches!(described.logical_type_ref(), Some(LogicalType::Time(_)));
+                read(*index, &mut |cell| column.add(cell.number()))?;
             }
             if let Some(index) = wanted.label {
                 let mut texts = Runs { all: Vec::new(), refused: Ok(()), budget: &self.budget };
