@@ -59,6 +59,7 @@ pub(crate) use eligible::signal_range;
 pub use improve::improve;
 pub use judge::explain;
 pub(crate) use judge::named;
+#[cfg(feature = "rrd")]
 pub(crate) use misfit::CONSEQUENCE;
 pub use options::{MAX_EFFECTS, Options};
 pub use outcome::FitOutcome;

@@ -346,7 +346,7 @@ mod tests {
     #[test]
     fn a_value_that_is_none_is_no_comment() {
         let text = b"#N/A\n# by hand\r\n#N/A;1\r# old\r#N/Ax,1\n#DIV/0!,2\n0,#N/A\n#\n#NV";
-        let expected = b" N/A\n# by hand\r\n N/A;1\r# old\n#N/Ax,1\n DIV/0!,2\n0,#N/A\n#\n NV";
+        let expected = b" N/A\n# by hand\r\n N/A;1\n# old\n#N/Ax,1\n DIV/0!,2\n0,#N/A\n#\n NV";
         for pieces in 1..20 {
             for room in [1, 3, 16, 64] {
                 let mut lines = LineEnds::after(Few(text, pieces), 0);
