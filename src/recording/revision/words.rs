@@ -224,12 +224,22 @@ fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
     });
     let all: Vec<String> = not_fallen.into_iter().chain(exchanges).collect();
     match all.as_slice() {
-        [] if revisions.len() > 1 => {
+        [] if has_fallen_each_time(&revisions) => {
             Some("none: each revision lowered the error on what was not fitted".to_owned())
         }
         [] => None,
         all => Some(all.join("; ")),
     }
+}
+
+/// Whether there are several revisions, each with a smaller error on what was not fitted than the one before.
+fn has_fallen_each_time(revisions: &[(u32, &Revision)]) -> bool {
+    let error = |(_, revision): &(u32, &Revision)| Some(revision.comparison.validation?.rmse);
+    let falls = |pair: &[(u32, &Revision)]| match pair {
+        [before, after] => error(before).zip(error(after)).is_some_and(|(a, b)| b < a),
+        _ => false,
+    };
+    revisions.len() > 1 && revisions.windows(2).all(falls)
 }
 
 /// What is a gain at all, as a part of the error.
