@@ -464,7 +464,7 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
         ("--dead-band avoid", "no model has it"),
         ("--model plain.toml --dead-band avoid", "the model has none"),
         ("--levels=-1,1 --dead-band=-2,2", "fewer than two are left"),
-        ("--hold 5,6 --duration 3", "longer than the whole input"),
+        ("--hold 5,6 --duration 3", "no room for a hold of 5 s"),
         ("--model boom.toml --joint bucket", "not in the model file, which has boom"),
         ("--separate dead_band --model boom.toml", "expected two effects"),
         ("--separate dead_band,dead_band --model boom.toml", "there twice"),

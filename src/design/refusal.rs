@@ -9,8 +9,10 @@ pub enum PlanError {
     /// Fewer than two levels.
     #[error("fewer than two are left of the levels; an input needs two different ones or more")]
     TooFewLevels,
-    /// A hold is longer than all.
-    #[error("a hold of {hold_s} s is longer than the whole input of {duration_s} s")]
+    /// No hold fits behind the rest with which an input begins.
+    #[error(
+        "an input of {duration_s} s has no room for a hold of {hold_s} s behind the rest before it"
+    )]
     HoldTooLong {
         /// The shortest hold, seconds.
         hold_s: f64,

@@ -92,6 +92,19 @@ pub enum ReadError {
         /// What it holds.
         found: String,
     },
+    /// A line may be a comment, or a row that begins with the label of its trial.
+    #[error(
+        "{}, row {row}: it begins with `{label}`, which may be a comment or the label of a trial; \
+         write labels without `#`, and a blank behind the mark of a comment", path.display()
+    )]
+    LabelOrComment {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// The first cell.
+        label: String,
+    },
     /// Two columns that are needed differ in length.
     #[error(
         "{}: column `{column}` has {found} values but `{other}` has {expected}; choose columns \
@@ -611,6 +624,7 @@ impl ReadError {
         match self {
             Self::UnequalRow { row, .. }
             | Self::OpenQuotation { row, .. }
+            | Self::LabelOrComment { row, .. }
             | Self::DuplicateColumn { row, .. }
             | Self::NotUtf8 { row, .. }
             | Self::TimeUnit { row, .. }

@@ -15,7 +15,7 @@ use crate::units::SamplePeriod;
 /// Name of a column of sample numbers.
 const SAMPLE_NAME: &str = "sample";
 /// Names of a column that names the trial.
-pub(super) const TRIAL_NAMES: [&str; 3] = ["trial", "test", "run"];
+const TRIAL_NAMES: [&str; 3] = ["trial", "test", "run"];
 
 /// Stands for "no column names the trial".
 const NO_TRIAL: &str = "none";

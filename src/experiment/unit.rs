@@ -103,7 +103,7 @@ pub(super) fn time_in(text: &str) -> Option<f64> {
     // `seconds since 1970-01-01 00:00:00`
     let lower = lower.split(" since ").next()?.trim();
     if lower.contains(|letter: char| letter.is_ascii_digit() || letter == '/') {
-        return times_in(lower);
+        return with_factor(lower);
     }
     let words = lower.split(|letter: char| !letter.is_alphabetic());
     let of = |word: &str| {
@@ -119,7 +119,7 @@ pub(super) fn time_in(text: &str) -> Option<f64> {
 }
 
 /// The seconds of a unit of time with a factor before it: `10ms`, `0.01 s`, `x10 ms`.
-fn times_in(text: &str) -> Option<f64> {
+fn with_factor(text: &str) -> Option<f64> {
     let is_between = |letter: char| letter.is_whitespace() || "x*·×".contains(letter);
     let text = text.trim_start_matches(is_between);
     let end = text.find(|letter: char| !letter.is_ascii_digit() && !".,".contains(letter))?;

@@ -1,4 +1,4 @@
-//! Outputs that wrap, of sensors that begin anew after a turn.
+//! Outputs that wrap, of sensors that begin anew after a turn; and clocks, which do after a day.
 //!
 //! An absolute encoder on a slewing joint shows 179.9 deg and then −179.9: a turn of 360 deg in one
 //! sample, which no joint makes. Where all large jumps of an output are of a turn, they are taken
@@ -23,6 +23,12 @@ const RANGE: f64 = 0.9;
 const BEYOND: f64 = 1.02;
 
 impl Wrap {
+    /// Seconds of a day.
+    pub(super) const DAY_S: f64 = 86_400.0;
+
+    /// A clock that shows times of day, seconds.
+    pub(super) const OF_CLOCK: Self = Self { turn: Self::DAY_S };
+
     /// The turn of a sensor whose output is `trials`, not a number where it is missing, in `unit`;
     /// none where it does not begin anew.
     pub(super) fn of(trials: &[&[f64]], unit: Option<&str>) -> Option<Self> {

@@ -3,8 +3,9 @@
 use super::date::{seconds_of_compact_date, seconds_of_date};
 use crate::experiment::table::BadCell;
 
-/// What programs write for a value that is missing, in lower case.
-const MISSING: [&str; 9] = ["na", "n/a", "#n/a", "#nv", "null", "none", "nan", "-", "--"];
+/// What programs write for a value that is missing, in lower case; `nv` is `#nv` at the beginning of a
+/// line, where the mark of a comment is taken off.
+const MISSING: [&str; 10] = ["na", "n/a", "#n/a", "nv", "#nv", "null", "none", "nan", "-", "--"];
 
 /// The number in a cell; NaN where there is none. A comma may stand for the point where it
 /// does not part the cells.

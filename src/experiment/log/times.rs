@@ -9,6 +9,7 @@ use crate::experiment::period::is_period;
 use crate::experiment::sampling::{Fault, Grid, Repair};
 use crate::experiment::table::{Column, TrialRows};
 use crate::experiment::time_column::TimeSource;
+use crate::experiment::wrap::Wrap;
 use crate::units::SamplePeriod;
 
 /// Times of the rows in seconds, or the period between rows that have none.
@@ -284,20 +285,10 @@ impl Log<'_> {
     }
 }
 
-/// Counts times of day on over midnight, where they fall by more than half a day.
+/// Counts times of day on over midnight.
 fn count_over_midnight(times: &mut [f64]) {
-    const DAY_S: f64 = 86_400.0;
-    let are_of_day = times.iter().all(|time| (0.0..DAY_S).contains(time));
-    if !are_of_day {
-        return;
-    }
-    let (mut days, mut last) = (0.0, f64::NAN);
-    for time in times {
-        if last - *time > DAY_S / 2.0 {
-            days += 1.0;
-        }
-        last = *time;
-        *time += days * DAY_S;
+    if times.iter().all(|time| (0.0..Wrap::DAY_S).contains(time)) {
+        Wrap::OF_CLOCK.unwrap(times);
     }
 }
 
@@ -314,6 +305,10 @@ mod tests {
             in_ms.map(|ms| format!("{ms}")),
             ["86399980", "86399990", "86400000", "86400010"]
         );
+        let mut unsorted = [86_399.98, 0.0, 86_399.99, 0.01];
+        count_over_midnight(&mut unsorted);
+        let in_ms = unsorted.map(|time| format!("{}", (1e3 * time).round()));
+        assert_eq!(in_ms, ["86399980", "86400000", "86399990", "86400010"]);
         // A log that begins anew, and a time that has passed, of which hours are more than 24.
         for times in [[50.0, 60.0, 40.0, 50.0], [86_399.0, 86_400.0, 0.0, 1.0]] {
             let mut counted = times;

@@ -5,7 +5,7 @@ use rerun::datatypes::Vec2D;
 
 use super::bars::{Bars, Columns};
 use super::figure::noise;
-use crate::explain::{CONSEQUENCE, Candidate, Revision, Verdict};
+use crate::explain::{Candidate, Revision, Verdict};
 use crate::figure::ladder::judged;
 use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
@@ -14,7 +14,6 @@ use crate::recording::palette::{self, Rgb, color};
 use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
 use crate::report::{ImprovedJoint, change_in_words};
-use crate::wording::percent;
 
 const COLUMNS: Columns = Columns { left: 1270.0, names: (1570.0, 1660.0), right: 1890.0 };
 
@@ -56,7 +55,7 @@ pub(super) fn around(
         ([], _) => "nothing more was looked for",
         (_, []) => "error at the next revision",
         _ if is_last && improved.finding.verdict == Verdict::Unexplained => {
-            &format!("error with one effect more: {}", none_is(&revision.ranking))
+            "error with one effect more: none was added"
         }
         _ => "error with one effect more",
     };
@@ -74,15 +73,6 @@ pub(super) fn around(
     let Some(noise) = noise(improved) else { return Vec::new() };
     bars.below(floor, noise, format!("noise {} {unit}", short(noise)));
     vec![bars.line(noise)]
-}
-
-/// Why none of the candidates was added.
-fn none_is(candidates: &[Candidate]) -> String {
-    if candidates.iter().any(Candidate::is_significant) {
-        format!("none sure and worth {}", percent(CONSEQUENCE))
-    } else {
-        "none is significant".to_owned()
-    }
 }
 
 /// Whether no lack of fit is shown.

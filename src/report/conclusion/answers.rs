@@ -71,7 +71,10 @@ impl Finding<'_> {
             // Effects were added until none did.
             Some(_) if self.ranking.iter().any(Candidate::is_significant) => {
                 let least = percent(CONSEQUENCE);
-                format!("no other effect is both sure and worth {least} of the first error")
+                format!(
+                    "no other effect is significant, distinguishable from others, and worth {least} of \
+                     the first error"
+                )
             }
             Some(_) => "no other effect is significant".to_owned(),
             None => "no effect that was tried gains enough".to_owned(),

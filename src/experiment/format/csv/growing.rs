@@ -106,7 +106,7 @@ impl GrowingRows {
             below = true;
             Ok(ControlFlow::Break(Taken::Held))
         };
-        let taken = each(self.piece(), delimiter, path, &mut sought)?;
+        let taken = each(self.piece(), delimiter, (path, None), &mut sought)?;
         if below {
             self.drop_parsed(taken);
             self.head.clone_from(&found);
@@ -145,7 +145,7 @@ impl GrowingRows {
         };
         // Until a row stands below it, the header is found anew each time.
         if self.head.is_some() {
-            let taken = each(self.piece(), delimiter, wanted.path(), &mut gather)?;
+            let taken = each(self.piece(), delimiter, (wanted.path(), Some(wanted)), &mut gather)?;
             self.drop_parsed(taken);
         }
         let gathered = self.gathered.insert(gathered);
@@ -154,8 +154,7 @@ impl GrowingRows {
 
     /// What was not parsed yet.
     fn piece(&self) -> Piece<'_> {
-        let labels_before = self.spelling.labels_before(&self.start);
-        Piece { text: &self.text, lines: self.lines, is_begun: self.head.is_some(), labels_before }
+        Piece { text: &self.text, lines: self.lines, is_begun: self.head.is_some() }
     }
 
     fn drop_parsed(&mut self, bytes: usize) {

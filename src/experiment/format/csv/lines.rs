@@ -7,6 +7,7 @@ use std::path::Path;
 
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
+use crate::experiment::table::Wanted;
 
 /// Bytes, and a line ending behind the last line, so that every line has one and lines can
 /// be counted.
@@ -23,6 +24,7 @@ const MOST_LINES: usize = 1 << 20;
 const ROW_SIZE: u64 = 32;
 
 pub(super) fn reader<R: Read>(delimiter: u8, lines: LineEnds<R>) -> csv::Reader<Lines<R>> {
+    let lines = LineEnds { mark: delimiter, ..lines };
     csv::ReaderBuilder::new()
         .delimiter(delimiter)
         .comment(Some(b'#'))
@@ -57,28 +59,29 @@ pub(super) struct Piece<'t> {
     pub(super) lines: u64,
     /// Whether the table begins before it.
     pub(super) is_begun: bool,
-    /// As [`LineEnds::with_labels_before`].
-    pub(super) labels_before: Option<u8>,
 }
 
 /// Hands on the records of a piece that are whole, and says how many bytes are done with.
 pub(super) fn each(
-    Piece { text, lines, is_begun, labels_before }: Piece<'_>,
+    Piece { text, lines, is_begun }: Piece<'_>,
     delimiter: u8,
-    path: &Path,
+    (path, wanted): (&Path, Option<&Wanted<'_>>),
     take: &mut impl FnMut(&csv::ByteRecord, &Place) -> Result<ControlFlow<Taken, Taken>, ReadError>,
 ) -> Result<usize, ReadError> {
     // At its beginning a reader drops a byte order mark, which is one there only: an empty line stands
     // before what goes on.
     let before = u64::from(is_begun && lines > 0);
     let all = b"\n".take(before).chain(text);
-    let lines = LineEnds::after(all, lines - before).with_labels_before(labels_before);
-    let mut reader = reader(delimiter, lines);
+    let mut reader = reader(delimiter, LineEnds::after(all, lines - before));
     let mut record = csv::ByteRecord::new();
     let mut done = 0;
     let mut holds = false;
     loop {
-        if !next(&mut reader, &mut record, path)? {
+        let is_row = next(&mut reader, &mut record, path)?;
+        if let Some(wanted) = wanted {
+            reader.get_ref().get_ref().0.check_labels(wanted)?;
+        }
+        if !is_row {
             // Remarks and empty lines stand behind the last record.
             return Ok(if holds { done } else { text.len() });
         }
@@ -139,11 +142,20 @@ pub(super) struct LineEnds<R> {
     row_end: u64,
     /// Bytes that a row may have.
     longest: u64,
-    /// Bytes that were read, and that wait for those behind them.
-    waiting: Vec<u8>,
-    /// What parts the cells, where the first one of each row is the label of its trial: that may begin
-    /// with the mark of a comment.
-    labels_before: Option<u8>,
+    /// Bytes that were read, and are handed on with those behind them.
+    held_back: Vec<u8>,
+    /// What parts the cells.
+    mark: u8,
+    /// The first line that begins like a comment and may begin with the label of a trial, and that label.
+    label: Option<(u64, String)>,
+}
+
+/// The first cell of a line of several, where it begins with the mark of a comment and no blank behind it.
+fn label_of(line: &[u8], mark: u8) -> Option<&[u8]> {
+    let label = line.split(|byte| *byte == mark).next()?;
+    let is_parted = line.len() > label.len();
+    let is_label = label.strip_prefix(b"#")?.first().is_some_and(u8::is_ascii_alphanumeric);
+    (is_parted && is_label).then_some(label)
 }
 
 /// What spreadsheet programs write for a value that is none. At the beginning of a line it is no comment.
@@ -228,8 +240,9 @@ impl<R: Read> LineEnds<R> {
             passed: lines,
             row_end: 0,
             longest,
-            waiting: Vec::new(),
-            labels_before: None,
+            held_back: Vec::new(),
+            mark: b',',
+            label: None,
         }
     }
 
@@ -242,10 +255,10 @@ impl<R: Read> LineEnds<R> {
     fn read_cells(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let mut count = 0;
         loop {
-            let held = self.waiting.len().min(buffer.len() - count);
+            let held = self.held_back.len().min(buffer.len() - count);
             let room = buffer.get_mut(count..count + held).unwrap_or_default();
-            room.copy_from_slice(self.waiting.get(..held).unwrap_or_default());
-            self.waiting.drain(..held);
+            room.copy_from_slice(self.held_back.get(..held).unwrap_or_default());
+            self.held_back.drain(..held);
             count += held;
             let new = self.inner.read(buffer.get_mut(count..).unwrap_or_default())?;
             count += new;
@@ -254,44 +267,43 @@ impl<R: Read> LineEnds<R> {
             let end = if is_all { End::Come } else { End::Open };
             let done = without_marks(known, self.last, end);
             if done > 0 || is_all {
-                self.check_labels(known.get(..done).unwrap_or_default())?;
-                self.waiting.splice(0..0, known.get(done..).unwrap_or_default().iter().copied());
+                self.note_label(known.get(..done).unwrap_or_default());
+                self.held_back.splice(0..0, known.get(done..).unwrap_or_default().iter().copied());
                 return Ok(done);
             }
         }
     }
 
-    /// Of a table whose rows begin with labels, where that is so, and with the mark behind these.
-    pub(super) fn with_labels_before(self, mark: Option<u8>) -> Self {
-        Self { labels_before: mark, ..self }
-    }
-
-    /// Refuses a line that begins like a comment and may be a row that begins with a label.
-    fn check_labels(&self, bytes: &[u8]) -> io::Result<()> {
-        let Some(mark) = self.labels_before.filter(|_| bytes.contains(&b'#')) else {
-            return Ok(());
-        };
+    /// Notes the first line that begins like a comment and may be a row that begins with a label.
+    fn note_label(&mut self, bytes: &[u8]) {
+        if self.label.is_some() || !bytes.contains(&b'#') {
+            return;
+        }
         let mut start = first_line(bytes, self.last);
         while let Some(at) = start {
-            let line = bytes.get(at..).and_then(|rest| rest.split(|byte| *byte == b'\n').next());
-            let label =
-                line.and_then(|line| line.strip_prefix(b"#")?.split(|byte| *byte == mark).next());
-            let is_label = label.is_some_and(|label| {
-                let is_parted = line.is_some_and(|line| line.len() > label.len() + 1);
-                is_parted && label.first().is_some_and(u8::is_ascii_alphanumeric)
-            });
-            if let Some(label) = label.filter(|_| is_label) {
-                let label = String::from_utf8_lossy(label);
+            let line =
+                bytes.get(at..).and_then(|rest| rest.split(|byte| is_line_end(*byte)).next());
+            if let Some(label) = line.and_then(|line| label_of(line, self.mark)) {
                 let before = bytes.iter().take(at).filter(|byte| **byte == b'\n').count();
                 let row = self.passed + (self.ends.len() + before) as u64 + 1;
-                return Err(io::Error::other(format!(
-                    "row {row} begins with `#{label}`, which may be a comment or the label of a trial: \
-                     write labels without `#`, and a blank behind the mark of a comment"
-                )));
+                self.label = Some((row, String::from_utf8_lossy(label).into_owned()));
+                return;
             }
             start = next_line(bytes, at);
         }
-        Ok(())
+    }
+
+    /// Refuses such a line below the header of a table whose rows begin with labels.
+    pub(super) fn check_labels(&self, wanted: &Wanted<'_>) -> Result<(), ReadError> {
+        let below = self.label.as_ref().filter(|(row, _)| *row > wanted.head.header_row);
+        match below.filter(|_| wanted.label == Some(0)) {
+            Some((row, label)) => Err(ReadError::LabelOrComment {
+                path: wanted.path().to_owned(),
+                row: *row,
+                label: label.clone(),
+            }),
+            None => Ok(()),
+        }
     }
 
     /// Number of line ends before the byte `place`, which never goes back.

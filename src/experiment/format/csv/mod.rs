@@ -53,7 +53,6 @@ pub(super) fn table(
         bytes = bytes.tabbed(path);
     }
     let lines = LineEnds::after(bytes, lines).within(&budget);
-    let lines = lines.with_labels_before(spelling.labels_before(start));
     let mut reader = reader(delimiter, lines);
     let mut record = csv::ByteRecord::new();
     if !next(&mut reader, &mut record, path)? {
@@ -106,6 +105,7 @@ impl Rows for Unread {
                 ));
             }
         }
+        self.reader.get_ref().get_ref().0.check_labels(wanted)?;
         gathered.leave_out(wanted);
         let bytes = self.reader.into_inner().into_inner().0.inner;
         gathered.table_of(bytes.finish(wanted.path())?);

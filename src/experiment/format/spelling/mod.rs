@@ -4,10 +4,7 @@ mod by_blanks;
 mod marks;
 mod rows;
 
-use super::blanks::tabbed;
-use crate::experiment::layout::TRIAL_NAMES;
 use marks::{DELIMITERS, behind_labview, sniff_delimiter};
-use rows::{BYTE_ORDER_MARK, is_row, rows, split};
 
 pub(super) use marks::{Spelling, are_units, bare_unit, is_over_lines, is_remark};
 
@@ -21,17 +18,6 @@ impl Spelling {
         }
         let by_marks = Self::by_marks(start, &marks);
         by_marks.by_blanks(start).filter(|_| delimiter.is_none()).unwrap_or(by_marks)
-    }
-
-    /// The mark behind the first cell of each row, where that is the label of a trial.
-    pub(super) fn labels_before(self, start: &[u8]) -> Option<u8> {
-        let (bytes, _) = self.preamble;
-        let header = rows(start.get(bytes..)?).find(|line| is_row(line))?;
-        let header = header.strip_prefix(BYTE_ORDER_MARK).unwrap_or(header);
-        let header = if self.is_of_blanks() { tabbed(header) } else { header.to_vec() };
-        let header = split(&header, self.mark());
-        let first = String::from_utf8_lossy(header.get(0)?).trim().to_lowercase();
-        TRIAL_NAMES.contains(&first.as_str()).then_some(self.mark())
     }
 }
 
