@@ -41,6 +41,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::decision::{Decision, Verdict};
 use super::in_seconds::InSeconds;
+use super::input_motion::InputMotion;
 use super::interval::FineDelay;
 use super::method::decide_by_broken_lines;
 use super::prepared::Prepared;
@@ -160,7 +161,7 @@ impl<'a> Record<'a> {
                 ..InSeconds::default()
             },
             min_step: settings.min_step,
-            input: settings.with_input_of(trials).input,
+            input: settings.with_input(&InputMotion::of(trials)).input,
             // Every change of the input is a step where it is for the paper.
             grows: settings.paper || settings.grows,
             first_last: FirstLast::Keep,

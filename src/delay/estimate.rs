@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::coming_to_rest::ComingToRest;
-use super::input_motion::InputKind;
+use super::input_motion::{InputKind, InputMotion};
 use super::lag::Lag;
 use super::method::{DelayMethod, decide_settling, implementation};
 use super::prepared::Prepared;
@@ -44,6 +44,7 @@ pub(crate) struct Estimator {
     method: &'static dyn DelayMethod,
     lag: Option<Lag>,
     rest: ComingToRest,
+    motion: InputMotion,
 }
 
 impl Estimator {
@@ -53,7 +54,8 @@ impl Estimator {
     /// [`EstimateError::Settings`] when the settings make no sense.
     pub(crate) fn of(trials: &[Trial], settings: &Settings) -> Result<Self, EstimateError> {
         settings.check()?;
-        let mut settings = settings.with_input_of(trials);
+        let motion = InputMotion::of(trials);
+        let mut settings = settings.with_input(&motion);
         if settings.input == InputKind::Continuous {
             // Without steps nothing is smoothed: no filter has to fit.
             settings.low_pass = None;
@@ -71,7 +73,12 @@ impl Estimator {
             let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
             method.shared_lag(&prepared, &settings)
         });
-        Ok(Self { settings, method, lag: lag.flatten(), rest })
+        Ok(Self { settings, method, lag: lag.flatten(), rest, motion })
+    }
+
+    /// How the input of the joint moves.
+    pub(crate) fn motion(&self) -> InputMotion {
+        self.motion
     }
 
     /// Estimates one trial of the joint.

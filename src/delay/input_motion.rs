@@ -239,12 +239,15 @@ struct Hold {
 ///
 /// Every sample enters and leaves the window once: its extremes stand in front of two queues.
 fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
+    if tolerance <= 0.0 {
+        return exact_holds(input, shortest);
+    }
     let (mut holds, mut start) = (Vec::new(), 0);
     let (mut lowest, mut highest) = (VecDeque::new(), VecDeque::new());
     for end in 0..=input.len() {
         while start < end && !fits(input, end, (&lowest, &highest), tolerance) {
             if end - start >= shortest || start == 0 {
-                holds.push(hold(input, start..end, tolerance));
+                holds.push(hold(input, start..end));
                 lowest.clear();
                 highest.clear();
                 start = end;
@@ -263,6 +266,20 @@ fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
     holds
 }
 
+/// [`holds`] of levels without noise: the same value again and again.
+fn exact_holds(input: &[f64], shortest: usize) -> Vec<Hold> {
+    let (mut holds, mut start) = (Vec::new(), 0);
+    #[expect(clippy::float_cmp, reason = "levels are exact")]
+    for run in input.chunk_by(|a, b| a == b) {
+        let end = start + run.len();
+        if run.len() >= shortest || start == 0 {
+            holds.push(Hold { start, end, level: run[0] });
+        }
+        start = end;
+    }
+    holds
+}
+
 /// Whether the sample `next` is within `tolerance` of the middle of those of a window with the
 /// extremes in front of two queues; nothing is behind the last sample.
 fn fits(
@@ -277,12 +294,9 @@ fn fits(
     })
 }
 
-fn hold(input: &[f64], span: Range<usize>, tolerance: f64) -> Hold {
+fn hold(input: &[f64], span: Range<usize>) -> Hold {
     let samples = input.get(span.clone()).unwrap_or_default();
-    let level = match samples.first() {
-        Some(first) if tolerance <= 0.0 => *first,
-        _ => samples.iter().sum::<f64>() / samples.len() as f64,
-    };
+    let level = samples.iter().sum::<f64>() / samples.len() as f64;
     Hold { start: span.start, end: span.end, level }
 }
 

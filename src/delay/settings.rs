@@ -1,7 +1,7 @@
 //! What is asked for: a method, and its settings.
 
 use super::in_seconds::InSeconds;
-use super::input_motion::InputKind;
+use super::input_motion::{InputKind, InputMotion};
 use super::spec::Method;
 use crate::experiment::Trial;
 use crate::numerics::LowPass;
@@ -201,9 +201,18 @@ impl Settings {
         !has_steps && self.input.is_continuous(trials)
     }
 
-    /// These settings with the kind of input that `trials` have.
-    pub(super) fn with_input_of(&self, trials: &[Trial]) -> Self {
-        let is_continuous = self.takes_as_continuous(trials);
+    /// Whether an input that moves so is taken as moving all the time.
+    pub(crate) fn takes_motion_as_continuous(&self, motion: &InputMotion) -> bool {
+        match self.input {
+            InputKind::Auto => self.min_step <= 0.0 && motion.is_continuous(),
+            InputKind::Steps => false,
+            InputKind::Continuous => true,
+        }
+    }
+
+    /// These settings with the kind of input that moves so.
+    pub(super) fn with_input(&self, motion: &InputMotion) -> Self {
+        let is_continuous = self.takes_motion_as_continuous(motion);
         let input = if is_continuous { InputKind::Continuous } else { InputKind::Steps };
         Self { input, ..self.clone() }
     }

@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use super::input_motion::InputMotion;
 use super::motion::{StepMotion, arrival};
 use super::prepared::Prepared;
 use super::settings::Settings;
@@ -36,7 +37,7 @@ pub struct Tracking {
 
 /// Where the outputs of `trials` come to rest, where their input says that.
 pub(crate) fn tracking(trials: &[Trial]) -> Option<Tracking> {
-    let settings = Settings::default().with_input_of(trials);
+    let settings = Settings::default().with_input(&InputMotion::of(trials));
     Tracking::of(trials, &joint_steps(trials, &settings))
 }
 

@@ -88,7 +88,7 @@ fn estimate_one(
     workers: &impl Workers,
 ) -> Result<JointEstimate, EstimateError> {
     let mut estimate = estimate_steps(joint, settings, done, workers)?;
-    if settings.takes_as_continuous(&joint.trials) {
+    if settings.takes_motion_as_continuous(&estimate.motion) {
         let found = dead_time(&joint.trials, settings);
         let trials = joint.trials.iter().zip(&mut estimate.trials).enumerate();
         for (number, (trial, estimate)) in trials {
@@ -127,7 +127,7 @@ pub(super) fn estimate_steps(
             trials,
             settings: settings.clone(),
             chosen: None,
-            motion: InputMotion::of(&joint.trials),
+            motion: estimator.motion(),
             dead_time: None,
         }),
     }

@@ -96,7 +96,11 @@ const NORMAL: f64 = 0.674_489_750_196_081_7;
 
 /// The standard deviation of normal values, from their median distance from zero.
 pub(crate) fn robust_scale(values: &[f64]) -> f64 {
-    let mut distances: Vec<f64> = values.iter().map(|value| value.abs()).collect();
+    scale_of_distances(values.iter().map(|value| value.abs()).collect())
+}
+
+/// [`robust_scale`] of values whose distances from zero are given.
+fn scale_of_distances(mut distances: Vec<f64>) -> f64 {
     let middle = distances.len() / 2;
     if distances.is_empty() {
         return 0.0;
@@ -104,20 +108,19 @@ pub(crate) fn robust_scale(values: &[f64]) -> f64 {
     *distances.select_nth_unstable_by(middle, f64::total_cmp).1 / NORMAL
 }
 
-/// [`robust_scale`] of values that are not copied where they are very many.
-fn robust_scale_of(values: impl Iterator<Item = f64> + Clone) -> f64 {
-    let count = values.clone().count();
-    if count <= COPIED {
-        return robust_scale(&values.collect::<Vec<f64>>());
-    }
-    nth(&values.map(f64::abs), count / 2) / NORMAL
-}
-
 /// The standard deviation of the noise of several series, from differences of neighbours, which
 /// leave little of a motion.
 pub(crate) fn noise_of_differences<'a>(series: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
-    let differences = series.flat_map(|values| values.windows(2).map(|pair| pair[1] - pair[0]));
-    robust_scale_of(differences) / std::f64::consts::SQRT_2
+    let of_one = |values: &'a [f64]| values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let count: usize = series.clone().map(|values| values.len().saturating_sub(1)).sum();
+    let scale = if count > COPIED {
+        nth(&series.flat_map(of_one), count / 2) / NORMAL
+    } else {
+        let mut distances = Vec::with_capacity(count);
+        series.for_each(|values| distances.extend(of_one(values)));
+        scale_of_distances(distances)
+    };
+    scale / std::f64::consts::SQRT_2
 }
 
 #[cfg(test)]
