@@ -127,11 +127,13 @@ fn part(
         let grid = Grid::of_places(start_s, run.places.clone(), sampled, longest_gap_s)?;
         return Ok(Part { rows: run.rows.clone(), grid });
     }
-    // Of rows with one stamp the first counts: there is no line between them.
+    // Of rows with one stamp the last counts, as where the input steps: there is no line between
+    // them.
     let mut rows: Vec<usize> = Vec::with_capacity(run.rows.len());
     for &row in &run.rows {
-        if rows.last().is_none_or(|&last| time(row) > time(last)) {
-            rows.push(row);
+        match rows.last_mut() {
+            Some(last) if time(row) <= time(*last) => *last = row,
+            _ => rows.push(row),
         }
     }
     let times: Vec<f64> = rows.iter().map(|&row| time(row)).collect();
@@ -163,7 +165,7 @@ impl Findings<'_> {
             let rows = if count == 1 { "row is" } else { "rows are" };
             Some(format!("{count} {rows} {says} (first at row {row})"))
         };
-        lines.extend(of(|clock| clock.twice, "there twice and left out once"));
+        lines.extend(of(|clock| clock.twice, "at the time of the row before, which is left out"));
         lines.extend(of(|clock| clock.disordered, "out of order and sorted by time"));
         let still = "stamped while the clock stood still, and left out: their times are not known";
         lines.extend(of(|clock| clock.frozen, still));

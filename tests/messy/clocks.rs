@@ -73,6 +73,12 @@ pub(crate) fn jumps() -> Vec<Messy> {
     let anew = timed(|k| at(if k < 870 { k } else { k - 870 }));
     let mut twice = clean();
     twice.insert(700, twice[699]);
+    // Both levels of a step in rows of one time, as a step is drawn.
+    let mut both_levels = clean();
+    for k in (1..both_levels.len()).rev().filter(|k| k % 90 == 0) {
+        let before = Row { input: both_levels[k - 1].input, ..both_levels[k] };
+        both_levels.insert(k, before);
+    }
     let mut swapped = clean();
     swapped.swap(500, 501);
     let mut mixed = clean();
@@ -94,7 +100,12 @@ pub(crate) fn jumps() -> Vec<Messy> {
             plain(&anew),
             read(0.051, "the clock starts anew once (first at row 872)"),
         ),
-        messy("row_twice.csv", plain(&twice), read(1e-3, "1 row is there twice")),
+        messy("row_twice.csv", plain(&twice), read(1e-3, "1 row is at the time of the row before")),
+        messy(
+            "both_levels.csv",
+            plain(&both_levels),
+            read(1e-6, "19 rows are at the time of the row before, which is left out"),
+        ),
         messy("out_of_order.csv", plain(&swapped), read(1e-3, "out of order")),
         messy("far_out_of_order.csv", plain(&mixed), read(1e-3, "out of order")),
         messy(

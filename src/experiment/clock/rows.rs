@@ -93,6 +93,7 @@ impl Found {
 
     /// `rows` without those that are there twice: a row at the time of the one before it,
     /// between steps as usual, and not made good by those behind it, as a rounded stamp is.
+    /// Of two with one stamp the later stays: where they differ, it says what holds from then on.
     pub(super) fn once(
         &mut self,
         rows: Vec<usize>,
@@ -114,11 +115,13 @@ impl Found {
                 && is_usual(step(index, index + 1))
                 && later.fold(f64::NEG_INFINITY, f64::max) < -0.5
         };
-        let twice: Vec<bool> = (0..rows.len()).map(is_twice).collect();
-        for (&row, _) in rows.iter().zip(&twice).filter(|(_, twice)| **twice) {
-            count(&mut self.twice, row);
+        let mut stays = vec![true; rows.len()];
+        for index in (0..rows.len()).filter(|index| is_twice(*index)) {
+            count(&mut self.twice, rows[index]);
+            let has_one_stamp = step(index - 1, index).is_some_and(|step| step <= 0.0);
+            stays[if has_one_stamp { index - 1 } else { index }] = false;
         }
-        rows.into_iter().zip(twice).filter(|(_, twice)| !twice).map(|(row, _)| row).collect()
+        rows.into_iter().zip(stays).filter(|(_, stays)| *stays).map(|(row, _)| row).collect()
     }
 }
 
