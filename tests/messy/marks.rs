@@ -38,6 +38,16 @@ pub(crate) fn ends_and_comments() -> Vec<Messy> {
             read(0.051, "2 cells are empty or NaN"),
         ),
         messy(
+            "row_taken_out.csv",
+            cell(&all, 617, 0, "#6.15"),
+            read(0.051, "row 617 begins with `#`: it is left out as a comment"),
+        ),
+        messy(
+            "rows_taken_out.csv",
+            cell(&cell(&all, 617, 0, "#6.15"), 1017, 0, "#10.15"),
+            read(0.051, "2 rows begin with `#`: they are left out as comments"),
+        ),
+        messy(
             "row_without_a_time.csv",
             cell(&all, 617, 0, "#N/A"),
             Expected::Refused(&["row 617", "`time_s`", "the time is missing"]),

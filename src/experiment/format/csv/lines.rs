@@ -5,6 +5,7 @@ use std::io::{self, Read};
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use super::comments::{Comments, End, first_line, without_marks};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::table::Wanted;
@@ -79,7 +80,7 @@ pub(super) fn each(
     loop {
         let is_row = next(&mut reader, &mut record, path)?;
         if let Some(wanted) = wanted {
-            reader.get_ref().get_ref().0.check_labels(wanted)?;
+            reader.get_ref().get_ref().0.comments().check_labels(wanted)?;
         }
         if !is_row {
             // Remarks and empty lines stand behind the last record.
@@ -146,86 +147,7 @@ pub(super) struct LineEnds<R> {
     held_back: Vec<u8>,
     /// What parts the cells.
     mark: u8,
-    /// The first line that begins like a comment and may begin with the label of a trial, and that label.
-    label: Option<(u64, String)>,
-}
-
-/// The first cell of a line of several, where it begins with the mark of a comment and no blank behind it.
-fn label_of(line: &[u8], mark: u8) -> Option<&[u8]> {
-    let label = line.split(|byte| *byte == mark).next()?;
-    let is_parted = line.len() > label.len();
-    let is_label = label.strip_prefix(b"#")?.first().is_some_and(u8::is_ascii_alphanumeric);
-    (is_parted && is_label).then_some(label)
-}
-
-/// What spreadsheet programs write for a value that is none. At the beginning of a line it is no comment.
-const NO_VALUES: [&[u8]; 12] = [
-    b"#N/A", b"#NV", b"#REF!", b"#BEZUG!", b"#DIV/0!", b"#VALUE!", b"#WERT!", b"#NAME?", b"#NUM!",
-    b"#ZAHL!", b"#NULL!", b"#SPILL!",
-];
-
-/// Whether a line begins with the cell of a value that is none.
-fn begins_without_value(line: &[u8]) -> bool {
-    let behind = |cell: &&[u8]| line.strip_prefix(*cell);
-    let ends = |rest: &[u8]| rest.first().is_none_or(|byte| b",;|\t\r\n".contains(byte));
-    NO_VALUES.iter().filter_map(behind).any(ends)
-}
-
-/// Puts a blank for the mark of each line that begins with a value that is none, and a line feed for a
-/// carriage return that ends a comment alone, which would else go on to the next line feed. How many bytes
-/// are known to be right: a comment whose end has not come is not.
-fn without_marks(bytes: &mut [u8], last: u8, end: End) -> usize {
-    // Most texts have no comment at all.
-    if !bytes.contains(&b'#') {
-        return bytes.len();
-    }
-    let mut start = first_line(bytes, last);
-    while let Some(at) = start {
-        let line = bytes.get(at..).unwrap_or_default();
-        if line.first() == Some(&b'#') {
-            let line_end = line.iter().position(|byte| is_line_end(*byte));
-            // Behind a carriage return there may be a line feed.
-            let is_known = line_end.is_some_and(|end| end + 1 < line.len());
-            if !is_known && end == End::Open {
-                return at;
-            }
-            let is_alone = |end: &usize| {
-                line.get(*end) == Some(&b'\r')
-                    && line.get(*end + 1).is_some_and(|next| *next != b'\n')
-            };
-            let alone = line_end.filter(is_alone).map(|end| at + end);
-            let mark = begins_without_value(line).then_some((at, b' '));
-            for (place, byte) in mark.into_iter().chain(alone.map(|place| (place, b'\n'))) {
-                if let Some(old) = bytes.get_mut(place) {
-                    *old = byte;
-                }
-            }
-        }
-        start = next_line(bytes, at);
-    }
-    bytes.len()
-}
-
-/// Whether more bytes may follow.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum End {
-    Open,
-    Come,
-}
-
-/// Where the first line begins of bytes behind the byte `last`.
-fn first_line(bytes: &[u8], last: u8) -> Option<usize> {
-    if is_line_end(last) { Some(0) } else { next_line(bytes, 0) }
-}
-
-fn is_line_end(byte: u8) -> bool {
-    byte == b'\n' || byte == b'\r'
-}
-
-/// Where the next line begins behind the byte `from`.
-fn next_line(bytes: &[u8], from: usize) -> Option<usize> {
-    let behind = bytes.get(from..)?.iter().position(|byte| is_line_end(*byte))?;
-    Some(from + behind + 1).filter(|start| *start < bytes.len())
+    comments: Comments,
 }
 
 impl<R: Read> LineEnds<R> {
@@ -242,7 +164,7 @@ impl<R: Read> LineEnds<R> {
             longest,
             held_back: Vec::new(),
             mark: b',',
-            label: None,
+            comments: Comments::default(),
         }
     }
 
@@ -267,43 +189,18 @@ impl<R: Read> LineEnds<R> {
             let end = if is_all { End::Come } else { End::Open };
             let done = without_marks(known, self.last, end);
             if done > 0 || is_all {
-                self.note_label(known.get(..done).unwrap_or_default());
+                let row = self.passed + self.ends.len() as u64 + 1;
+                let first = (first_line(known, self.last), row);
+                self.comments.note(known.get(..done).unwrap_or_default(), first, self.mark);
                 self.held_back.splice(0..0, known.get(done..).unwrap_or_default().iter().copied());
                 return Ok(done);
             }
         }
     }
 
-    /// Notes the first line that begins like a comment and may be a row that begins with a label.
-    fn note_label(&mut self, bytes: &[u8]) {
-        if self.label.is_some() || !bytes.contains(&b'#') {
-            return;
-        }
-        let mut start = first_line(bytes, self.last);
-        while let Some(at) = start {
-            let line =
-                bytes.get(at..).and_then(|rest| rest.split(|byte| is_line_end(*byte)).next());
-            if let Some(label) = line.and_then(|line| label_of(line, self.mark)) {
-                let before = bytes.iter().take(at).filter(|byte| **byte == b'\n').count();
-                let row = self.passed + (self.ends.len() + before) as u64 + 1;
-                self.label = Some((row, String::from_utf8_lossy(label).into_owned()));
-                return;
-            }
-            start = next_line(bytes, at);
-        }
-    }
-
-    /// Refuses such a line below the header of a table whose rows begin with labels.
-    pub(super) fn check_labels(&self, wanted: &Wanted<'_>) -> Result<(), ReadError> {
-        let below = self.label.as_ref().filter(|(row, _)| *row > wanted.head.header_row);
-        match below.filter(|_| wanted.label == Some(0)) {
-            Some((row, label)) => Err(ReadError::LabelOrComment {
-                path: wanted.path().to_owned(),
-                row: *row,
-                label: label.clone(),
-            }),
-            None => Ok(()),
-        }
+    /// The comments that it passed on.
+    pub(super) fn comments(&self) -> &Comments {
+        &self.comments
     }
 
     /// Number of line ends before the byte `place`, which never goes back.

@@ -1,5 +1,6 @@
 //! Tables of text: delimiter, cells, line numbers.
 
+mod comments;
 mod gathered;
 mod growing;
 mod header;
@@ -105,7 +106,9 @@ impl Rows for Unread {
                 ));
             }
         }
-        self.reader.get_ref().get_ref().0.check_labels(wanted)?;
+        let comments = self.reader.get_ref().get_ref().0.comments();
+        comments.check_labels(wanted)?;
+        gathered.table.notes.extend(comments.on_wide(wanted));
         gathered.leave_out(wanted);
         let bytes = self.reader.into_inner().into_inner().0.inner;
         gathered.table_of(bytes.finish(wanted.path())?);
