@@ -238,6 +238,11 @@ pub(crate) fn in_words() -> Vec<Messy> {
             with("Time [hh:mm:ss]", |k| format!("00:00:{}", seconds(k))),
             SAME,
         ),
+        messy(
+            "milliseconds.csv",
+            with("time", |k| format!("9:59:{}.{}", 10 + k / 100, 10 * (k % 100))),
+            read(1e-6, "milliseconds without leading zeros: `.10` is 10 ms"),
+        ),
         messy("date_among_numbers.csv", mixed, Expected::Refused(&["row 619", "`time_s`"])),
     ]
 }

@@ -3,6 +3,7 @@
 use super::super::cell::{DecimalMarks, Time, parse_cell, parse_time};
 use super::super::spelling::{are_units, is_remark};
 use super::lines::Place;
+use super::milliseconds::Milliseconds;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::names::shown;
@@ -18,12 +19,18 @@ const COMMENT: &str = "Comment";
 /// Memory of a number: itself, and what its vector has to spare.
 const NUMBER_SIZE: usize = 2 * size_of::<f64>();
 
+const IN_MILLISECONDS: &str = "what stands behind the seconds is milliseconds without leading zeros: \
+     `.10` is 10 ms";
+
 /// Rows as they come.
 pub(super) struct Gathered {
     delimiter: u8,
     marks: DecimalMarks,
     /// Whether times are dates or times of day, as the first one shows.
     are_times_in_words: Option<bool>,
+    milliseconds: Milliseconds,
+    /// The column of times, among those of numbers.
+    time: Option<usize>,
     pub(super) table: Table,
     labels: Option<Labels>,
     /// Rows of words, which belong to the table if rows of numbers follow.
@@ -49,6 +56,8 @@ impl Gathered {
             delimiter,
             marks,
             are_times_in_words: None,
+            milliseconds: Milliseconds::new(),
+            time: wanted.numeric.iter().position(|column| wanted.time == Some(*column)),
             table,
             labels,
             held_back,
@@ -84,6 +93,9 @@ impl Gathered {
                 parse_cell(cell, self.delimiter)
             };
             column.push(self.marks.agreed(cell, parsed, place, (row, index)), row);
+            if self.time == Some(place) {
+                self.milliseconds.take(cell, column.values.len());
+            }
         }
         if let Some(labels) = &mut self.labels {
             let memory = (wanted.path(), &self.budget);
@@ -208,6 +220,13 @@ impl Gathered {
             if let Some((row, index, cell)) = self.marks.doubtful(place) {
                 column.values.truncate(*index);
                 column.error = Some((*row, BadCell::Thousands(cell.clone())));
+            }
+        }
+        let time = self.time.and_then(|time| self.table.columns.get_mut(time));
+        if time.is_some_and(|time| self.milliseconds.apply(&mut time.values)) {
+            let note = format!("{}: {IN_MILLISECONDS}", self.table.source.path.display());
+            if !self.table.notes.contains(&note) {
+                self.table.notes.push(note);
             }
         }
         self.table.trials = self.labels.as_ref().map_or_else(Vec::new, Labels::runs);

@@ -5,6 +5,7 @@ mod gathered;
 mod growing;
 mod header;
 mod lines;
+mod milliseconds;
 
 use std::io::{self, Read as _};
 use std::path::Path;
