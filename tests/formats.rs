@@ -393,6 +393,27 @@ mod mcap {
     }
 
     #[test]
+    fn a_clock_that_is_set_back_begins_a_new_part() {
+        let boom = mapped(&[("boom", "/valve.data[0]", "/joint_states.position[boom]")]);
+        let (whole, parts) = (read_whole("zstd.mcap", &boom), read_whole("set_back.mcap", &boom));
+        let whole = &whole.joints[0].trials[0];
+        let [before, behind] = &parts.joints[0].trials[..] else { panic!("{parts:?}") };
+        assert_eq!([before.input(), behind.input()].concat(), whole.input());
+        assert_eq!([before.output(), behind.output()].concat(), whole.output());
+        let said = |note: &String| note.contains("the clock starts anew once");
+        assert!(parts.notes.iter().any(said), "{:?}", parts.notes);
+    }
+
+    #[test]
+    fn a_topic_that_pauses_is_named() {
+        let boom = mapped(&[("boom", "/valve.data[0]", "/joint_states.position[boom]")]);
+        let notes = read_whole("pauses.mcap", &boom).notes;
+        let said =
+            |note: &String| note.contains("`/valve` pauses once, for up to 0.36 s: the last");
+        assert!(notes.iter().any(said), "{notes:?}");
+    }
+
+    #[test]
     fn what_is_held_and_where_time_starts_is_told() {
         let notes = read_whole("zstd.mcap", &both()).notes;
         assert!(

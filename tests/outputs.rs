@@ -204,6 +204,39 @@ fn results_that_find_no_room_are_no_success() {
 }
 
 #[test]
+fn what_a_person_filled_in_or_corrected_is_not_replaced() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let run = |words: &str| {
+        let ended = tauscope(folder.path()).args(words.split(' ')).output().unwrap();
+        (ended.status.code(), String::from_utf8_lossy(&ended.stderr).into_owned())
+    };
+    let cases = [
+        ("estimate log.csv --quiet --review-sheet sheet.csv", "sheet.csv", "--review sheet.csv"),
+        ("columns log.csv --quiet -w columns.toml", "columns.toml", "is there already"),
+    ];
+    for (words, name, says) in cases {
+        // As it was written it may be written again.
+        for _ in 0..2 {
+            let (code, said) = run(words);
+            assert!(code.is_some_and(|code| code < 2), "{words}: {said}");
+        }
+        let text = fs::read_to_string(path(name)).unwrap();
+        let changed = match text.split_once('\n') {
+            Some((head, rows)) if name == "sheet.csv" => {
+                format!("{head}\n{}", rows.replacen(",,,,", ",rejected,,,", 1))
+            }
+            _ => text.replacen("time", "# by hand\ntime", 1),
+        };
+        assert_ne!(changed, text);
+        fs::write(path(name), &changed).unwrap();
+        let (code, said) = run(words);
+        assert!(code == Some(2) && said.contains(says), "{words}: {said}");
+        assert_eq!(fs::read_to_string(path(name)).unwrap(), changed);
+    }
+}
+
+#[test]
 fn a_dash_is_no_name_of_an_output() {
     let folder = folder();
     for words in ["columns log.csv -w -", "estimate log.csv --decisions -"] {

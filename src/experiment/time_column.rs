@@ -86,7 +86,7 @@ impl TimeSource {
 }
 
 /// A column of times in the unit that is `given`, else that its header states, else that its
-/// name ends in.
+/// name ends in, else that is one of its words.
 pub(super) fn times(
     head: &Head,
     column: usize,
@@ -99,7 +99,8 @@ pub(super) fn times(
     let named = || unit::of_time(name).or_else(|| unit::of_time(&lower));
     let is_itself = || Some(lower.as_str()).filter(|name| TIME_UNIT_NAMES.contains(name));
     let Some(unit) = stated.or_else(named).or_else(is_itself) else {
-        return Ok(TimeSource::Times(column, None));
+        let text = header.map_or("", |header| header.text.as_str());
+        return Ok(TimeSource::Times(column, unit::time_within(text)));
     };
     let unknown = || ReadError::TimeUnit {
         path: head.path.clone(),

@@ -118,6 +118,23 @@ pub(super) fn time_in(text: &str) -> Option<f64> {
     found.all(|other| other == first).then_some(first)
 }
 
+/// The seconds of the one unit of time among the words of a header that is one of times: `Time (mins)`,
+/// `t/min`, `timeMin`. Days are none: a tag may be a label.
+pub(super) fn time_within(header: &str) -> Option<f64> {
+    let mut words = String::new();
+    let mut is_before_capital = false;
+    for letter in header.chars() {
+        if is_before_capital && letter.is_uppercase() || !letter.is_alphabetic() {
+            words.push(' ');
+        }
+        is_before_capital = letter.is_lowercase();
+        words.extend(letter.is_alphabetic().then_some(letter));
+    }
+    // As a unit, `seconds since 1970` ends with its first word.
+    let words = words.to_lowercase().replace("since", " ");
+    time_in(&words).filter(|seconds| *seconds <= 3600.0)
+}
+
 /// The seconds of a unit of time with a factor before it: `10ms`, `0.01 s`, `x10 ms`.
 fn with_factor(text: &str) -> Option<f64> {
     let is_between = |letter: char| letter.is_whitespace() || "x*·×".contains(letter);
@@ -239,6 +256,33 @@ mod tests {
         }
         for text in ["1/100 s", "s/100", "ticks", "10", "0 s", "ms or s", "10 ms or 5"] {
             assert_eq!(time_in(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_unit_of_time_may_be_a_word_of_a_header() {
+        let minutes = [
+            "Time (mins)",
+            "t/min",
+            "Zeit/min",
+            "Time in minutes",
+            "Zeit in Minuten",
+            "Time min",
+            "Minutes",
+            "min",
+            "timeMin",
+            "time:min",
+            "time - min",
+            "TIME(MINUTE)",
+            "Time {min}",
+        ];
+        for header in minutes {
+            assert_eq!(time_within(header), Some(60.0), "{header}");
+        }
+        assert_eq!(time_within("Time since start, ms"), Some(1e-3));
+        assert_eq!(time_within("elapsed hours"), Some(3600.0));
+        for header in ["time", "Timestamp", "time tag", "T", "x_value", "Zeit", "min/ms"] {
+            assert_eq!(time_within(header), None, "{header}");
         }
     }
 

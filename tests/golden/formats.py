@@ -235,6 +235,19 @@ def ros():
             content = state(time, content["name"][own], content["position"][own])
         turns.append((topic, time, content))
     mcap(HERE / "turns.mcap", turns)
+    # A clock that is set back by three seconds in the middle, before a command and its state.
+    middle = next(time for topic, time, _ in messages if topic == "/valve" and time > START + 200 * TICK)
+    mcap(HERE / "set_back.mcap", [(topic, time - (time >= middle) * 150 * TICK, content)
+                                  for topic, time, content in messages])
+    # A valve that sends at each state, but for a third of a second.
+    sends = []
+    for topic, time, content in messages:
+        if topic == "/joint_states":
+            k = (time - START) // TICK
+            if not 100 <= k < 117:
+                sends.append(("/valve", time, {"layout": layout, "data": list(volts[k])}))
+            sends.append((topic, time, content))
+    mcap(HERE / "pauses.mcap", sends)
     write_csv(HERE / "ros.csv", {
         "time_s": [k * TICK / 1e9 for k in range(2, samples)],
         "boom.input": volts[2:, 0], "boom.output": angles[2:, 0],

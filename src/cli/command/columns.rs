@@ -3,6 +3,7 @@
 use std::io::Write as _;
 use std::path::PathBuf;
 
+use anyhow::bail;
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{MemoryArgs, RunArgs, quoted};
@@ -36,7 +37,15 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let survey = Survey::of(&args.log, args.memory.limit())?;
     if let Some(path) = &args.write {
         check_outputs(&[path], std::slice::from_ref(&args.log))?;
-        write_file(path, |file| Ok(file.write_all(survey.map.to_toml().as_bytes())?))?;
+        let mapping = survey.map.to_toml();
+        // It may have been corrected by hand.
+        if path.is_file() && std::fs::read_to_string(path).is_ok_and(|text| text != mapping) {
+            let path = path.display();
+            bail!(
+                "--write {path}: is there already and says something else; remove it, or name another file"
+            );
+        }
+        write_file(path, |file| Ok(file.write_all(mapping.as_bytes())?))?;
     }
     let options = options(&survey);
     let text = || {

@@ -19,6 +19,7 @@ use crate::cli::output::{
     write_file, write_parquet,
 };
 use crate::cli::viewer::Stream;
+use crate::study::Review;
 
 /// The files that were asked for, found to be writable before the work starts.
 pub(crate) struct Files<'a> {
@@ -37,6 +38,9 @@ impl<'a> Files<'a> {
         let outputs = [&args.recording, &args.export].into_iter().chain(tables);
         let outputs: Vec<&Path> = outputs.flatten().map(PathBuf::as_path).collect();
         check_outputs(&outputs, inputs)?;
+        if let Some(sheet) = &args.review_sheet {
+            check_sheet(sheet)?;
+        }
         if let Some(recording) = &args.recording {
             check_beside_parts(recording, &outputs)?;
         }
@@ -140,4 +144,18 @@ fn named_lookup(path: &Path) -> anyhow::Result<(Language, &str)> {
         );
     }
     Ok((language, name))
+}
+
+/// Refuses to replace a review sheet that a person has filled in.
+fn check_sheet(sheet: &Path) -> anyhow::Result<()> {
+    let is_filled_in =
+        sheet.is_file() && Review::read(sheet).is_ok_and(|review| !review.is_empty());
+    if is_filled_in {
+        let sheet = sheet.display();
+        bail!(
+            "--review-sheet {sheet}: holds reviews already, which would be lost; write another file, \
+             and `--review {sheet}` takes them over"
+        );
+    }
+    Ok(())
 }

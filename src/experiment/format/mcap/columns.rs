@@ -59,9 +59,11 @@ impl Rows for Unread {
         let clock = self.clock(wanted);
         let mut series = self.series(wanted);
         let mut file = Hashing::new(BufReader::new(file));
+        let mut place = 0_u32;
         stream::each_record(&mut file, size, &self.budget, |record| {
             if let Record::Message { header, data } = record {
-                self.collect(&header, &data, clock, &mut series)?;
+                self.collect((&header, place), &data, clock, &mut series)?;
+                place = place.saturating_add(1);
             }
             Ok(ControlFlow::Continue(()))
         })
@@ -76,8 +78,8 @@ impl Rows for Unread {
             clock.name(),
             zero as f64 * 1e-9
         )];
-        let held = aligned.note.take();
-        notes.extend(held.map(|note| format!("{}: {note}", wanted.path().display())));
+        let held = std::mem::take(&mut aligned.notes);
+        notes.extend(held.iter().map(|note| format!("{}: {note}", wanted.path().display())));
         let mut column = |index: &usize| match self.places.get(*index) {
             Some(Place::Time(other)) => aligned.times(*other, clock, zero),
             _ => aligned.column(*index),
@@ -120,7 +122,7 @@ impl Unread {
 
     fn collect(
         &self,
-        header: &MessageHeader,
+        (header, place): (&MessageHeader, u32),
         data: &[u8],
         clock: Clock,
         series: &mut [Series],
@@ -139,7 +141,7 @@ impl Unread {
                 "choose another time column; `log_time` is the time of recording",
             ));
         };
-        series.push(time, &value, &self.budget)?;
+        series.push((time, place), &value, &self.budget)?;
         Ok(())
     }
 }

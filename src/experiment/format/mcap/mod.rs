@@ -16,6 +16,8 @@ mod decode;
 mod fault;
 mod lengths;
 mod message;
+mod pauses;
+mod restarts;
 mod series;
 mod stream;
 
