@@ -590,6 +590,19 @@ pub enum ReadError {
         /// The joint.
         joint: String,
     },
+    /// Each time has several values of an output, of several joints.
+    #[error(
+        "{}: each time stands in {size} rows, whose values in `{column}` lie far apart, as in a table \
+         with a row for each joint; give each joint an input and an output column of its own", path.display()
+    )]
+    SeveralSeries {
+        /// The log.
+        path: PathBuf,
+        /// The column.
+        column: String,
+        /// Rows of a time.
+        size: usize,
+    },
     /// Two logs give the same joint different units.
     #[error(
         "{}: joint `{joint}` is in [{found}] here but in [{expected}] in an earlier log",
@@ -670,6 +683,7 @@ impl ReadError {
             | Self::BeyondPrecision { column, .. }
             | Self::Missing { column, .. }
             | Self::NoTimeInRow { column, .. }
+            | Self::SeveralSeries { column, .. }
             | Self::NeverMeasured { column, .. } => Some(column),
             _ => None,
         }

@@ -4,12 +4,14 @@
 //! sample, which no joint makes. Where all large jumps of an output are of a turn, they are taken
 //! out.
 
-use crate::numerics::to_decimals;
+use crate::numerics::{quantile, to_decimals};
 
 /// A sensor that wraps after so much, output units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wrap {
     turn: f64,
+    /// Steps from which a sample is at odds with its neighbours.
+    odd: f64,
 }
 
 /// Parts of a turn: below the first no sample jumps, nor does it between the first and the second.
@@ -27,23 +29,22 @@ impl Wrap {
     pub(super) const DAY_S: f64 = 86_400.0;
 
     /// A clock that shows times of day, seconds.
-    pub(super) const OF_CLOCK: Self = Self { turn: Self::DAY_S };
+    pub(super) const OF_CLOCK: Self = Self { turn: Self::DAY_S, odd: f64::INFINITY };
 
     /// The turn of a sensor whose output is `trials`, not a number where it is missing, in `unit`;
     /// none where it does not begin anew.
     pub(super) fn of(trials: &[&[f64]], unit: Option<&str>) -> Option<Self> {
-        let is_known = |value: &f64| !value.is_nan();
-        let known = || trials.iter().copied().flatten().copied().filter(is_known);
-        let (low, high) = known().fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
-        let range = high - low;
+        let odd = odd_from(trials);
+        let whole: Vec<Vec<f64>> = trials.iter().map(|trial| without_odd(trial, odd)).collect();
+        let known = || whole.iter().flatten().copied();
+        let range = range(known());
         let is_turn = |turn: &f64| (RANGE * turn..=BEYOND * turn).contains(&range);
         let counts = || known().all(|value| value.fract() == 0.0);
         let turn = turns(unit)
             .find(is_turn)
             .or_else(|| powers_of_two(unit).find(is_turn).filter(|_| counts()))?;
-        let wrap = Self { turn };
-        let known = |trial: &&[f64]| trial.iter().copied().filter(is_known).collect();
-        wrap.explains(&trials.iter().map(known).collect::<Vec<_>>()).then_some(wrap)
+        let wrap = Self { turn, odd };
+        wrap.explains(&whole).then_some(wrap)
     }
 
     /// Whether every jump is that of a turn, but for as much as the output moves from one sample to
@@ -60,10 +61,17 @@ impl Wrap {
         largest < MOTION && (0.0..=TIMES * largest + BESIDES).contains(&most)
     }
 
-    /// Takes the turns out of `values`, which follow one another; how many there were.
+    /// Takes the turns out of `values`, which follow one another; how many there were. A sample amid
+    /// a turn, as filters leave it there, says nothing.
     pub(super) fn unwrap(self, values: &mut [f64]) -> usize {
         let (mut turns, mut count, mut before) = (0.0, 0, f64::NAN);
-        for value in values.iter_mut().filter(|value| !value.is_nan()) {
+        let odd = odd_samples(values, self.odd);
+        let mut odd = odd.iter().peekable();
+        for (index, value) in values.iter_mut().enumerate().filter(|(_, value)| !value.is_nan()) {
+            if let Some(odd) = odd.next_if(|odd| odd.index == index) {
+                *value = if odd.is_between { f64::NAN } else { *value + turns * self.turn };
+                continue;
+            }
             let step = *value - before;
             if step.abs() >= JUMP * self.turn {
                 turns -= step.signum();
@@ -86,17 +94,88 @@ impl Wrap {
     }
 }
 
-/// The turns of sensors of angles.
+/// A sample that is far from both its neighbours.
+struct Odd {
+    index: usize,
+    /// Whether it lies between them.
+    is_between: bool,
+}
+
+/// The known ones of `values` that are more than `odd` from those before and behind.
+fn odd_samples(values: &[f64], odd: f64) -> Vec<Odd> {
+    let known: Vec<(usize, f64)> =
+        values.iter().copied().enumerate().filter(|(_, value)| !value.is_nan()).collect();
+    let of = |triple: &[(usize, f64)]| match *triple {
+        [(_, before), (index, value), (_, behind)] => {
+            let (to, from) = (value - before, behind - value);
+            let is_odd = to.abs() > odd && from.abs() > odd;
+            is_odd.then_some(Odd { index, is_between: to * from > 0.0 })
+        }
+        _ => None,
+    };
+    known.windows(3).filter_map(of).collect()
+}
+
+/// The step from which a sample is at odds with its neighbours: well above usual ones. Where such
+/// samples are no few, none is.
+fn odd_from(trials: &[&[f64]]) -> f64 {
+    /// Part of the steps that are usual, times the largest of them, and part of the range.
+    const USUAL: f64 = 0.95;
+    const TIMES: f64 = 5.0;
+    const OF_RANGE: f64 = 0.01;
+    /// Samples to one that is odd, at least.
+    const SELDOM: usize = 100;
+    let known = || trials.iter().copied().flatten().copied().filter(|value| !value.is_nan());
+    let steps: Vec<f64> = trials
+        .iter()
+        .flat_map(|trial| trial.windows(2))
+        .map(|pair| (pair[1] - pair[0]).abs())
+        .filter(|step| !step.is_nan())
+        .collect();
+    let usual = quantile(&steps, USUAL).unwrap_or_default();
+    let odd = (TIMES * usual).max(OF_RANGE * range(known()));
+    let count: usize = trials.iter().map(|trial| odd_samples(trial, odd).len()).sum();
+    if SELDOM * count > known().count() { f64::INFINITY } else { odd }
+}
+
+/// The known values of a trial without those at odds with their neighbours.
+fn without_odd(trial: &[f64], odd: f64) -> Vec<f64> {
+    let odd = odd_samples(trial, odd);
+    let is_odd = |index: usize| odd.binary_search_by_key(&index, |odd| odd.index).is_ok();
+    let values = trial.iter().copied().enumerate();
+    values
+        .filter(|(index, value)| !value.is_nan() && !is_odd(*index))
+        .map(|(_, value)| value)
+        .collect()
+}
+
+fn range(values: impl Iterator<Item = f64>) -> f64 {
+    let (low, high) = values.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+    high - low
+}
+
+/// The turns of sensors of angles, by the names of their units; where none is said it may be the
+/// first two.
+const TURNS: [(&[&str], f64); 6] = [
+    (&["deg", "°", "degrees"], 360.0),
+    (&["rad", "radians"], std::f64::consts::TAU),
+    (&["mdeg"], 360e3),
+    (&["mrad"], 1e3 * std::f64::consts::TAU),
+    (&["gon"], 400.0),
+    (&["rev", "turn", "turns"], 1.0),
+];
+
 fn turns(unit: Option<&str>) -> impl Iterator<Item = f64> {
-    let degrees = is_one_of(unit, &["deg", "°", "degrees"]).then_some(360.0);
-    let radians = is_one_of(unit, &["rad", "radians"]).then_some(std::f64::consts::TAU);
-    degrees.into_iter().chain(radians)
+    let is_it = move |(place, (units, _)): &(usize, (&[&str], f64))| {
+        unit.map_or(*place < 2, |unit| units.contains(&unit))
+    };
+    TURNS.into_iter().enumerate().filter(is_it).map(|(_, (_, turn))| turn)
 }
 
 /// Those of sensors that count.
 fn powers_of_two(unit: Option<&str>) -> impl Iterator<Item = f64> {
     let is_count = is_one_of(unit, &["cnt", "count", "counts", "inc", "ticks"]);
-    (8..=24).map(|bits| f64::from(1_u32 << bits)).filter(move |_| is_count)
+    (8..=32).map(|bits| 2_f64.powi(bits)).filter(move |_| is_count)
 }
 
 /// Whether `unit` is one of `units`, or not said.
@@ -131,7 +210,33 @@ mod tests {
         }
         let (_, seen) = shown(4096.0, 0.0);
         let counts: Vec<f64> = seen.iter().map(|y| y.floor()).collect();
-        assert_eq!(Wrap::of(&[&counts], Some("counts")), Some(Wrap { turn: 4096.0 }));
+        assert_eq!(Wrap::of(&[&counts], Some("counts")).map(|wrap| wrap.turn), Some(4096.0));
+    }
+
+    #[test]
+    fn samples_amid_a_turn_and_single_faults_are_passed_over() {
+        let (truth, mut seen) = shown(360.0, 0.0);
+        let jump = (1..seen.len()).find(|k| (seen[*k] - seen[k - 1]).abs() > 200.0).unwrap();
+        seen[jump] = f64::midpoint(seen[jump - 1], seen[jump]);
+        seen[50] = 999.0;
+        let wrap = Wrap::of(&[&seen], Some("deg")).unwrap();
+        assert!(wrap.unwrap(&mut seen) > 10);
+        let offset = seen[0] - truth[0];
+        let is_off = |k: &usize| !((seen[*k] - truth[*k] - offset).abs() < 1e-9);
+        assert_eq!((0..seen.len()).filter(is_off).collect::<Vec<_>>(), [50, jump]);
+        assert!(seen[jump].is_nan());
+    }
+
+    #[test]
+    fn units_say_the_turn() {
+        for (turn, unit) in [(1.0, "rev"), (360e3, "mdeg"), (400.0, "gon")] {
+            let (_, seen) = shown(turn, 0.0);
+            assert_eq!(Wrap::of(&[&seen], Some(unit)).map(|wrap| wrap.turn), Some(turn));
+            assert_eq!(Wrap::of(&[&seen], Some("bar")), None);
+        }
+        let (_, seen) = shown(2_f64.powi(32), 0.0);
+        let counts: Vec<f64> = seen.iter().map(|y| y.floor()).collect();
+        assert!(Wrap::of(&[&counts], None).is_some());
     }
 
     #[test]

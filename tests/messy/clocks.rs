@@ -102,6 +102,23 @@ pub(crate) fn jumps() -> Vec<Messy> {
         ),
         messy("row_twice.csv", plain(&twice), read(1e-3, "1 row is at the time of the row before")),
         messy(
+            "copies.csv",
+            plain(&clean().into_iter().flat_map(|row| [row, row]).collect::<Vec<_>>()),
+            read(1e-6, "1800 rows are copies of the row before, and left out"),
+        ),
+        messy(
+            "row_for_each_joint.csv",
+            plain(
+                &clean()
+                    .into_iter()
+                    .flat_map(|row| {
+                        [row, Row { input: -row.input, output: 90.0 - row.output, ..row }]
+                    })
+                    .collect::<Vec<_>>(),
+            ),
+            Expected::Refused(&["each time stands in 2 rows", "`boom.output`"]),
+        ),
+        messy(
             "both_levels.csv",
             plain(&both_levels),
             read(1e-6, "19 rows are at the time of the row before, which is left out"),

@@ -81,6 +81,8 @@ impl Clock {
         let period = least_squares_period(&runs, times, &typical)?;
         let deviations = Deviations::of(&runs, times, period, &typical);
         let evenness = deviations.evenness(&runs, &typical, period)?;
+        let is_mean = typical.in_bursts && evenness == Evenness::Uneven;
+        let period = if is_mean { typical.seconds } else { period };
         Ok(Self {
             gaps: short_gaps(&runs),
             runs,
@@ -157,6 +159,24 @@ mod tests {
         };
         let times: Vec<f64> = (0..2000).map(&mut step).collect();
         assert_eq!(read(&times).evenness, Evenness::Uneven);
+    }
+
+    #[test]
+    fn the_period_of_rows_that_come_in_bursts_is_their_mean() {
+        // Two, five and ten at a time, 1 µs to 0.2 ms apart; and each up to 50 ms late.
+        for (size, apart) in [(2, 1e-6), (2, 2e-4), (5, 1e-5), (10, 1e-4)] {
+            let time = |k: usize| 0.01 * (k - k % size) as f64 + apart * (k % size) as f64;
+            let clock = read(&stamps(3000, time));
+            assert!((clock.period / 0.01 - 1.0).abs() < 1e-2, "{size} {apart}: {}", clock.period);
+            assert_eq!(sizes(&clock), [3000], "{size} {apart}");
+        }
+        let mut latest = 0.0;
+        let late = |k: usize| {
+            latest = f64::max(latest + 1e-5, 0.01 * k as f64 + 0.025 * (1.0 + noise(k)));
+            latest
+        };
+        let clock = read(&(0..3000).map(late).collect::<Vec<_>>());
+        assert!((clock.period / 0.01 - 1.0).abs() < 1e-2, "{}", clock.period);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod cells;
 mod joints;
+mod repeated;
 mod times;
 
 pub(super) use cells::Log;

@@ -34,9 +34,19 @@ impl Log<'_> {
                 return Ok((trials.iter().map(grid).collect(), Vec::new()));
             }
         };
-        let rows = |trial: &TrialRows| (trial.start..trial.end).collect();
-        let rows: Vec<Vec<usize>> = trials.iter().map(rows).collect();
-        let (grids, mut notes) = self.grids_of(&times, &rows, trials, repair)?;
+        let kept = if repair.as_it_stands { None } else { self.without_copies(&times, trials) };
+        let all = |trial: &TrialRows| (trial.start..trial.end).collect();
+        let rows = kept.clone().unwrap_or_else(|| trials.iter().map(all).collect());
+        let (mut grids, mut notes) = self.grids_of(&times, &rows, trials, repair)?;
+        if let Some(kept) = kept {
+            let count = times.len() - kept.iter().map(Vec::len).sum::<usize>();
+            notes.push(format!("{count} rows are copies of the row before, and left out"));
+            let in_trial = |(rows, trial): (Vec<usize>, &TrialRows)| {
+                rows.into_iter().map(|row| row - trial.start).collect()
+            };
+            let kept = kept.into_iter().zip(trials).map(in_trial);
+            grids = grids.into_iter().zip(kept).map(|(grid, rows)| grid.of_some(rows)).collect();
+        }
         self.check_unit(time, &grids)?;
         self.check_periods(time, trials, &grids)?;
         notes.extend(self.origin_note(time));

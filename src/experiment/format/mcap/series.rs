@@ -243,7 +243,15 @@ fn align_run<'a>(
     let mut columns: Vec<_> = own.collect();
     let mut start = 0;
     let mut others: Vec<&str> = Vec::new();
-    let mut notes = Vec::new();
+    let without = (clock.empty > 0).then(|| {
+        let all = clock.empty + clock.times.len();
+        let name = name(topic);
+        format!(
+            "{} of {all} messages of `{name}` have none of its values and are left out",
+            clock.empty
+        )
+    });
+    let mut notes: Vec<String> = without.into_iter().collect();
     let end = clock.times.last().copied().unwrap_or_default();
     for held in series {
         others.push(name(held.topic));
