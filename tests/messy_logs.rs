@@ -53,6 +53,7 @@ fn every_messy_log_is_read_as_the_clean_one_or_refused_with_the_remedy() {
     let logs = [
         clocks::clocks(),
         clocks::jumps(),
+        clocks::repeated_times(),
         clocks::which_times(),
         clocks::in_words(),
         clocks::other_dates(),

@@ -71,14 +71,6 @@ pub(crate) fn jumps() -> Vec<Messy> {
         .collect();
     let pause = timed(|k| at(k) + if k < 870 { 0.0 } else { 12.34 });
     let anew = timed(|k| at(if k < 870 { k } else { k - 870 }));
-    let mut twice = clean();
-    twice.insert(700, twice[699]);
-    // Both levels of a step in rows of one time, as a step is drawn.
-    let mut both_levels = clean();
-    for k in (1..both_levels.len()).rev().filter(|k| k % 90 == 0) {
-        let before = Row { input: both_levels[k - 1].input, ..both_levels[k] };
-        both_levels.insert(k, before);
-    }
     let mut swapped = clean();
     swapped.swap(500, 501);
     let mut mixed = clean();
@@ -99,29 +91,6 @@ pub(crate) fn jumps() -> Vec<Messy> {
             "clock_anew.csv",
             plain(&anew),
             read(0.051, "the clock starts anew once (first at row 872)"),
-        ),
-        messy("row_twice.csv", plain(&twice), read(1e-3, "1 row is at the time of the row before")),
-        messy(
-            "copies.csv",
-            plain(&clean().into_iter().flat_map(|row| [row, row]).collect::<Vec<_>>()),
-            read(1e-6, "1800 rows are copies of the row before, and left out"),
-        ),
-        messy(
-            "row_for_each_joint.csv",
-            plain(
-                &clean()
-                    .into_iter()
-                    .flat_map(|row| {
-                        [row, Row { input: -row.input, output: 90.0 - row.output, ..row }]
-                    })
-                    .collect::<Vec<_>>(),
-            ),
-            Expected::Refused(&["each time stands in 2 rows", "`boom.output`"]),
-        ),
-        messy(
-            "both_levels.csv",
-            plain(&both_levels),
-            read(1e-6, "19 rows are at the time of the row before, which is left out"),
         ),
         messy("out_of_order.csv", plain(&swapped), read(1e-3, "out of order")),
         messy("far_out_of_order.csv", plain(&mixed), read(1e-3, "out of order")),
@@ -147,6 +116,39 @@ pub(crate) fn jumps() -> Vec<Messy> {
             "clock_stands_still.csv",
             plain(&timed(|_| 1.5)),
             Expected::Refused(&["clock_stands_still.csv", "row 3", "must increase"]),
+        ),
+    ]
+}
+
+/// Times that stand in several rows.
+pub(crate) fn repeated_times() -> Vec<Messy> {
+    let mut twice = clean();
+    twice.insert(700, twice[699]);
+    // Both levels of a step in rows of one time, as a step is drawn.
+    let mut both_levels = clean();
+    for k in (1..both_levels.len()).rev().filter(|k| k % 90 == 0) {
+        let before = Row { input: both_levels[k - 1].input, ..both_levels[k] };
+        both_levels.insert(k, before);
+    }
+    let doubled = |other: &dyn Fn(Row) -> Row| -> Vec<Row> {
+        clean().into_iter().flat_map(|row| [row, other(row)]).collect()
+    };
+    vec![
+        messy("row_twice.csv", plain(&twice), read(1e-3, "1 row is at the time of the row before")),
+        messy(
+            "copies.csv",
+            plain(&doubled(&|row| row)),
+            read(1e-6, "1800 rows are copies of the row before, and left out"),
+        ),
+        messy(
+            "row_for_each_joint.csv",
+            plain(&doubled(&|row| Row { input: -row.input, output: 90.0 - row.output, ..row })),
+            Expected::Refused(&["each time stands in 2 rows", "`boom.output`"]),
+        ),
+        messy(
+            "both_levels.csv",
+            plain(&both_levels),
+            read(1e-6, "19 rows are at the time of the row before, which is left out"),
         ),
     ]
 }

@@ -53,7 +53,8 @@ impl Log<'_> {
         let repeats = repeats(&times, trials);
         let rows: usize = trials.iter().map(|trial| trial.end - trial.start).sum();
         let groups = rows - repeats.len();
-        let size = if groups == 0 { 1 } else { (rows as f64 / groups as f64).round() as usize };
+        // Rounded to the nearest.
+        let size = (2 * rows + groups).checked_div(2 * groups).unwrap_or(1);
         let is_whole = (rows as f64 - (size * groups) as f64).abs() <= (1.0 - ALIKE) * rows as f64;
         if size < 2 || !is_whole {
             return Ok(());
@@ -78,7 +79,6 @@ impl Log<'_> {
 }
 
 /// The rows at the time of the row before in their trial.
-#[expect(clippy::float_cmp, reason = "whether a stamp is repeated")]
 fn repeats(times: &[f64], trials: &[TrialRows]) -> Vec<usize> {
     let rows = trials.iter().flat_map(|trial| trial.start + 1..trial.end);
     rows.filter(|row| times.get(*row) == times.get(row - 1)).collect()

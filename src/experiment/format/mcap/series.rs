@@ -1,6 +1,6 @@
 //! What each topic said, and all of it at the times of one.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use re_ros_msg::deserialize::Value;
@@ -187,7 +187,7 @@ pub(super) struct Aligned {
     /// Nanoseconds.
     times: Vec<i64>,
     /// By the header of each.
-    columns: HashMap<usize, Vec<f64>>,
+    columns: BTreeMap<usize, Vec<f64>>,
     /// What was held, and what is missing from it.
     pub(super) notes: Vec<String>,
 }
