@@ -7,10 +7,11 @@ use std::path::Path;
 
 use mcap::records::{MessageHeader, Record};
 
+use super::align::align;
 use super::clock::Clock;
 use super::contents::{Contents, Place, broken};
 use super::fault::Fault;
-use super::series::{self, Series};
+use super::series::Series;
 use super::stream;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
@@ -69,8 +70,8 @@ impl Rows for Unread {
         })
         .map_err(refuse)?;
         let source = file.finish(wanted.path())?;
-        let mut aligned = series::align(series, wanted.clock, |topic| self.contents.name(topic))
-            .map_err(refuse)?;
+        let mut aligned =
+            align(series, wanted.clock, |topic| self.contents.name(topic)).map_err(refuse)?;
         let zero = self.contents.zero(clock);
         let mut notes = vec![format!(
             "{}: times are {} from {:.9} s on",

@@ -9,6 +9,7 @@
 //! comes from other topics is held from their latest message. Messages are read twice at
 //! most: until each topic is known, and for their values, which are all that is kept.
 
+mod align;
 mod clock;
 mod columns;
 mod contents;
