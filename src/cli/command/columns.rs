@@ -9,7 +9,7 @@ use clap::Args as ClapArgs;
 use crate::cli::args::{MemoryArgs, RunArgs, quoted};
 use crate::cli::exit::Completion;
 use crate::cli::output::{check_outputs, write_file};
-use crate::experiment::Survey;
+use crate::experiment::{ColumnMap, Survey};
 use crate::report::{ColumnsJson, columns_table};
 
 /// Say what each column of a log is taken for, and why
@@ -38,8 +38,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     if let Some(path) = &args.write {
         check_outputs(&[path], std::slice::from_ref(&args.log))?;
         let mapping = survey.map.to_toml();
-        // It may have been corrected by hand.
-        if path.is_file() && std::fs::read_to_string(path).is_ok_and(|text| text != mapping) {
+        // A mapping may have been corrected by hand.
+        let is_mapping = path.is_file() && ColumnMap::read(path).is_ok();
+        if is_mapping && std::fs::read_to_string(path).is_ok_and(|text| text != mapping) {
             let path = path.display();
             bail!(
                 "--write {path}: is there already and says something else; remove it, or name another file"

@@ -36,7 +36,9 @@ impl Log<'_> {
         repair: Repair,
     ) -> Result<(Joint, Vec<String>), ReadError> {
         self.check_joint(layout, repair)?;
-        self.check_one_series(layout, trials, time)?;
+        if let Clock::Stamps(times) = self.times(time)? {
+            self.check_one_series(layout, trials, &times)?;
+        }
         let (own, mut notes) = match self.sparse_rows(layout, trials, repair) {
             Some(rows) => match self.filled_grids(layout, trials, &rows, time, repair)? {
                 Some(own) => own,
