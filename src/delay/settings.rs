@@ -197,14 +197,17 @@ impl Settings {
     /// Whether the input of these `trials` of a joint is taken as moving all the time. One whose
     /// smallest step is given has steps.
     pub(crate) fn takes_as_continuous(&self, trials: &[Trial]) -> bool {
-        let has_steps = self.input == InputKind::Auto && self.min_step > 0.0;
-        !has_steps && self.input.is_continuous(trials)
+        self.takes_as_continuous_if(|| InputMotion::of(trials).is_continuous())
     }
 
     /// Whether an input that moves so is taken as moving all the time.
     pub(crate) fn takes_motion_as_continuous(&self, motion: &InputMotion) -> bool {
+        self.takes_as_continuous_if(|| motion.is_continuous())
+    }
+
+    fn takes_as_continuous_if(&self, moves: impl FnOnce() -> bool) -> bool {
         match self.input {
-            InputKind::Auto => self.min_step <= 0.0 && motion.is_continuous(),
+            InputKind::Auto => self.min_step <= 0.0 && moves(),
             InputKind::Steps => false,
             InputKind::Continuous => true,
         }

@@ -165,7 +165,10 @@ impl Findings<'_> {
             let rows = if count == 1 { "row is" } else { "rows are" };
             Some(format!("{count} {rows} {says} (first at row {row})"))
         };
-        lines.extend(of(|clock| clock.twice, "at the time of the row before, which is left out"));
+        lines.extend(of(
+            |clock| clock.twice,
+            "at the time of the row before, and one of the two is left out",
+        ));
         lines.extend(of(|clock| clock.disordered, "out of order and sorted by time"));
         let still = "stamped while the clock stood still, and left out: their times are not known";
         lines.extend(of(|clock| clock.frozen, still));

@@ -10,8 +10,8 @@ use crate::numerics::{quantile, to_decimals};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wrap {
     turn: f64,
-    /// Steps from which a sample is at odds with its neighbours.
-    odd: f64,
+    /// The step above which a sample that both its neighbours differ from is an outlier.
+    outlier_step: f64,
 }
 
 /// Parts of a turn: below the first no sample jumps, nor does it between the first and the second.
@@ -29,13 +29,17 @@ impl Wrap {
     pub(super) const DAY_S: f64 = 86_400.0;
 
     /// A clock that shows times of day, seconds.
-    pub(super) const OF_CLOCK: Self = Self { turn: Self::DAY_S, odd: f64::INFINITY };
+    pub(super) const OF_CLOCK: Self = Self { turn: Self::DAY_S, outlier_step: f64::INFINITY };
 
     /// The turn of a sensor whose output is `trials`, not a number where it is missing, in `unit`;
     /// none where it does not begin anew.
     pub(super) fn of(trials: &[&[f64]], unit: Option<&str>) -> Option<Self> {
-        let odd = odd_from(trials);
-        let whole: Vec<Vec<f64>> = trials.iter().map(|trial| without_odd(trial, odd)).collect();
+        if !jumps(trials) {
+            return None;
+        }
+        let outlier_step = outlier_step(trials);
+        let whole: Vec<Vec<f64>> =
+            trials.iter().map(|trial| without_outliers(trial, outlier_step)).collect();
         let known = || whole.iter().flatten().copied();
         let range = range(known());
         let is_turn = |turn: &f64| (RANGE * turn..=BEYOND * turn).contains(&range);
@@ -43,7 +47,7 @@ impl Wrap {
         let turn = turns(unit)
             .find(is_turn)
             .or_else(|| powers_of_two(unit).find(is_turn).filter(|_| counts()))?;
-        let wrap = Self { turn, odd };
+        let wrap = Self { turn, outlier_step };
         wrap.explains(&whole).then_some(wrap)
     }
 
@@ -62,14 +66,14 @@ impl Wrap {
     }
 
     /// Takes the turns out of `values`, which follow one another; how many there were. A sample amid
-    /// a turn, as filters leave it there, says nothing.
+    /// a turn, as filters leave it there, becomes one that is missing.
     pub(super) fn unwrap(self, values: &mut [f64]) -> usize {
         let (mut turns, mut count, mut before) = (0.0, 0, f64::NAN);
-        let odd = odd_samples(values, self.odd);
-        let mut odd = odd.iter().peekable();
+        let outliers = outliers(values, self.outlier_step);
+        let mut outliers = outliers.iter().peekable();
         for (index, value) in values.iter_mut().enumerate().filter(|(_, value)| !value.is_nan()) {
-            if let Some(odd) = odd.next_if(|odd| odd.index == index) {
-                *value = if odd.is_between { f64::NAN } else { *value + turns * self.turn };
+            if let Some(outlier) = outliers.next_if(|outlier| outlier.index == index) {
+                *value = if outlier.is_between { f64::NAN } else { *value + turns * self.turn };
                 continue;
             }
             let step = *value - before;
@@ -95,35 +99,38 @@ impl Wrap {
 }
 
 /// A sample that is far from both its neighbours.
-struct Odd {
+struct Outlier {
     index: usize,
     /// Whether it lies between them.
     is_between: bool,
 }
 
-/// The known ones of `values` that are more than `odd` from those before and behind.
-fn odd_samples(values: &[f64], odd: f64) -> Vec<Odd> {
+/// The known ones of `values` that are more than `step` from those before and behind.
+fn outliers(values: &[f64], step: f64) -> Vec<Outlier> {
+    if step.is_infinite() {
+        return Vec::new();
+    }
     let known: Vec<(usize, f64)> =
         values.iter().copied().enumerate().filter(|(_, value)| !value.is_nan()).collect();
     let of = |triple: &[(usize, f64)]| match *triple {
         [(_, before), (index, value), (_, behind)] => {
             let (to, from) = (value - before, behind - value);
-            let is_odd = to.abs() > odd && from.abs() > odd;
-            is_odd.then_some(Odd { index, is_between: to * from > 0.0 })
+            let is_outlier = to.abs() > step && from.abs() > step;
+            is_outlier.then_some(Outlier { index, is_between: to * from > 0.0 })
         }
         _ => None,
     };
     known.windows(3).filter_map(of).collect()
 }
 
-/// The step from which a sample is at odds with its neighbours: well above usual ones. Where such
+/// The step above which a sample is an outlier: well above usual ones. Where such
 /// samples are no few, none is.
-fn odd_from(trials: &[&[f64]]) -> f64 {
+fn outlier_step(trials: &[&[f64]]) -> f64 {
     /// Part of the steps that are usual, times the largest of them, and part of the range.
     const USUAL: f64 = 0.95;
     const TIMES: f64 = 5.0;
     const OF_RANGE: f64 = 0.01;
-    /// Samples to one that is odd, at least.
+    /// Samples to one outlier, at least.
     const SELDOM: usize = 100;
     let known = || trials.iter().copied().flatten().copied().filter(|value| !value.is_nan());
     let steps: Vec<f64> = trials
@@ -133,20 +140,32 @@ fn odd_from(trials: &[&[f64]]) -> f64 {
         .filter(|step| !step.is_nan())
         .collect();
     let usual = quantile(&steps, USUAL).unwrap_or_default();
-    let odd = (TIMES * usual).max(OF_RANGE * range(known()));
-    let count: usize = trials.iter().map(|trial| odd_samples(trial, odd).len()).sum();
-    if SELDOM * count > known().count() { f64::INFINITY } else { odd }
+    let step = (TIMES * usual).max(OF_RANGE * range(known()));
+    let count: usize = trials.iter().map(|trial| outliers(trial, step).len()).sum();
+    if SELDOM * count > known().count() { f64::INFINITY } else { step }
 }
 
-/// The known values of a trial without those at odds with their neighbours.
-fn without_odd(trial: &[f64], odd: f64) -> Vec<f64> {
-    let odd = odd_samples(trial, odd);
-    let is_odd = |index: usize| odd.binary_search_by_key(&index, |odd| odd.index).is_ok();
+/// The known values of a trial without its outliers.
+fn without_outliers(trial: &[f64], step: f64) -> Vec<f64> {
+    let outliers = outliers(trial, step);
+    let is_one = |index: &usize| outliers.binary_search_by_key(index, |one| one.index).is_ok();
     let values = trial.iter().copied().enumerate();
-    values
-        .filter(|(index, value)| !value.is_nan() && !is_odd(*index))
-        .map(|(_, value)| value)
-        .collect()
+    let kept = values.filter(|(index, value)| !value.is_nan() && !is_one(index));
+    kept.map(|(_, value)| value).collect()
+}
+
+/// Whether any sample jumps by a good part of the range, as all do that begin a turn: most outputs
+/// are known at once to do nothing like it.
+fn jumps(trials: &[&[f64]]) -> bool {
+    let known = trials.iter().copied().flatten().copied().filter(|value| !value.is_nan());
+    let range = range(known);
+    // Across what is missing, too.
+    let mut before = f64::NAN;
+    trials.iter().copied().flatten().copied().filter(|value| !value.is_nan()).any(|value| {
+        let step = (value - before).abs();
+        before = value;
+        step >= MOTION * range
+    })
 }
 
 fn range(values: impl Iterator<Item = f64>) -> f64 {

@@ -148,7 +148,7 @@ pub(crate) fn repeated_times() -> Vec<Messy> {
         messy(
             "both_levels.csv",
             plain(&both_levels),
-            read(1e-6, "19 rows are at the time of the row before, which is left out"),
+            read(1e-6, "19 rows are at the time of the row before, and one of the two is left out"),
         ),
     ]
 }

@@ -40,12 +40,12 @@ pub(crate) fn ends_and_comments() -> Vec<Messy> {
         messy(
             "row_taken_out.csv",
             cell(&all, 617, 0, "#6.15"),
-            read(0.051, "row 617 begins with `#`: it is left out as a comment"),
+            read(0.051, "row 617 begins with `#` and is left out as a comment"),
         ),
         messy(
             "rows_taken_out.csv",
             cell(&cell(&all, 617, 0, "#6.15"), 1017, 0, "#10.15"),
-            read(0.051, "2 rows begin with `#`: they are left out as comments"),
+            read(0.051, "2 rows begin with `#` and are left out as comments"),
         ),
         messy(
             "row_without_a_time.csv",

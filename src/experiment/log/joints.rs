@@ -36,9 +36,7 @@ impl Log<'_> {
         repair: Repair,
     ) -> Result<(Joint, Vec<String>), ReadError> {
         self.check_joint(layout, repair)?;
-        if let Clock::Stamps(times) = self.times(time)? {
-            self.check_one_series(layout, trials, &times)?;
-        }
+        self.check_one_series(layout, trials, time)?;
         let (own, mut notes) = match self.sparse_rows(layout, trials, repair) {
             Some(rows) => match self.filled_grids(layout, trials, &rows, time, repair)? {
                 Some(own) => own,

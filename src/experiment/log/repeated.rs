@@ -5,6 +5,7 @@ use super::cells::Log;
 use crate::experiment::error::ReadError;
 use crate::experiment::layout::JointLayout;
 use crate::experiment::table::TrialRows;
+use crate::experiment::time_column::TimeSource;
 use crate::numerics::median;
 
 /// Part of the rows that repeat a time, at least: of fewer the clock says what they are.
@@ -40,14 +41,17 @@ impl Log<'_> {
         &self,
         layout: &JointLayout,
         trials: &[TrialRows],
-        times: &[f64],
+        time: TimeSource,
     ) -> Result<(), ReadError> {
         /// Part of the rows in groups of one size, and how far apart values of one time must lie beside
         /// values of one series (chosen): of stamps that are rounded all of them follow one another.
         const ALIKE: f64 = 0.9;
         const APART: f64 = 10.0;
-        let Some(output) = self.column(layout.output.column) else { return Ok(()) };
-        let repeats = repeats(times, trials);
+        let times = time.column().and_then(|column| self.column(column));
+        let Some((times, output)) = times.zip(self.column(layout.output.column)) else {
+            return Ok(());
+        };
+        let repeats = repeats(&times.values, trials);
         let rows: usize = trials.iter().map(|trial| trial.end - trial.start).sum();
         let groups = rows - repeats.len();
         // Rounded to the nearest.

@@ -19,7 +19,7 @@ use crate::cli::output::{
     write_file, write_parquet,
 };
 use crate::cli::viewer::Stream;
-use crate::study::Review;
+use crate::study::{Review, ReviewError};
 
 /// The files that were asked for, found to be writable before the work starts.
 pub(crate) struct Files<'a> {
@@ -146,10 +146,14 @@ fn named_lookup(path: &Path) -> anyhow::Result<(Language, &str)> {
     Ok((language, name))
 }
 
-/// Refuses to replace a review sheet that a person has filled in.
+/// Refuses to replace a review sheet in which a person has written something.
 fn check_sheet(sheet: &Path) -> anyhow::Result<()> {
-    let is_filled_in =
-        sheet.is_file() && Review::read(sheet).is_ok_and(|review| !review.is_empty());
+    let is_filled_in = sheet.is_file()
+        && match Review::read(sheet) {
+            Ok(review) => !review.is_empty(),
+            // One that was misspelt was written by a person, too; another table is no sheet.
+            Err(error) => matches!(error, ReviewError::Cell { .. }),
+        };
     if is_filled_in {
         let sheet = sheet.display();
         bail!(

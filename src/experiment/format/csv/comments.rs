@@ -75,11 +75,14 @@ impl Comments {
         let path = wanted.path().display();
         let says = match count {
             1 => {
-                format!("row {row} begins with `#`: it is left out as a comment, as wide as it is")
+                format!(
+                    "row {row} begins with `#` and is left out as a comment, although it has as many \
+                 cells as the others"
+                )
             }
             _ => format!(
-                "{count} rows begin with `#`: they are left out as comments, as wide as the others \
-                 (first at row {row})"
+                "{count} rows begin with `#` and are left out as comments, although they have as \
+                 many cells as the others (first at row {row})"
             ),
         };
         Some(format!("{path}: {says}"))

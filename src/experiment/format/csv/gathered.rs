@@ -19,7 +19,8 @@ const COMMENT: &str = "Comment";
 /// Memory of a number: itself, and what its vector has to spare.
 const NUMBER_SIZE: usize = 2 * size_of::<f64>();
 
-const IN_MILLISECONDS: &str = "what stands behind the seconds is milliseconds without leading zeros: \
+/// What is said of such times.
+const IN_MILLISECONDS: &str = "the decimals of the times are milliseconds without leading zeros: \
      `.10` is 10 ms";
 
 /// Rows as they come.
@@ -77,7 +78,8 @@ impl Gathered {
         let row = place.row;
         let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
         let label = wanted.label.map_or(&b""[..], cell);
-        let size = wanted.numeric.len() * NUMBER_SIZE + label.len();
+        let numbers = wanted.numeric.len() + usize::from(self.milliseconds.is_open());
+        let size = numbers * NUMBER_SIZE + label.len();
         self.budget.take_values(1, size).map_err(|error| error.refuse(wanted.path()))?;
         let index = self.table.rows.len();
         self.table.rows.push(row);

@@ -20,6 +20,11 @@ impl Milliseconds {
         Self { changes, ends_in_zero: false, has_three: false, has_fewer: false, changed: 0 }
     }
 
+    /// Whether the times are kept a second time.
+    pub(super) fn is_open(&self) -> bool {
+        self.changes.is_some()
+    }
+
     /// Takes the `cell` of the last of so many times.
     pub(super) fn take(&mut self, cell: &[u8], times: usize) {
         let Some(changes) = &mut self.changes else { return };

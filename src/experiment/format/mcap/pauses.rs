@@ -57,7 +57,7 @@ impl Missing {
         let said = [(self.pauses, pauses), (self.messages, messages)];
         let said: Vec<String> =
             said.into_iter().filter(|(count, _)| *count > 0).map(|(_, said)| said).collect();
-        let held = "the last value is held, and a step within is late or lost";
+        let held = "the last value is held, so that a step in between is seen late or not at all";
         (!said.is_empty()).then(|| format!("`{name}` {}: {held}", said.join(" and ")))
     }
 }

@@ -31,8 +31,8 @@ pub(super) fn run_starts(times: &[i64]) -> Vec<usize> {
         }
         latest = latest.max(time);
     }
-    let is_order = starts.len() * SELDOM > times.len() + SELDOM;
-    if is_order || !overlap(times, &starts) { vec![0] } else { starts }
+    let are_shuffled = starts.len() * SELDOM > times.len() + SELDOM;
+    if are_shuffled || !overlap(times, &starts) { vec![0] } else { starts }
 }
 
 /// The usual interval between `times` that follow one another.
