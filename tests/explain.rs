@@ -59,6 +59,29 @@ fn a_missing_dead_band_is_named_with_its_numbers_and_its_command_works() {
 }
 
 #[test]
+fn noise_of_the_input_and_spikes_of_the_sensor_hide_no_effect() {
+    let desk = Desk::with(vec![banded("boom")]);
+    let mut row = 0.0_f64;
+    let line = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let &[time, input, output] = &cells[..] else { return line.to_owned() };
+        let Ok(level) = input.parse::<f64>() else { return line.to_owned() };
+        row += 1.0;
+        let noise = 0.02 * ((row * 12.9898).sin() * 43_758.545_3).fract();
+        let output = if (row - 600.0).abs() < 0.5 { "-9999" } else { output };
+        format!("{time},{:.5},{output}", level + noise)
+    };
+    let log: Vec<String> = desk.read("log.csv").lines().map(line).collect();
+    desk.write("log.csv", &(log.join("\n") + "\n"));
+    let done = desk.run("explain log.csv --format json");
+    let json: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!(json["joints"][0]["ranking"][0]["effect"], "dead_band");
+    let notes = String::from_utf8(done.stderr).unwrap();
+    assert!(notes.contains("1 sample is an isolated spike of the sensor: no error counts it"));
+    assert!(notes.contains("the input has noise or glitches"), "{notes}");
+}
+
+#[test]
 fn an_integrator_lacks_nothing_and_its_limits_are_said() {
     let desk = Desk::with(vec![joint("boom")]);
     let boom = &desk.json("explain log.csv", 0)["joints"][0];

@@ -263,6 +263,18 @@ mod mat {
     }
 
     #[test]
+    fn what_is_not_as_long_as_the_times_stands_in_no_way() {
+        let found = read_whole("workspace.mat", &ReadOptions::default());
+        assert_eq!(found.joints.len(), 1);
+        assert_eq!(found.joints[0].trials[0].len(), 400);
+        assert!(
+            found.notes.iter().any(|note| note.contains("output `angle`")),
+            "{:?}",
+            found.notes
+        );
+    }
+
+    #[test]
     fn a_structure_per_joint_needs_no_mapping() {
         let found = read_whole("v7.mat", &ReadOptions::default());
         assert_eq!(found.joints.len(), 1);
@@ -388,8 +400,9 @@ mod mcap {
     fn nodes_that_take_turns_on_one_topic_are_told_apart() {
         let boom = mapped(&[("boom", "/valve.data[0]", "/joint_states.position[boom]")]);
         let trial = &read_whole("turns.mcap", &boom).joints[0].trials[0];
-        assert_eq!(trial.len(), 199);
-        assert!((trial.period().seconds() - 0.04).abs() < 1e-12);
+        // Every second message, and as many between two of these as the steps of the valve need.
+        assert_eq!(trial.len(), 198 * 4 + 1);
+        assert!((trial.period().seconds() - 0.01).abs() < 1e-12);
     }
 
     #[test]
@@ -411,6 +424,60 @@ mod mcap {
         let said =
             |note: &String| note.contains("`/valve` pauses once, for up to 0.36 s: the last");
         assert!(notes.iter().any(said), "{notes:?}");
+    }
+
+    #[test]
+    fn a_command_that_comes_late_takes_no_rows_from_other_joints() {
+        let boom = ("boom", "/valve.data[0]", "/joint_states.position[boom]");
+        let arm = ("arm", "/arm_valve.data[1]", "/joint_states.position[arm]");
+        let alone = read_whole("zstd.mcap", &mapped(&[boom])).joints.remove(0);
+        let both = read_whole("late_command.mcap", &mapped(&[boom, arm]));
+        assert_eq!(both.joints[0].trials, alone.trials);
+        assert_eq!(both.joints[1].trials[0].len(), alone.trials[0].len());
+        let said = |words: &str| both.notes.iter().any(|note| note.contains(words));
+        assert!(said("what the input was there is not known, nor a step to it"), "{both:?}");
+        assert!(said("`/joint_states` has `position[bucket]` in later messages alone"), "{both:?}");
+    }
+
+    #[test]
+    fn steps_between_the_messages_of_a_slow_output_keep_their_times() {
+        let boom = mapped(&[("boom", "/valve.data[0]", "/joint_states.position[boom]")]);
+        let steps_s = |name: &str| {
+            let found = read_whole(name, &boom);
+            let trial = &found.joints[0].trials[0];
+            let pairs = trial.input().windows(2).zip(2..);
+            let steps = pairs.filter(|(pair, _)| (pair[1] - pair[0]).abs() > 0.0);
+            let steps: Vec<f64> = steps.map(|(_, sample)| trial.logged_time_s(sample)).collect();
+            (steps, found.notes)
+        };
+        let ((whole, _), (slow, notes)) = (steps_s("zstd.mcap"), steps_s("slow_states.mcap"));
+        assert_eq!(slow.len(), whole.len());
+        // Where all states are there, a step is at the first of them behind the command.
+        assert!(
+            slow.iter().zip(&whole).all(|(slow, whole)| (slow - whole).abs() < 0.011),
+            "{slow:?}"
+        );
+        assert!(
+            notes.iter().any(|note| note.contains("which is interpolated between them")),
+            "{notes:?}"
+        );
+    }
+
+    #[test]
+    fn a_file_without_chunks_is_compared_with_its_checksum() {
+        // Its data end with the record 15 of four bytes, which are zero where nothing was summed up.
+        const END: [u8; 13] = [15, 4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+        let mut bytes = std::fs::read(golden("no_summary.mcap")).unwrap();
+        let end = bytes.windows(END.len()).rposition(|text| text == END).unwrap();
+        let sum = crc32fast::hash(&bytes[..end]);
+        bytes[end + 9..end + 13].copy_from_slice(&sum.to_le_bytes());
+        let (_folder, path) = written("log.mcap", &bytes);
+        assert_eq!(read(path, &both()).joints.len(), 2);
+        let angle = bytes[..end].windows(4).rposition(|text| text == b"grip").unwrap() + 18;
+        bytes[angle] ^= 0x10;
+        let (_folder, path) = written("log.mcap", &bytes);
+        let message = refusal(path, &both());
+        assert!(message.contains("`mcap recover FILE` saves what is whole"), "{message}");
     }
 
     #[test]

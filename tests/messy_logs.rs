@@ -10,6 +10,8 @@ mod columns;
 mod log;
 #[path = "messy/marks.rs"]
 mod marks;
+#[path = "messy/sensors.rs"]
+mod sensors;
 #[path = "messy/texts.rs"]
 mod texts;
 
@@ -60,6 +62,8 @@ fn every_messy_log_is_read_as_the_clean_one_or_refused_with_the_remedy() {
         columns::sensors(),
         columns::names_alone(),
         columns::units_and_names(),
+        sensors::sensors(),
+        sensors::stamps(),
         marks::ends_and_comments(),
         marks::cells_and_units(),
         texts::texts(),
@@ -69,6 +73,7 @@ fn every_messy_log_is_read_as_the_clean_one_or_refused_with_the_remedy() {
         texts::thousands(),
         texts::words_below(),
         texts::broken(),
+        texts::other_formats(),
     ];
     let logs: Vec<Messy> = logs.into_iter().flatten().collect();
     assert!(logs.len() >= 30);

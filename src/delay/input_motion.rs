@@ -14,7 +14,7 @@
 //! samples); that with
 //! which a trial begins was held before, however short the rest of it is. Noise and
 //! dither are what the input takes back at once: changes that the next change undoes. They are
-//! ignored, as far as they are small beside the range.
+//! ignored, as far as they are small beside the range or become so by a running median.
 //!
 //! Of 27 inputs of real machines and made ones, those made of steps have a share of 0.93 or
 //! more, at 10 Hz to 1 kHz, with noise, dither and interpolated edges; joysticks, sines, ramps,
@@ -23,8 +23,8 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
+use super::input_noise::{Levels, in_samples, range};
 use crate::experiment::Trial;
-use crate::units::ceil_to_index;
 
 /// How an input is to be taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,13 +77,6 @@ pub(super) fn edge_samples(period_s: f64) -> usize {
     in_samples(EDGE_S, period_s).max(EDGE_SAMPLES)
 }
 
-/// Samples of so many seconds, rounded up where they are not whole.
-fn in_samples(seconds: f64, period_s: f64) -> usize {
-    /// What a quotient may be above a whole number by rounding.
-    const ROUNDING: f64 = 1e-9;
-    ceil_to_index(seconds / period_s - ROUNDING)
-}
-
 impl InputMotion {
     /// Of the input of all `trials` of a joint.
     pub fn of(trials: &[Trial]) -> Self {
@@ -128,16 +121,16 @@ struct Moved {
 impl Moved {
     fn of(trial: &Trial) -> Self {
         let (input, period_s) = (trial.input(), trial.period().seconds());
-        let tolerance = tolerance(input);
+        let Levels { values, tolerance, .. } = Levels::of(input, period_s);
         let shortest = if tolerance == 0.0 && is_drawn_in_time_of_its_own(input) {
             HOLD_SAMPLES
         } else {
             in_samples(HOLD_S, period_s).max(HOLD_SAMPLES)
         };
-        let holds = holds(input, tolerance, shortest);
+        let holds = holds(&values, tolerance, shortest);
         let edge = edge_samples(period_s);
         let steps = holds.windows(2).filter_map(|pair| match pair {
-            [from, to] if to.start - from.end <= edge => Some((to.level - from.level).abs()),
+            [from, to] if to.start - from.end <= edge => Some((to.first - from.last).abs()),
             _ => None,
         });
         let pairs = input.iter().zip(input.iter().skip(1));
@@ -145,7 +138,7 @@ impl Moved {
             samples: input.len() as f64,
             changes: pairs.filter(|(before, after)| (*before - *after).abs() > 0.0).count() as f64,
             held: holds.iter().map(|hold| (hold.end - hold.start) as f64).sum(),
-            travel: travel(input, tolerance),
+            travel: travel(&values, tolerance),
             in_steps: steps
                 .filter(|step| *step > 2.0 * tolerance)
                 .fold(0.0, |sum, step| sum + step),
@@ -176,62 +169,15 @@ fn is_drawn_in_time_of_its_own(input: &[f64]) -> bool {
     (alike as f64) < MOST_ALIKE * lengths.len() as f64 && median(&steps) >= FAR * (high - low)
 }
 
-/// The noise or dither of an input, as the largest change that is one; 0 where its levels are
-/// exact, or where what it takes back at once is not small beside its range.
-pub(super) fn tolerance(input: &[f64]) -> f64 {
-    /// Samples within which noise takes back its change.
-    const AT_ONCE: usize = 2;
-    /// Fewest changes taken back, and their part of all changes: noise takes back every second.
-    const FEWEST: usize = 3;
-    const PART: f64 = 0.05;
-    /// Multiples of the 95 % quantile and of the largest such change. Of normal noise the first
-    /// is seven standard deviations, which no two samples of a long record are apart.
-    const TIMES_USUAL: f64 = 3.5;
-    const TIMES_LARGEST: f64 = 2.5;
-    /// Part of the range that steps must exceed.
-    const OF_RANGE: f64 = 0.08;
-    let pairs = input.iter().zip(input.iter().skip(1)).zip(1..);
-    let changes = pairs.map(|((before, after), sample)| (sample, after - before));
-    let changes: Vec<(usize, f64)> = changes.filter(|(_, change)| *change != 0.0).collect();
-    let taken_back = changes.windows(2).filter_map(|pair| match pair {
-        [(k, a), (next, b)] if next - k <= AT_ONCE && a * b < 0.0 => Some(a.abs().min(b.abs())),
-        _ => None,
-    });
-    let taken_back: Vec<f64> = taken_back.collect();
-    if taken_back.len() < FEWEST || (taken_back.len() as f64) < PART * changes.len() as f64 {
-        return 0.0;
-    }
-    let usual = crate::numerics::quantile(&taken_back, 0.95).unwrap_or(0.0);
-    let largest = taken_back.iter().copied().fold(0.0, f64::max);
-    // Of few changes the quantile is uncertain, of many the largest is an outlier: the smaller.
-    let tolerance = (TIMES_USUAL * usual).min(TIMES_LARGEST * largest);
-    let (low, high) = range(input);
-    let is_small = tolerance < OF_RANGE * (high - low);
-    if is_small && goes_to_and_fro(&changes, tolerance) { tolerance } else { 0.0 }
-}
-
-/// Whether changes up to `largest` mostly take back the one before, as noise does and a smooth
-/// input does at its peaks only.
-///
-/// Of white noise two in three do. About a peak the changes of an even curve are `…, 3d, d, −d,
-/// −3d, …`; with `largest` 2.5 or 3.5 times `d`, one in four at most does.
-fn goes_to_and_fro(changes: &[(usize, f64)], largest: f64) -> bool {
-    const LEAST: f64 = 0.45;
-    let small = || changes.windows(2).filter(|pair| pair.iter().all(|(_, a)| a.abs() <= largest));
-    let back = small().filter(|pair| matches!(pair, [(_, a), (_, b)] if a * b < 0.0)).count();
-    back as f64 > LEAST * small().count() as f64
-}
-
-fn range(values: &[f64]) -> (f64, f64) {
-    let ends = (f64::INFINITY, f64::NEG_INFINITY);
-    values.iter().fold(ends, |(low, high), value| (low.min(*value), high.max(*value)))
-}
-
 /// A level that is held from `start` up to `end`.
+///
+/// What drifts within the noise is far from its first level when it leaves it, and makes no step.
 struct Hold {
     start: usize,
     end: usize,
-    level: f64,
+    /// The level with which it begins and that with which it ends.
+    first: f64,
+    last: f64,
 }
 
 /// Samples that stay within `tolerance` of their middle, `shortest` or more of them, or the first
@@ -247,7 +193,7 @@ fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
     for end in 0..=input.len() {
         while start < end && !fits(input, end, (&lowest, &highest), tolerance) {
             if end - start >= shortest || start == 0 {
-                holds.push(hold(input, start..end));
+                holds.push(hold(input, start..end, shortest));
                 lowest.clear();
                 highest.clear();
                 start = end;
@@ -273,7 +219,7 @@ fn exact_holds(input: &[f64], shortest: usize) -> Vec<Hold> {
     for run in input.chunk_by(|a, b| a == b) {
         let end = start + run.len();
         if run.len() >= shortest || start == 0 {
-            holds.push(Hold { start, end, level: run[0] });
+            holds.push(Hold { start, end, first: run[0], last: run[0] });
         }
         start = end;
     }
@@ -294,10 +240,13 @@ fn fits(
     })
 }
 
-fn hold(input: &[f64], span: Range<usize>) -> Hold {
-    let samples = input.get(span.clone()).unwrap_or_default();
-    let level = samples.iter().sum::<f64>() / samples.len() as f64;
-    Hold { start: span.start, end: span.end, level }
+/// The samples of `span`, of which so many show the level at either end.
+fn hold(input: &[f64], Range { start, end }: Range<usize>, shown_by: usize) -> Hold {
+    let level = |samples: &[f64]| samples.iter().sum::<f64>() / samples.len() as f64;
+    let shown_by = shown_by.min(end - start);
+    let (first, last) =
+        (level(&input[start..start + shown_by]), level(&input[end - shown_by..end]));
+    Hold { start, end, first, last }
 }
 
 /// How far the input goes in all, what is within its noise left out.
@@ -318,7 +267,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use crate::units::SamplePeriod;
+    use crate::units::{SamplePeriod, ceil_to_index};
 
     const LEVELS: [f64; 7] = [0.0, 1.0, -2.0, 0.5, 2.0, -1.0, -0.5];
 
@@ -455,7 +404,8 @@ mod tests {
 
     #[test]
     fn levels_that_are_exact_have_no_noise() {
-        assert!(tolerance(&[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0]) == 0.0);
+        let tolerance = |input: &[f64]| Levels::of(input, 0.01).tolerance;
+        assert!(tolerance(&[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0]).abs() < 1e-12);
         let flickers: Vec<f64> =
             (0..100).map(|k| f64::from(k / 50) + 0.01 * f64::from(k % 2)).collect();
         assert!((tolerance(&flickers) - 0.025).abs() < 1e-12);

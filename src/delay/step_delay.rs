@@ -38,7 +38,11 @@ pub struct StepDelay {
 /// assert!((delays[0][0].unwrap().delay_s - 0.12).abs() < 1e-6);
 /// ```
 pub fn step_delays(trials: &[Trial]) -> Result<Vec<Vec<Option<StepDelay>>>, EstimateError> {
-    let settings = Settings { first_last: FirstLast::Keep, ..Settings::of(Method::LAG_AWARE) };
+    // A line between the samples of a slow sensor looks like a lag: what is asked then is where the output
+    // bends, without one.
+    let is_interpolated = trials.iter().any(|trial| !trial.interpolated().is_empty());
+    let method = if is_interpolated { Method::HINGE } else { Method::LAG_AWARE };
+    let settings = Settings { first_last: FirstLast::Keep, ..Settings::of(method) };
     let estimates = estimate_joint(trials, &settings);
     let of = |(trial, estimate): (&Trial, Result<_, EstimateError>)| {
         let estimate: super::trial_estimate::TrialEstimate = estimate?;

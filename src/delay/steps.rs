@@ -7,7 +7,8 @@
 
 use std::ops::Range;
 
-use super::input_motion::{edge_samples, tolerance};
+use super::input_motion::edge_samples;
+use super::input_noise::Levels;
 use super::settings::Settings;
 use crate::experiment::Trial;
 
@@ -27,16 +28,21 @@ pub struct InputStep {
 /// With `min_step` above zero (input units) a change counts once the input is more than
 /// that away from the level of the last step; it is for inputs that were measured.
 pub(crate) fn input_steps(input: &[f64], min_step: f64) -> Vec<InputStep> {
-    let mut samples = input.iter().zip(1..);
-    let Some((&first, _)) = samples.next() else {
+    steps_beyond(min_step, input, 0)
+}
+
+/// The steps of more than `min_step`; the level of each shows `reach` samples behind its edge.
+fn steps_beyond(min_step: f64, input: &[f64], reach: usize) -> Vec<InputStep> {
+    let Some(&first) = input.first() else {
         return Vec::new();
     };
-    let mut level = first;
+    let (mut before, mut known_from) = (first, 1);
     let mut steps = Vec::new();
-    for (&value, sample) in samples {
-        if (value - level).abs() > min_step {
-            steps.push(InputStep { sample, before: level, after: value });
-            level = value;
+    for (index, &value) in input.iter().enumerate() {
+        if index >= known_from && (value - before).abs() > min_step {
+            let after = input.get(index + reach).or(input.last()).copied().unwrap_or(value);
+            steps.push(InputStep { sample: index + 1, before, after });
+            (before, known_from) = (after, index + reach + 1);
         }
     }
     steps
@@ -68,9 +74,15 @@ pub(super) fn trial_steps(trial: &Trial, settings: &Settings) -> Vec<InputStep> 
     if settings.paper || settings.grows {
         return input_steps(input, settings.min_step);
     }
-    let is_given = settings.min_step > 0.0;
-    let min_step = if is_given { settings.min_step } else { tolerance(input) };
-    with_edges_merged(input_steps(input, min_step), edge_samples(trial.period().seconds()))
+    let longest = edge_samples(trial.period().seconds());
+    if settings.min_step > 0.0 {
+        return with_edges_merged(input_steps(input, settings.min_step), longest, longest);
+    }
+    let levels = Levels::of(input, trial.period().seconds());
+    let steps = steps_beyond(levels.tolerance, &levels.values, levels.reach);
+    // Levels that are exact were commanded, and behind no filter.
+    let tail = if levels.tolerance > 0.0 { longest } else { 0 };
+    with_edges_merged(steps, longest, tail)
 }
 
 /// Part of the largest step below which one is no step, where the input was interpolated: such
@@ -78,12 +90,20 @@ pub(super) fn trial_steps(trial: &Trial, settings: &Settings) -> Vec<InputStep> 
 const SMALLEST_PART: f64 = 0.01;
 
 /// `steps` with those of one edge merged: the same direction, at most `longest` samples from
-/// the first to the last, and no level between them that lasts.
-fn with_edges_merged(steps: Vec<InputStep>, longest: usize) -> Vec<InputStep> {
+/// the first to the last, and no level between them that lasts; and its tail, parts of which are no more
+/// than `tail` samples apart.
+fn with_edges_merged(steps: Vec<InputStep>, longest: usize, tail: usize) -> Vec<InputStep> {
     /// A level that is part of an edge lasts at most so many samples: one of a slower clock,
     /// seen at twice its rate.
     const LASTS: usize = 2;
+    /// Parts of an edge that its tail goes on by at most: an input that was measured behind a filter
+    /// comes to its level ever more slowly.
+    const TAIL: f64 = 0.25;
     let rises = |step: &InputStep| step.after > step.before;
+    let size = |step: &InputStep| (step.after - step.before).abs();
+    let is_tail = |edge: &InputStep, step: &InputStep, since: usize| {
+        since <= tail && size(step) <= TAIL * size(edge) && step.sample - edge.sample <= 3 * longest
+    };
     let found = steps.len();
     let mut merged: Vec<InputStep> = Vec::new();
     let mut last = 0;
@@ -91,8 +111,8 @@ fn with_edges_merged(steps: Vec<InputStep>, longest: usize) -> Vec<InputStep> {
         match merged.last_mut() {
             Some(edge)
                 if rises(edge) == rises(&step)
-                    && step.sample - last <= LASTS
-                    && step.sample - edge.sample <= longest =>
+                    && (step.sample - last <= LASTS && step.sample - edge.sample <= longest
+                        || is_tail(edge, &step, step.sample - last)) =>
             {
                 edge.after = step.after;
             }
@@ -101,7 +121,6 @@ fn with_edges_merged(steps: Vec<InputStep>, longest: usize) -> Vec<InputStep> {
         last = step.sample;
     }
     if merged.len() < found {
-        let size = |step: &InputStep| (step.after - step.before).abs();
         let largest = merged.iter().map(size).fold(0.0, f64::max);
         merged.retain(|step| size(step) >= SMALLEST_PART * largest);
     }
@@ -126,6 +145,23 @@ mod tests {
         assert_eq!(steps(0.02, &stairs), [(4, 0.0, 1.0), (10, 1.0, 2.0)]);
         let ramp: Vec<f64> = (0..30).map(|k| f64::from((k - 5).clamp(0, 20))).collect();
         assert!(steps(0.02, &ramp).len() > 1, "a ramp of 0.4 s is no edge");
+    }
+
+    #[test]
+    fn the_tail_of_an_edge_behind_a_filter_is_part_of_it() {
+        for constant in [1.0, 2.0, 3.0] {
+            let left = f64::exp(-1.0 / constant);
+            let mut shown = 0.0;
+            let filtered = (0..800).map(|k| {
+                let level = [0.0, 1.0, -0.5, 0.5][k / 150 % 4];
+                shown = level + (shown - level) * left;
+                let noise = 0.002 * ((k as f64 * 12.9898).sin() * 43_758.545).fract();
+                shown + noise
+            });
+            let found = steps(0.01, &filtered.collect::<Vec<_>>());
+            let samples: Vec<usize> = found.iter().map(|step| step.0).collect();
+            assert_eq!(samples, [151, 301, 451, 601, 751], "{constant}: {found:?}");
+        }
     }
 
     #[test]

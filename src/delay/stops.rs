@@ -3,6 +3,7 @@
 //! A joint that is driven against its stop bends there as much as where it departed, and answers
 //! no step of the input.
 
+use super::hold::level_tolerance;
 use super::motion::{StepMotion, arrival};
 use super::prepared::Prepared;
 use super::steps::{InputStep, hold_ranges};
@@ -32,11 +33,14 @@ pub(super) struct Stops {
 impl Stops {
     /// The stops that `trials` with these `steps` show; `None` where there is none.
     pub(super) fn of<'a>(trials: &'a [Trial], steps: &[Vec<InputStep>]) -> Option<Self> {
-        let of_trial = |(trial, steps): (&'a Trial, &Vec<InputStep>)| -> Vec<&'a [f64]> {
+        let of_trial = |(trial, steps): (&'a Trial, &Vec<InputStep>)| -> Vec<(f64, &'a [f64])> {
             let output = trial.output();
-            hold_ranges(steps, output.len()).filter_map(|hold| output.get(hold)).collect()
+            let holds = steps.iter().zip(hold_ranges(steps, output.len()));
+            holds.filter_map(|(step, hold)| Some((step.after, output.get(hold)?))).collect()
         };
-        let holds: Vec<&[f64]> = trials.iter().zip(steps).flat_map(of_trial).collect();
+        let mut holds: Vec<_> = trials.iter().zip(steps).flat_map(of_trial).collect();
+        holds.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let holds = driven(&holds, level_tolerance(trials));
         let ends = || holds.iter().filter_map(|held| Some((held, end_of(held)?)));
         let levels = ends().filter_map(|(_, end)| median(end));
         let (low, high) = levels.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
@@ -54,7 +58,7 @@ impl Stops {
             return None;
         }
         let noise = noise_of_differences(trials.iter().map(Trial::output));
-        // Four standard deviations: of normal noise one sample in 16 000 is beyond them.
+        // Of normal noise one sample in 16 000 is beyond four standard deviations.
         let tolerance = (4.0 * noise).max(THERE * (high - low));
         // Ends of holds that are only by chance at the end of the range are apart.
         let stop = |levels: &[f64]| {
@@ -104,6 +108,29 @@ impl Stops {
     }
 }
 
+/// The outputs of `holds`, which are in the order of their levels, without those of levels at which the
+/// joint stands at one place and at another: it rests there, and needs no stop to end its motion.
+fn driven<'a>(holds: &[(f64, &'a [f64])], same: f64) -> Vec<&'a [f64]> {
+    /// The part of a hold, one in so many, in which a joint that rests has come to rest.
+    const LAST: usize = 3;
+    let outputs = || holds.iter().flat_map(|(_, held)| held.iter().copied());
+    let (low, high) = outputs().fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+    // Over the last of a hold, whose halves are compared: noise is not motion.
+    let rests_at = |held: &'a [f64]| {
+        let end = held.get(held.len() - held.len() / LAST..).filter(|end| end.len() >= STANDING)?;
+        let (first, second) = end.split_at(end.len() / 2);
+        let (from, to) = (median(first)?, median(second)?);
+        ((to - from).abs() <= 2.0 * THERE * (high - low)).then_some(to)
+    };
+    let is_driven = |of_level: &&[(f64, &'a [f64])]| {
+        let places = of_level.iter().filter_map(|(_, held)| rests_at(held));
+        let (l, h) = places.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+        h - l <= NEAR * (high - low)
+    };
+    let levels = holds.chunk_by(|a, b| b.0 - a.0 <= same).filter(is_driven);
+    levels.flatten().map(|(_, held)| *held).collect()
+}
+
 /// The last samples of a hold.
 fn end_of<'a>(held: &&'a [f64]) -> Option<&'a [f64]> {
     held.get(held.len().checked_sub(STANDING)?..)
@@ -145,6 +172,16 @@ mod tests {
         let delays: Vec<f64> = accepted.filter_map(Decision::delay).collect();
         assert!(delays.len() >= 6, "{delays:?}");
         assert!(delays.iter().all(|delay| (delay - DELAY as f64).abs() <= 8.0), "{delays:?}");
+    }
+
+    #[test]
+    fn a_joint_that_comes_back_to_the_same_places_shows_none() {
+        let levels: Vec<f64> = (0..40).map(|k| [1.0, 0.0, -1.0, 0.0][k % 4]).collect();
+        let trial = between_stops(&levels, 90);
+        let found = estimate(&trial, &Settings::default()).unwrap();
+        let delays: Vec<f64> = found.decisions.iter().filter_map(Decision::delay).collect();
+        let is_right = |delay: &&f64| (**delay - DELAY as f64).abs() <= 5.0;
+        assert!(delays.iter().filter(is_right).count() > 36, "{delays:?}");
     }
 
     #[test]

@@ -183,7 +183,7 @@ fn lack_in(
 
 /// The training part of each trial.
 fn training_signals<'a>(
-    record: &FitRecord<'a>,
+    record: &'a FitRecord<'_>,
     evaluation: &'a Evaluation,
 ) -> Vec<TrialSignals<'a>> {
     let trials = record.joint().trials.iter().zip(&evaluation.simulated);

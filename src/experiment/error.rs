@@ -248,6 +248,27 @@ pub enum ReadError {
         /// The name they share.
         joint: String,
     },
+    /// A joint is read with another, with which something is wrong.
+    #[error("{}: as joint `{other}`, whose output is on the same topic", path.display())]
+    AsOther {
+        /// The log.
+        path: PathBuf,
+        /// The joint of which it is said what is wrong.
+        other: String,
+    },
+    /// A joint has one column for two of its signals.
+    #[error(
+        "{}: joint `{joint}` has column `{column}` for its input and for its output; give each its own",
+        path.display()
+    )]
+    OneColumn {
+        /// The log.
+        path: PathBuf,
+        /// The joint.
+        joint: String,
+        /// The column.
+        column: String,
+    },
     /// A column that is needed is not there.
     #[error(
         "{}{}: column `{column}` is missing{}; the columns are: {available}",

@@ -1,6 +1,6 @@
 //! The grids of a log whose clock is not uniform, and what its reader should know of them.
 
-use super::clock::{Clock, ClockFault, Evenness, Run, filled_s, rate_changes};
+use super::clock::{Clock, ClockFault, Evenness, Run, filled_s, rate_changes, spread};
 use super::sampling::{Fault, Grid, Part, Repair, is_uniform};
 use crate::numerics::as_written;
 use crate::units::SamplePeriod;
@@ -24,6 +24,10 @@ pub(super) fn grids(
     repair: Repair,
     number: &dyn Fn(usize, usize) -> u64,
 ) -> Result<(Vec<Grid>, Vec<String>), (usize, Fault)> {
+    let in_bursts: Vec<Option<Vec<f64>>> = trials.iter().map(|times| spread(times)).collect();
+    let even = trials.iter().zip(&in_bursts);
+    let trials: Vec<&[f64]> = even.map(|(times, even)| even.as_deref().unwrap_or(times)).collect();
+    let trials = trials.as_slice();
     let read = |(index, times): (usize, &&[f64])| {
         Clock::read(times, repair.fill_s).map_err(|fault| (index, fault_of(fault)))
     };
@@ -39,7 +43,12 @@ pub(super) fn grids(
     let uniform: Vec<bool> = trials.iter().map(|times| is_uniform(times)).collect();
     let notes =
         Findings { clocks: &clocks, trials, periods: &periods, uniform: &uniform, number, repair };
-    Ok((grids, notes.lines()))
+    let spread = in_bursts.iter().any(Option::is_some).then(|| {
+        "rows come in bursts, as packets bring them: those of each are spread evenly over the time since \
+         the one before"
+            .to_owned()
+    });
+    Ok((grids, spread.into_iter().chain(notes.lines()).collect()))
 }
 
 fn fault_of(fault: ClockFault) -> Fault {

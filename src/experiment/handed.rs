@@ -157,7 +157,7 @@ fn read(
 ) -> Result<Experiment, ReadError> {
     let path = PathBuf::from(&log.name);
     let headers = log.columns.iter().map(|column| Header::parse(&column.name)).collect();
-    let head = Head { path, headers, header_row: 0 };
+    let head = Head { path, headers, header_row: 0, unread: Vec::new() };
     let rows = same_length(&head, &log)?;
     let (layout, mut found) = match laid_out(&head, options) {
         Err(ReadError::NoJoints { .. }) => laid_out_by_names(&head, &survey(&head, &log), options)?,

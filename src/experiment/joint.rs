@@ -59,6 +59,7 @@ pub struct Trial {
     output: Vec<f64>,
     covariates: Vec<Vec<f64>>,
     unlogged: Vec<Range<usize>>,
+    interpolated: Vec<Range<usize>>,
 }
 
 /// Why samples do not make a [`Trial`].
@@ -116,8 +117,17 @@ impl Trial {
         if let Some(index) = input.iter().zip(&output).position(|pair| !finite(pair)) {
             return Err(TrialError::NotFinite { label, sample: index + 1 });
         }
-        let (origin_s, covariates, unlogged) = (0.0, Vec::new(), Vec::new());
-        Ok(Self { label, start_s, origin_s, period, input, output, covariates, unlogged })
+        Ok(Self {
+            label,
+            start_s,
+            origin_s: 0.0,
+            period,
+            input,
+            output,
+            covariates: Vec::new(),
+            unlogged: Vec::new(),
+            interpolated: Vec::new(),
+        })
     }
 
     /// This trial with times that count from when the clock of the log showed `origin_s` more than
@@ -141,6 +151,18 @@ impl Trial {
         Ok(self)
     }
 
+    /// Another input of the same length.
+    pub(crate) fn set_input(&mut self, input: Vec<f64>) {
+        debug_assert_eq!(input.len(), self.input.len(), "one value for each sample");
+        self.input = input;
+    }
+
+    /// Another output of the same length.
+    pub(super) fn set_output(&mut self, output: Vec<f64>) {
+        debug_assert_eq!(output.len(), self.output.len(), "one value for each sample");
+        self.output = output;
+    }
+
     /// This trial with samples that were filled in while nothing was logged, in order.
     #[must_use]
     pub(crate) fn with_unlogged(self, unlogged: Vec<Range<usize>>) -> Self {
@@ -151,6 +173,18 @@ impl Trial {
     /// not known.
     pub(crate) fn unlogged(&self) -> &[Range<usize>] {
         &self.unlogged
+    }
+
+    /// This trial with samples, in order, at which the output was not measured, but is interpolated: its
+    /// sensor is slower than the input is logged.
+    #[must_use]
+    pub(super) fn with_interpolated(self, interpolated: Vec<Range<usize>>) -> Self {
+        Self { interpolated, ..self }
+    }
+
+    /// Samples at which the output is interpolated, in order.
+    pub(crate) fn interpolated(&self) -> &[Range<usize>] {
+        &self.interpolated
     }
 
     /// The samples `from..to` by themselves, at their time; `None` where that is no trial.
@@ -168,8 +202,12 @@ impl Trial {
         let covariates = self.covariates.iter().map(|signal| cut(signal)).collect();
         let (input, output) = (cut(&self.input), cut(&self.output));
         let label = self.label.clone();
-        let unlogged = self.unlogged.iter().filter(|gap| gap.end < samples).cloned().collect();
-        (samples > 0).then_some(Self { label, input, output, covariates, unlogged, ..*self })
+        let within = |ranges: &[Range<usize>]| {
+            ranges.iter().filter(|range| range.end < samples).cloned().collect::<Vec<_>>()
+        };
+        let (unlogged, interpolated) = (within(&self.unlogged), within(&self.interpolated));
+        let cut = Self { label, input, output, covariates, unlogged, interpolated, ..*self };
+        (samples > 0).then_some(cut)
     }
 
     /// Name of the trial.

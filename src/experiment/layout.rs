@@ -8,7 +8,7 @@ use super::error::ReadError;
 use super::joint::Signal;
 use super::names::{listed, nearest_name};
 use super::table::{Head, Header};
-use super::time_column::{TimeSource, find_any, find_time_column, times};
+use super::time_column::{TimeSource, find_any, find_time_column, rest_of_times, times};
 use super::unit;
 use crate::units::SamplePeriod;
 
@@ -54,6 +54,8 @@ pub(super) struct Layout {
     /// Further columns of the name of the times, which must say the same: some programs write one for each
     /// signal.
     pub(super) time_again: Vec<usize>,
+    /// A column of what the times have beyond whole seconds, and its unit in seconds.
+    pub(super) time_rest: Option<(usize, f64)>,
     pub(super) trial: Option<usize>,
     pub(super) joints: Vec<JointLayout>,
     /// Joints that were not asked for.
@@ -81,12 +83,13 @@ impl Layout {
             None => find_trial(head),
         };
         let time = find_time(&columns, map, period)?;
-        let time_again = if map.time.is_some() { Vec::new() } else { named_alike(head, time) };
+        let time_again = named_alike(head, time);
         let is_period = matches!(time, TimeSource::Rows(_));
         let mut layout = Self {
             time,
             unused_time: find_time_column(head).filter(|_| is_period),
             time_again,
+            time_rest: time.column().and_then(|column| rest_of_times(head, column)),
             trial,
             joints: Vec::new(),
             others: Vec::new(),
@@ -155,10 +158,44 @@ impl Layout {
         wanted.iter().filter(|name| !known(name)).map(|name| (name.clone(), error(name))).collect()
     }
 
+    /// Takes out the joints of which a column has other `rows` than the times, or than the first joint where
+    /// there are none: they come back as errors.
+    pub(super) fn without_unequal(
+        &mut self,
+        head: &Head,
+        rows: impl Fn(usize) -> Option<usize>,
+    ) -> Vec<(String, ReadError)> {
+        let name = |column: usize| {
+            head.headers.get(column).map_or_else(String::new, |header| header.text.clone())
+        };
+        let of_joints = self.joints.iter().flat_map(JointLayout::columns);
+        let columns: Vec<usize> = self.time_column().into_iter().chain(of_joints).collect();
+        let known = |column: &usize| Some((*column, rows(*column)?));
+        let Some((other, expected)) = columns.iter().find_map(known) else {
+            return Vec::new();
+        };
+        let unequal = |joint: &JointLayout| {
+            joint.columns().find(|column| rows(*column).is_some_and(|rows| rows != expected))
+        };
+        self.others.retain(|joint| unequal(joint).is_none());
+        let (whole, short): (Vec<_>, Vec<_>) = std::mem::take(&mut self.joints)
+            .into_iter()
+            .partition(|joint| unequal(joint).is_none());
+        self.joints = whole;
+        let error = |joint: JointLayout| {
+            let column = unequal(&joint)?;
+            let found = rows(column)?;
+            let (path, other, column) = (head.path.clone(), name(other), name(column));
+            Some((joint.name, ReadError::UnequalColumns { path, column, found, other, expected }))
+        };
+        short.into_iter().filter_map(error).collect()
+    }
+
     /// Indices of all columns that hold numbers, each once.
     pub(super) fn numeric_columns(&self) -> Vec<usize> {
         let mut columns: Vec<usize> = self.time_column().into_iter().collect();
         columns.extend(&self.time_again);
+        columns.extend(self.time_rest.map(|(column, _)| column));
         for joint in self.joints.iter().chain(&self.others) {
             columns.extend([joint.input.column, joint.output.column]);
             columns.extend(joint.covariates.iter().map(|covariate| covariate.column));
@@ -246,10 +283,17 @@ fn native_joint(
 
 fn mapped_joint(columns: &Columns<'_>, joint: &JointColumns) -> Result<JointLayout, ReadError> {
     let covariate = |(name, column): &(String, String)| signal_column(columns, column, name, None);
+    let input = signal_column(columns, &joint.input, "input", joint.input_unit.as_ref())?;
+    let output = signal_column(columns, &joint.output, "output", joint.output_unit.as_ref())?;
+    if input.column == output.column {
+        let (path, joint) = (columns.head.path.clone(), joint.name.clone());
+        let column = columns.head.headers.get(input.column).map(|header| header.text.clone());
+        return Err(ReadError::OneColumn { path, joint, column: column.unwrap_or_default() });
+    }
     Ok(JointLayout {
         name: joint.name.clone(),
-        input: signal_column(columns, &joint.input, "input", joint.input_unit.as_ref())?,
-        output: signal_column(columns, &joint.output, "output", joint.output_unit.as_ref())?,
+        input,
+        output,
         covariates: joint.covariates.iter().map(covariate).collect::<Result<_, _>>()?,
     })
 }
@@ -277,10 +321,19 @@ fn find_time(
 ) -> Result<TimeSource, ReadError> {
     let head = columns.head;
     if let Some(name) = &map.time {
+        // Of several of a name each must say the same.
+        let find = |name: &str| match columns.find(name) {
+            Err(ReadError::DuplicateColumn { .. }) => {
+                let is_it = |header: &Header| header.text == name || header.name == name;
+                let first = head.headers.iter().position(is_it);
+                first.map_or_else(|| columns.find(name), Ok)
+            }
+            found => found,
+        };
         // `t [ms]` says the unit of a column `t`.
-        return match (columns.find(name), unit::parted(name)) {
-            (Err(_), (name, Some(unit))) if columns.find(name).is_ok() => {
-                columns.find(name).and_then(|column| times(head, column, Some(&unit)))
+        return match (find(name), unit::parted(name)) {
+            (Err(_), (name, Some(unit))) if find(name).is_ok() => {
+                find(name).and_then(|column| times(head, column, Some(&unit)))
             }
             (found, _) => found.and_then(|column| times(head, column, None)),
         };

@@ -17,7 +17,7 @@ use super::period::is_period;
 use super::sampling::Repair;
 use super::source::{Source, source_of};
 use super::survey::Survey;
-use super::table::{Head, OpenTable};
+use super::table::{Head, OpenTable, TrialRows};
 use super::time_column::{find_time_column, note_on_times};
 use crate::units::SamplePeriod;
 
@@ -255,18 +255,38 @@ fn read_log(
 ) -> Result<Experiment, ReadError> {
     let open = || format::open(path, budget.rest());
     let table = open()?;
-    let (layout, mut found) = match laid_out(&table.head, options) {
+    let (mut layout, mut found) = match laid_out(&table.head, options) {
         Err(ReadError::NoJoints { .. }) => {
             let survey = Survey::of(path, options.memory)?;
             laid_out_by_names(&table.head, &survey, options)?
         }
         found => found?,
     };
+    let unequal = layout.without_unequal(&table.head, |column| table.rows.rows_of(column));
+    found.failures.extend(unequal.into_iter().map(failed));
     let mut next = Some(table);
-    for layout in layout.by_clock() {
+    let layouts = layout.by_clock();
+    let is_one = layouts.len() == 1;
+    for layout in layouts {
         // Each clock has rows of its own, and is read in a pass of its own.
         let table = next.take().map_or_else(open, Ok)?;
-        found.read_clock(table, &layout, stem, options.repair, budget)?;
+        let read = found.read_clock(table, &layout, stem, options.repair, budget);
+        match (read, layout.joints.split_first()) {
+            (Err(error), Some((first, others))) if !is_one => {
+                // What is wrong with one costs no other its rows.
+                let names = others.iter().map(|joint| joint.name.clone());
+                let as_first = |name: String| {
+                    let (path, other) = (path.to_owned(), first.name.clone());
+                    (name, ReadError::AsOther { path, other })
+                };
+                found.failures.extend(names.map(as_first).map(failed));
+                found.failures.push(failed((first.name.clone(), error)));
+            }
+            (read, _) => read?,
+        }
+    }
+    if found.sources.is_empty() {
+        found.sources.push(source_of(path)?);
     }
     Ok(found)
 }
@@ -343,8 +363,21 @@ impl Experiment {
         }
         let numeric = layout.numeric_columns();
         let mut table = table.read(&numeric, layout.trial, layout.time_column(), layout.clock())?;
+        let place = |column: usize| numeric.binary_search(&column).ok();
+        if let Some((time, rest, unit_s)) = layout.time.column().and_then(place).and_then(|time| {
+            let (rest, unit_s) = layout.time_rest?;
+            Some((time, place(rest)?, unit_s))
+        }) {
+            table.add(time, rest, unit_s);
+        }
         if !repair.as_it_stands {
             table.oldest_first(layout.place_of_time(&numeric), &head.path);
+        }
+        if repair.is_free() {
+            let outputs = layout.joints.iter().filter_map(|joint| {
+                Some((&*joint.name, numeric.binary_search(&joint.output.column).ok()?))
+            });
+            table.readings_once(outputs, &head.path);
         }
         let log = Log { head: &head, numeric: &numeric, table: &table, budget };
         self.add_log(&log, layout, stem, repair)
@@ -359,7 +392,16 @@ impl Experiment {
         repair: Repair,
     ) -> Result<(), ReadError> {
         log.check_times_agree(layout.time, &layout.time_again)?;
-        let trials = log.trials(stem);
+        let (trials, alone) = with_a_period(log.trials(stem));
+        self.notes.extend(alone.first().map(|first| {
+            let (path, label) = (log.head.path.display(), &first.label);
+            match alone.len() {
+                1 => format!("{path}: trial `{label}` has one row only and is left out"),
+                count => format!(
+                    "{path}: {count} trials have one row only and are left out, the first is `{label}`"
+                ),
+            }
+        }));
         let (grids, notes) = log.grids(layout.time, &trials, repair)?;
         self.notes.extend(notes.iter().map(|note| format!("{}: {note}", log.head.path.display())));
         for joint in &layout.joints {
@@ -383,6 +425,15 @@ impl Experiment {
         }
         Ok(())
     }
+}
+
+/// The trials that have two rows or more, and the others, where there are any such.
+fn with_a_period(trials: Vec<TrialRows>) -> (Vec<TrialRows>, Vec<TrialRows>) {
+    let is_long = |trial: &TrialRows| trial.end > trial.start + 1;
+    if !trials.iter().any(is_long) {
+        return (trials, Vec::new());
+    }
+    trials.into_iter().partition(is_long)
 }
 
 fn sample_period(path: &Path, map: &ColumnMap) -> Result<Option<SamplePeriod>, ReadError> {

@@ -9,7 +9,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::joint::Trial;
+use super::joint::{Joint, Trial};
 use crate::numerics::{quantile, robust_scale};
 
 /// Samples on either side that a spike is held against.
@@ -23,19 +23,19 @@ const LONGEST: usize = 2;
 const BEYOND: f64 = 8.0;
 
 /// For each trial the weights of its samples, 0 for spikes and for what was filled in where nothing
-/// was logged, and 1 for others; `None` where all are 1.
+/// was logged or measured, and 1 for others; `None` where all are 1.
 pub(crate) fn weights(trials: &[Trial]) -> Option<Vec<Vec<f64>>> {
     let noise = noise(trials);
     let found: Vec<_> = trials.iter().map(|trial| spikes(trial.output(), noise)).collect();
     let of = |(trial, spikes): (&Trial, &Vec<Range<usize>>)| {
         let mut weights = vec![1.0; trial.output().len()];
-        for range in spikes.iter().chain(trial.unlogged()) {
+        for range in spikes.iter().chain(trial.unlogged()).chain(trial.interpolated()) {
             weights[range.clone()].fill(0.0);
         }
         weights
     };
     let any = found.iter().any(|spikes| !spikes.is_empty())
-        || trials.iter().any(|trial| !trial.unlogged().is_empty());
+        || trials.iter().any(|t| !(t.unlogged().is_empty() && t.interpolated().is_empty()));
     any.then(|| trials.iter().zip(&found).map(of).collect())
 }
 
@@ -48,8 +48,29 @@ pub(crate) fn spike_count(trial: &Trial) -> usize {
 
 /// The output of `trial` with lines in the place of its spikes; none where it has no spike.
 pub(crate) fn without_spikes(trial: &Trial) -> Option<Vec<f64>> {
-    let output = trial.output();
-    let spikes = spikes(output, noise(std::slice::from_ref(trial)));
+    mended(trial.output(), noise(std::slice::from_ref(trial)))
+}
+
+/// `joint` with lines in the place of the spikes of its output, so that they are no part of its range
+/// either; none where it has no spike.
+pub(crate) fn joint_without_spikes(joint: &Joint) -> Option<Joint> {
+    let noise = noise(&joint.trials);
+    let outputs: Vec<_> = joint.trials.iter().map(|trial| mended(trial.output(), noise)).collect();
+    if outputs.iter().all(Option::is_none) {
+        return None;
+    }
+    let mut joint = joint.clone();
+    for (trial, output) in joint.trials.iter_mut().zip(outputs) {
+        if let Some(output) = output {
+            trial.set_output(output);
+        }
+    }
+    Some(joint)
+}
+
+/// `output` with lines in the place of its spikes; none where it has no spike.
+fn mended(output: &[f64], noise: f64) -> Option<Vec<f64>> {
+    let spikes = spikes(output, noise);
     if spikes.is_empty() {
         return None;
     }

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use super::error::ReadError;
 use super::memory::Budget;
 use super::names::{listed, on_one_line, shown};
+use super::readings::keep_readings;
 use super::source::Source;
 #[cfg(any(feature = "mat", feature = "parquet"))]
 use super::source::source_of;
@@ -50,6 +51,8 @@ pub(super) struct Head {
     pub(super) headers: Vec<Header>,
     /// Line of the header in the file; 0 where the file has no lines.
     pub(super) header_row: u64,
+    /// What else it has, which cannot be read, for messages.
+    pub(super) unread: Vec<String>,
 }
 
 impl Head {
@@ -72,7 +75,9 @@ impl Head {
 
     /// The names of all columns, for messages.
     pub(super) fn names(&self) -> String {
-        listed(self.headers.iter().map(|header| header.text.as_str()))
+        let names = listed(self.headers.iter().map(|header| header.text.as_str()));
+        let unread = listed(self.unread.iter().map(String::as_str));
+        if unread.is_empty() { names } else { format!("{names}; it cannot be read: {unread}") }
     }
 }
 
@@ -103,6 +108,11 @@ pub(super) trait Rows {
     /// What is wrong with the file or a row. A bad cell spoils its column only: see
     /// [`Column::error`].
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError>;
+
+    /// The rows of the column at this place, where columns have their own.
+    fn rows_of(&self, _column: usize) -> Option<usize> {
+        None
+    }
 }
 
 /// What is to be read of a file.
@@ -181,6 +191,42 @@ impl Table {
         }
         let note = "the newest row is first: the rows are read from the last to the first";
         self.notes.push(format!("{}: {note}", path.display()));
+    }
+
+    /// Adds to the whole seconds in the column at `place` those at `rest`, which are parts of one in `unit`s;
+    /// nothing where they are more: then each says the time by itself.
+    pub(super) fn add(&mut self, place: usize, rest: usize, unit: f64) {
+        let Some(rest) = self.columns.get(rest).map(|column| column.values.clone()) else { return };
+        let Some(column) = self.columns.get_mut(place) else { return };
+        let is_part = |rest: &f64| rest.is_nan() || (0.0..1.0).contains(&(unit * rest));
+        let is_whole = |value: &f64| value.is_nan() || value.fract() == 0.0;
+        if !(rest.iter().all(is_part) && column.values.iter().all(is_whole)) {
+            return;
+        }
+        for (value, rest) in column.values.iter_mut().zip(rest) {
+            *value += unit * rest;
+        }
+    }
+
+    /// Leaves each reading of the `outputs` of joints, by their names and columns, in one row, where a
+    /// sensor is slower than the log at `path`.
+    pub(super) fn readings_once<'a>(
+        &mut self,
+        outputs: impl Iterator<Item = (&'a str, usize)>,
+        path: &Path,
+    ) {
+        for (joint, column) in outputs {
+            let Some(column) = self.columns.get_mut(column) else { continue };
+            let spans: Vec<_> = self.trials.iter().map(|trial| trial.start..trial.end).collect();
+            let whole = 0..column.values.len();
+            let spans = if spans.is_empty() { vec![whole] } else { spans };
+            let Some(rows) = keep_readings(&mut column.values, &spans) else { continue };
+            self.notes.push(format!(
+                "{}: joint `{joint}`: each reading of the output stands in {rows} rows, and counts in the \
+                 first of them",
+                path.display()
+            ));
+        }
     }
 
     /// The rows of a file that has no lines, counted from 1.

@@ -132,22 +132,50 @@ pub(super) fn find_time_column(head: &Head) -> Option<usize> {
         .or_else(|| find_any(head, &["t"]))
 }
 
+/// The column of what the whole seconds in `column` leave over, where a stamp is written in two, as those of
+/// ROS are (`sec`, `nanosec`), and its unit in seconds.
+pub(super) fn rest_of_times(head: &Head, column: usize) -> Option<(usize, f64)> {
+    const PARTS: [(&str, &str, f64); 6] = [
+        ("sec", "nanosec", 1e-9),
+        ("secs", "nsecs", 1e-9),
+        ("sec", "nsec", 1e-9),
+        ("seconds", "nanoseconds", 1e-9),
+        ("sec", "usec", 1e-6),
+        ("seconds", "microseconds", 1e-6),
+    ];
+    let name = head.headers.get(column)?.text.to_lowercase();
+    PARTS.iter().find_map(|(whole, part, unit_s)| {
+        let rest = format!("{}{part}", name.strip_suffix(whole)?);
+        let is_it = |header: &Header| header.text.to_lowercase() == rest;
+        Some((head.headers.iter().position(is_it)?, *unit_s))
+    })
+}
+
 /// What a reader should know of a log whose times are those of `column`: that others are not used, and
 /// that what may be a temperature is taken for a time.
 pub(super) fn note_on_times(head: &Head, column: usize) -> Option<String> {
     /// Columns that are named.
     const MOST: usize = 3;
     let text = &head.headers.get(column)?.text;
+    let rest = rest_of_times(head, column).map(|(rest, _)| rest);
     let others = head.headers.iter().enumerate().filter(|(other, header)| {
         let is_within = *other > 0 && other + 1 < head.headers.len();
         // Those of its name say the same.
-        header.text != *text && (is_like_a_time(header) || header.name.is_empty() && is_within)
+        header.text != *text
+            && rest != Some(*other)
+            && (is_like_a_time(header)
+                || is_time_of_another(head, header)
+                || header.name.is_empty() && is_within)
     });
     let names: Vec<String> = others.map(|(other, header)| named(other, header)).collect();
     let header = head.headers.get(column)?;
     let used = named(column, header);
     let more = if names.len() > MOST { ", …" } else { "" };
     match names.as_slice() {
+        [] if rest.is_some() => {
+            let rest = rest.and_then(|rest| Some(named(rest, head.headers.get(rest)?)));
+            Some(format!("the times are those in {used} and {}", rest.unwrap_or_default()))
+        }
         [] if header.name == "T" => Some(format!("the times are those in {used}")),
         [] => None,
         [other] => Some(format!("the times are those in {used}; {other} is not used")),
@@ -164,6 +192,25 @@ fn named(column: usize, header: &Header) -> String {
         "" => format!("column {} (without a name)", column + 1),
         text => format!("`{text}`"),
     }
+}
+
+/// Whether a name is that of a time and of something else, as of a signal that has a clock of its own:
+/// `time_y`, `stamp_out`, `Time(1)`; `t_y` beside a signal `y`, as `t_oil` is a temperature.
+fn is_time_of_another(head: &Head, header: &Header) -> bool {
+    const TIMES: [&str; 6] = ["time", "times", "timestamp", "stamp", "zeit", "temps"];
+    const SIGNALS: [&str; 6] = ["in", "out", "input", "output", "u", "y"];
+    let name = unit::parted(&header.text).0.to_lowercase();
+    // Clocks of messages have names that say so.
+    if name.contains(['.', '/']) || name == "publish_time" {
+        return false;
+    }
+    let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).collect();
+    let is_signal = |word: &&str| {
+        let of = |other: &Header| other.name.eq_ignore_ascii_case(word);
+        SIGNALS.contains(word) || word.len() > 1 && head.headers.iter().any(of)
+    };
+    words.iter().any(|word| TIMES.contains(word))
+        || words.contains(&"t") && words.iter().any(is_signal)
 }
 
 /// Whether a name is one of a time, also with a number behind it or that of a joint before it.
@@ -208,13 +255,30 @@ mod tests {
 
     fn note(names: &[&str]) -> Option<String> {
         let headers = names.iter().map(|name| Header::parse(name)).collect();
-        let head = Head { path: PathBuf::from("log.csv"), headers, header_row: 1 };
+        let head =
+            Head { path: PathBuf::from("log.csv"), headers, header_row: 1, unread: Vec::new() };
         note_on_times(&head, find_time_column(&head)?)
     }
 
     #[test]
     fn a_second_column_of_times_is_not_passed_over_in_silence() {
-        for other in ["time_s.1", "Time2 [s]", "Time (s) 2", "arm.time_s", "", "t", "timestamp"] {
+        for other in [
+            "time_s.1",
+            "Time2 [s]",
+            "Time (s) 2",
+            "arm.time_s",
+            "",
+            "t",
+            "timestamp",
+            "time_y",
+            "t_y",
+            "timestamp_y",
+            "t_out_s",
+            "time_y_s",
+            "y_timestamp",
+            "Time(1)",
+            "stamp y",
+        ] {
             let found = note(&["time_s", "boom.input", "boom.output", other, "arm.input"]);
             assert!(found.is_some_and(|note| note.contains("not used")), "{other}");
         }
@@ -230,10 +294,28 @@ mod tests {
     }
 
     #[test]
+    fn stamps_in_two_columns_are_one() {
+        for (whole, rest, unit_s) in [
+            ("sec", "nanosec", 1e-9),
+            ("time_sec", "time_nsec", 1e-9),
+            ("header.stamp.sec", "header.stamp.nanosec", 1e-9),
+            ("tv_sec", "tv_usec", 1e-6),
+        ] {
+            let headers = [whole, "u", rest].map(Header::parse).to_vec();
+            let path = PathBuf::from("log.csv");
+            let head = Head { path, headers, header_row: 1, unread: Vec::new() };
+            assert_eq!(rest_of_times(&head, 0), Some((2, unit_s)), "{whole}");
+            assert_eq!(rest_of_times(&head, 1), None);
+        }
+        let said = note(&["sec", "nanosec", "u"]);
+        assert_eq!(said.as_deref(), Some("the times are those in `sec` and `nanosec`"));
+    }
+
+    #[test]
     fn a_stamp_is_preferred_to_a_temperature() {
         for stamp in ["ts", "ts_ms", "unix_ms", "clock_ms", "log_time", "recorded_at"] {
             let headers = [stamp, "T", "u"].map(Header::parse).to_vec();
-            let head = Head { path: PathBuf::new(), headers, header_row: 1 };
+            let head = Head { path: PathBuf::new(), headers, header_row: 1, unread: Vec::new() };
             assert_eq!(find_time_column(&head), Some(0), "{stamp}");
         }
     }

@@ -2,8 +2,11 @@
 //!
 //! An absolute encoder on a slewing joint shows 179.9 deg and then −179.9: a turn of 360 deg in one
 //! sample, which no joint makes. Where all large jumps of an output are of a turn, they are taken
-//! out.
+//! out. Its unit says what a turn is, else the jumps themselves do.
 
+mod turn;
+
+use self::turn::{RANGE, powers_of_two, seen, turns};
 use crate::numerics::{quantile, to_decimals};
 
 /// A sensor that wraps after so much, output units.
@@ -17,9 +20,6 @@ pub(super) struct Wrap {
 /// Parts of a turn: below the first no sample jumps, nor does it between the first and the second.
 const MOTION: f64 = 0.25;
 const JUMP: f64 = 0.75;
-
-/// Part of a turn that an output which wraps goes through, at least.
-const RANGE: f64 = 0.9;
 
 /// Times a turn that it goes through at most: noise and offsets come behind the turn.
 const BEYOND: f64 = 1.02;
@@ -46,7 +46,8 @@ impl Wrap {
         let counts = || known().all(|value| value.fract() == 0.0);
         let turn = turns(unit)
             .find(is_turn)
-            .or_else(|| powers_of_two(unit).find(is_turn).filter(|_| counts()))?;
+            .or_else(|| powers_of_two(unit).find(is_turn).filter(|_| counts()))
+            .or_else(|| seen(&whole, range, unit))?;
         let wrap = Self { turn, outlier_step };
         wrap.explains(&whole).then_some(wrap)
     }
@@ -73,7 +74,9 @@ impl Wrap {
         let mut outliers = outliers.iter().peekable();
         for (index, value) in values.iter_mut().enumerate().filter(|(_, value)| !value.is_nan()) {
             if let Some(outlier) = outliers.next_if(|outlier| outlier.index == index) {
-                *value = if outlier.is_between { f64::NAN } else { *value + turns * self.turn };
+                let before = before + turns * self.turn;
+                let shown = *value + turns * self.turn;
+                *value = if outlier.is_between { f64::NAN } else { self.at_the_end(shown, before) };
                 continue;
             }
             let step = *value - before;
@@ -85,6 +88,14 @@ impl Wrap {
             *value += turns * self.turn;
         }
         count
+    }
+
+    /// A sample that is `shown` far from the one `before`: a turn from there, where that is near, as noise
+    /// at the end of a turn shows its other end.
+    fn at_the_end(self, shown: f64, before: f64) -> f64 {
+        let turned = [shown - self.turn, shown + self.turn];
+        let near = |value: &f64| (value - before).abs() < MOTION * self.turn;
+        turned.into_iter().find(near).unwrap_or(shown)
     }
 
     /// What is said of a sensor that began anew `count` times.
@@ -173,35 +184,6 @@ fn range(values: impl Iterator<Item = f64>) -> f64 {
     high - low
 }
 
-/// The turns of sensors of angles, by the names of their units; where none is said it may be the
-/// first two.
-const TURNS: [(&[&str], f64); 6] = [
-    (&["deg", "°", "degrees"], 360.0),
-    (&["rad", "radians"], std::f64::consts::TAU),
-    (&["mdeg"], 360e3),
-    (&["mrad"], 1e3 * std::f64::consts::TAU),
-    (&["gon"], 400.0),
-    (&["rev", "turn", "turns"], 1.0),
-];
-
-fn turns(unit: Option<&str>) -> impl Iterator<Item = f64> {
-    let is_it = move |(place, (units, _)): &(usize, (&[&str], f64))| {
-        unit.map_or(*place < 2, |unit| units.contains(&unit))
-    };
-    TURNS.into_iter().enumerate().filter(is_it).map(|(_, (_, turn))| turn)
-}
-
-/// Those of sensors that count.
-fn powers_of_two(unit: Option<&str>) -> impl Iterator<Item = f64> {
-    let is_count = is_one_of(unit, &["cnt", "count", "counts", "inc", "ticks"]);
-    (8..=32).map(|bits| 2_f64.powi(bits)).filter(move |_| is_count)
-}
-
-/// Whether `unit` is one of `units`, or not said.
-fn is_one_of(unit: Option<&str>, units: &[&str]) -> bool {
-    unit.is_none_or(|unit| units.contains(&unit))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -252,7 +234,6 @@ mod tests {
         for (turn, unit) in [(1.0, "rev"), (360e3, "mdeg"), (400.0, "gon")] {
             let (_, seen) = shown(turn, 0.0);
             assert_eq!(Wrap::of(&[&seen], Some(unit)).map(|wrap| wrap.turn), Some(turn));
-            assert_eq!(Wrap::of(&[&seen], Some("bar")), None);
         }
         let (_, seen) = shown(2_f64.powi(32), 0.0);
         let counts: Vec<f64> = seen.iter().map(|y| y.floor()).collect();
@@ -275,7 +256,37 @@ mod tests {
         let mut failing: Vec<f64> = (0..400).map(|k| 355.0 + 0.01 * f64::from(k % 50)).collect();
         failing.iter_mut().step_by(40).for_each(|y| *y = 0.0);
         assert_eq!(Wrap::of(&[&failing], Some("deg")), None);
-        let (_, length) = shown(360.0, 0.0);
-        assert_eq!(Wrap::of(&[&length], Some("mm")), None);
+    }
+
+    #[test]
+    fn a_turn_that_no_unit_names_is_seen() {
+        for (turn, low, unit, counts) in [
+            (3600.0, 0.0, Some("counts"), true),
+            (14_400.0, 0.0, None, true),
+            (10.0, 0.0, Some("V"), false),
+            (1.0, -0.5, None, false),
+            (250.0, 0.0, Some("mm"), false),
+        ] {
+            let (_, mut seen) = shown(turn, low);
+            seen.iter_mut().filter(|_| counts).for_each(|y| *y = y.floor());
+            let found = Wrap::of(&[&seen], unit).map(|wrap| wrap.turn);
+            assert!(
+                found.is_some_and(|found| (found / turn - 1.0).abs() < 1e-9),
+                "{found:?} {turn}"
+            );
+        }
+        // At rest where a turn begins, with noise.
+        let rests = |k: i32| {
+            (f64::from(k - 300).max(0.0) * 9.0 + 2.0 * f64::from(k * 7919 % 5 - 2)).floor()
+        };
+        let truth: Vec<f64> = (0..4000).map(rests).collect();
+        let mut seen: Vec<f64> = truth.iter().map(|y| y.rem_euclid(3600.0)).collect();
+        let wrap = Wrap::of(&[&seen], None).unwrap();
+        wrap.unwrap(&mut seen);
+        let offset = seen[0] - truth[0];
+        assert!(seen.iter().zip(&truth).all(|(a, b)| (a - b - offset).abs() < 1e-9), "{wrap:?}");
+        let stroke = |k: i32| if k % 900 < 450 { 0.2 * f64::from(k % 450) } else { 0.0 };
+        let returns: Vec<f64> = (0..4000).map(stroke).collect();
+        assert_eq!(Wrap::of(&[&returns], None), None, "an output that falls back and rests");
     }
 }

@@ -14,6 +14,7 @@ mod evaluation;
 mod excerpt;
 mod first_order;
 mod least_squares;
+mod mended;
 mod problem;
 mod record;
 mod result;

@@ -7,6 +7,7 @@ use nalgebra::DVector;
 use super::evaluation::Evaluation;
 use super::excerpt::Excerpt;
 use super::first_order::Follower;
+use super::mended::mended;
 use super::run::{Run, best_starts, residuals_from, simulated_from};
 use super::speed;
 use super::thin::thinned;
@@ -21,7 +22,9 @@ use crate::units::{floor_to_index, radians_in};
 /// A joint's trials, cut into windows.
 #[derive(Clone, Debug)]
 pub struct FitRecord<'a> {
-    joint: &'a Joint,
+    measured: &'a Joint,
+    /// The joint without spikes and without noise of its input, where it has any.
+    mended: Option<Arc<Joint>>,
     split: Split,
     horizon: Horizon,
     windows: Vec<Window>,
@@ -69,14 +72,19 @@ impl<'a> FitRecord<'a> {
     /// measured one where noise leaves it well known (to 1 % of the speeds in the record);
     /// else the simulation goes on with its own, and is steady where a trial begins.
     pub fn new(joint: &'a Joint, split: Split, horizon: Horizon) -> Self {
+        let (measured, mended) = (joint, mended(joint).map(Arc::new));
+        let joint = mended.as_deref().unwrap_or(measured);
         let horizon = horizon.of(joint);
         let windows = windows(joint, split, horizon);
         let speeds_measured = speed::are_measured(&joint.trials, &windows);
         let others = Arc::new(vec![Vec::new(); joint.trials.len()]);
         let radians_per_output_unit = radians_in(joint.output_unit.as_deref());
         let neutral = coded_neutral(&joint.trials).map_or(0.0, |neutral| neutral.level);
+        let (starts_s, commands) = (starts_s(&joint.trials), commands(&joint.trials, neutral));
+        let spans = joint.trials.iter().map(span).collect();
         Self {
-            joint,
+            measured,
+            mended,
             split,
             horizon,
             windows,
@@ -85,19 +93,19 @@ impl<'a> FitRecord<'a> {
             radians_per_output_unit,
             follower: Arc::default(),
             speeds_measured,
-            starts_s: starts_s(&joint.trials),
-            commands: commands(&joint.trials, neutral),
-            spans: joint.trials.iter().map(span).collect(),
+            starts_s,
+            commands,
+            spans,
             neutral,
-            signals: Arc::new(signal_ranges(joint)),
-            weights: weights(&joint.trials).map(Arc::new),
+            signals: Arc::new(signal_ranges(measured)),
+            weights: weights(&measured.trials).map(Arc::new),
         }
     }
 
     /// This record with the activity of the other joints, per trial and sample.
     #[must_use]
     pub fn with_others(self, mut others: Vec<Vec<f64>>) -> Self {
-        others.resize(self.joint.trials.len(), Vec::new());
+        others.resize(self.joint().trials.len(), Vec::new());
         Self { others: Arc::new(others), ..self }
     }
 
@@ -113,7 +121,7 @@ impl<'a> FitRecord<'a> {
     fn delays(&self) -> &Delays {
         let in_seconds = |step: Option<StepDelay>| step.map(|step| step.delay_s);
         self.delays.get_or_init(|| {
-            let measured = step_delays(&self.joint.trials).unwrap_or_default();
+            let measured = step_delays(&self.joint().trials).unwrap_or_default();
             measured.into_iter().map(|t| t.into_iter().map(in_seconds).collect()).collect()
         })
     }
@@ -133,16 +141,16 @@ impl<'a> FitRecord<'a> {
         delays.sort_by(f64::total_cmp);
         let at = |part: f64| delays.get(floor_to_index(part * delays.len() as f64)).copied();
         let spread = at(OUTSIDE).zip(at(1.0 - OUTSIDE)).map_or(0.0, |(low, high)| high - low);
-        let periods = self.joint.trials.iter().map(|trial| trial.period().seconds());
+        let periods = self.joint().trials.iter().map(|trial| trial.period().seconds());
         spread > periods.fold(0.0, f64::max)
     }
 
     /// The trials and surroundings with another horizon.
     #[must_use]
     pub fn with_horizon(&self, horizon: Horizon) -> Self {
-        let horizon = horizon.of(self.joint);
-        let windows = windows(self.joint, self.split, horizon);
-        let speeds_measured = speed::are_measured(&self.joint.trials, &windows);
+        let horizon = horizon.of(self.joint());
+        let windows = windows(self.joint(), self.split, horizon);
+        let speeds_measured = speed::are_measured(&self.joint().trials, &windows);
         Self { horizon, windows, speeds_measured, ..self.clone() }
     }
 
@@ -158,7 +166,7 @@ impl<'a> FitRecord<'a> {
 
     /// Whether each part has trials with `word` in their labels, and without.
     pub(crate) fn shows_condition(&self, word: &str) -> bool {
-        let has = |window: &Window| has_word(self.joint.trials[window.trial].label(), word);
+        let has = |window: &Window| has_word(self.joint().trials[window.trial].label(), word);
         let shows = |part| {
             let with = self.part(part).filter(|window| has(window)).count();
             let all = self.part(part).count();
@@ -167,9 +175,10 @@ impl<'a> FitRecord<'a> {
         shows(Part::Training) && shows(Part::Validation)
     }
 
-    /// The joint.
-    pub fn joint(&self) -> &'a Joint {
-        self.joint
+    /// The joint, with lines in the place of spikes of its output, and the levels that its input holds where
+    /// that was measured with noise.
+    pub fn joint(&self) -> &Joint {
+        self.mended.as_deref().unwrap_or(self.measured)
     }
 
     /// All windows, in the order of the record.
@@ -182,10 +191,21 @@ impl<'a> FitRecord<'a> {
         self.windows.iter().filter(move |window| window.part == part)
     }
 
-    /// `values`, one per trial and sample, of the windows of one part.
+    /// `values`, one per trial and sample, of the windows of one part, at the samples that count: see
+    /// [`weights_of`](Self::weights_of).
     pub(crate) fn cut(&self, values: &[Vec<f64>], part: Part) -> Vec<Vec<f64>> {
-        let cut = |w: &Window| values.get(w.trial)?.get(w.start..w.end);
-        self.part(part).filter_map(cut).map(<[f64]>::to_vec).collect()
+        let cut = |w: &Window| {
+            let own = values.get(w.trial)?.get(w.start..w.end)?;
+            let weights = self.weights_of(w.trial).and_then(|all| all.get(w.start..w.end));
+            Some(match weights {
+                Some(weights) => {
+                    let counts = own.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
+                    counts.map(|(value, _)| *value).collect()
+                }
+                None => own.to_vec(),
+            })
+        };
+        self.part(part).filter_map(cut).collect()
     }
 
     /// Simulates `model` on all trials, each to the end of its last window.
@@ -228,7 +248,7 @@ impl<'a> FitRecord<'a> {
     pub(crate) fn thinned(&self) -> Self {
         let training = self.for_training();
         // In the order of the labels: that of the rows says nothing of a joint.
-        let places = places(&self.joint.trials);
+        let places = places(&self.joint().trials);
         let mut windows = training.windows.clone();
         windows.sort_by_key(|window| places[window.trial]);
         let mut windows = thinned(&windows);
@@ -239,7 +259,7 @@ impl<'a> FitRecord<'a> {
     /// This record with training windows of no more than a few steps of the input.
     pub(super) fn shortened(&self) -> Self {
         let windows = self.part(Part::Training).flat_map(|window| {
-            let input = self.joint.trials.get(window.trial).map_or(&[][..], Trial::input);
+            let input = self.joint().trials.get(window.trial).map_or(&[][..], Trial::input);
             let input = input.get(window.start..window.end).unwrap_or_default();
             shorter(*window, changes(input).count())
         });
@@ -285,18 +305,18 @@ impl<'a> FitRecord<'a> {
 
     /// The model on each trial.
     fn runs<'m>(&'m self, model: &'m JointModel) -> Vec<Run<'m>> {
-        (0..self.joint.trials.len()).filter_map(|index| self.run(model, index)).collect()
+        (0..self.joint().trials.len()).filter_map(|index| self.run(model, index)).collect()
     }
 
     /// The model on one trial.
     fn run<'m>(&'m self, model: &'m JointModel, index: usize) -> Option<Run<'m>> {
-        let trial = self.joint.trials.get(index)?;
+        let trial = self.joint().trials.get(index)?;
         let surroundings = Surroundings {
             others: self.others.get(index).map_or(&[], Vec::as_slice),
             radians_per_output_unit: self.radians_per_output_unit,
             start_s: self.start_s(index),
             signals: Signals {
-                signals: &self.joint.covariates,
+                signals: &self.joint().covariates,
                 values: trial.covariates(),
                 from: 0,
             },
@@ -328,7 +348,7 @@ impl<'a> FitRecord<'a> {
     /// When each level of the input of a trial begins to act.
     pub fn arrivals(&self, model: &JointModel, trial: usize) -> Arrivals {
         let Some(commands) = self.commands.get(trial) else { return Arrivals::default() };
-        let model = &*model.in_trial(self.joint.trials[trial].label());
+        let model = &*model.in_trial(self.joint().trials[trial].label());
         let delays = model.takes_measured_delays().then(|| self.delays());
         let delays = delays.and_then(|delays| delays.get(trial));
         commands.arriving(model, self.start_s(trial), delays.map(Vec::as_slice))
@@ -342,12 +362,13 @@ impl<'a> FitRecord<'a> {
     /// How large the signals are; `levels` are the input's magnitudes, see
     /// [`input_levels`](Self::input_levels).
     pub fn range<'l>(&'l self, levels: &'l [f64], speed_abs_max: f64) -> RecordRange<'l> {
-        let outputs = || self.joint.trials.iter().flat_map(|trial| trial.output().iter().copied());
-        let inputs = || self.joint.trials.iter().flat_map(|trial| trial.input().iter().copied());
+        let outputs =
+            || self.joint().trials.iter().flat_map(|trial| trial.output().iter().copied());
+        let inputs = || self.joint().trials.iter().flat_map(|trial| trial.input().iter().copied());
         let lowest_input = inputs().fold(f64::INFINITY, f64::min);
-        let ends = self.joint.trials.iter().zip(&self.starts_s);
+        let ends = self.joint().trials.iter().zip(&self.starts_s);
         let ends = ends.map(|(trial, start_s)| start_s + length_s(trial));
-        let periods = self.joint.trials.iter().map(|trial| trial.period().seconds());
+        let periods = self.joint().trials.iter().map(|trial| trial.period().seconds());
         RecordRange {
             input_neutral: self.neutral,
             input_abs_max: levels.last().copied().unwrap_or(1.0),
@@ -367,18 +388,18 @@ impl<'a> FitRecord<'a> {
     pub(crate) fn is_exact(&self, evaluation: &Evaluation) -> bool {
         let residuals = evaluation.residuals.iter().flatten();
         let most = residuals.fold(0.0_f64, |most, residual| most.max(residual.abs()));
-        is_rounding(self.joint, most)
+        is_rounding(self.joint(), most)
     }
 
     /// How the output follows the input, where it does or is likely to follow the input itself.
     pub(crate) fn follower(&self) -> Option<Follower> {
-        let of = || Follower::of(self.joint).or_else(|| Follower::likely(self.joint));
+        let of = || Follower::of(self.joint()).or_else(|| Follower::likely(self.joint()));
         *self.follower.get_or_init(of)
     }
 
     /// The distinct magnitudes of the input, ascending; those from its neutral where it is coded.
     pub fn input_levels(&self) -> Vec<f64> {
-        let inputs = self.joint.trials.iter().flat_map(Trial::input);
+        let inputs = self.joint().trials.iter().flat_map(Trial::input);
         let mut levels: Vec<f64> = inputs.map(|input| (input - self.neutral).abs()).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();

@@ -138,6 +138,11 @@ def mat(columns):
     trials = {"trial": np.array([["first"]] * 200 + [["second"]] * 200, dtype=object)}
     savemat(HERE / "v6.mat", variables | trials)
     savemat(HERE / "v7.mat", variables | trials, do_compression=True)
+    # A workspace as a simulation leaves it: signals by name, and gains of their own lengths.
+    savemat(HERE / "workspace.mat", {
+        "gains": np.array([[1.0, 2.0, 3.0]]), "time_s": first["time_s"][:, None],
+        "valve_cmd": first["boom.input [V]"][:, None],
+        "angle": first["boom.output [deg]"][:, None]})
     savemat(HERE / "v4.mat", {"time_s": first["time_s"]}, format="4")
     (HERE / "v73.mat").unlink(missing_ok=True)
     hdf5storage.savemat(str(HERE / "v73.mat"), variables, format="7.3", store_python_metadata=False)
@@ -192,6 +197,7 @@ def mcap(path, messages, summary=True, **options):
         kinds = {"/joint_states": writer.register_msgdef("sensor_msgs/msg/JointState", STATES),
                  "/valve": writer.register_msgdef("std_msgs/msg/Float64MultiArray", COMMANDS)}
         kinds["/gripper_states"] = kinds["/joint_states"]
+        kinds["/arm_valve"] = kinds["/valve"]
         for number, (topic, time, content) in enumerate(messages):
             writer.write_message(topic, kinds[topic], content, log_time=time,
                                  publish_time=time - 1000, sequence=number)
@@ -248,6 +254,21 @@ def ros():
                 sends.append(("/valve", time, {"layout": layout, "data": list(volts[k])}))
             sends.append((topic, time, content))
     mcap(HERE / "pauses.mcap", sends)
+    # The arm has a topic of commands of its own, which begins in the middle, and behind it the states
+    # tell of a bucket.
+    late = []
+    for topic, time, content in messages:
+        k = (time - START) // TICK
+        if topic == "/joint_states" and k > samples // 2:
+            content = state(time, [*content["name"], "bucket"], [*content["position"], 0.0])
+        late.append((topic, time, content))
+        if topic == "/valve" and time > START + samples // 2 * TICK:
+            late.append(("/arm_valve", time, content))
+    mcap(HERE / "late_command.mcap", late)
+    # States at a third of the rate: the commands come up to 43 ms before the next of them.
+    slow = [(topic, time, content) for topic, time, content in messages
+            if topic != "/joint_states" or (time - START) // TICK % 3 == 0]
+    mcap(HERE / "slow_states.mcap", slow)
     write_csv(HERE / "ros.csv", {
         "time_s": [k * TICK / 1e9 for k in range(2, samples)],
         "boom.input": volts[2:, 0], "boom.output": angles[2:, 0],

@@ -314,6 +314,13 @@ pub(crate) fn broken() -> Vec<Messy> {
             all.replacen("\n1.000000,", "\nhere it stopped\n1.000000,", 1),
             Expected::Refused(&["row 102", "1 cells", "has 3"]),
         ),
+        messy("packed.gz", &gzip(&all)[..2000], Expected::Refused(&["packed.gz"])),
+    ]
+}
+
+/// Files of other formats, which say what they are.
+pub(crate) fn other_formats() -> Vec<Messy> {
+    vec![
         messy(
             "archive.zip",
             b"PK\x03\x04 and more".as_slice(),
@@ -329,6 +336,15 @@ pub(crate) fn broken() -> Vec<Messy> {
             b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1".as_slice(),
             Expected::Refused(&["old.xls", ".xlsx"]),
         ),
-        messy("packed.gz", &gzip(&all)[..2000], Expected::Refused(&["packed.gz"])),
+        messy(
+            "log.mcap.zst",
+            b"\x28\xb5\x2f\xfd and more".as_slice(),
+            Expected::Refused(&["log.mcap.zst", "zstd", "unpack it first"]),
+        ),
+        messy(
+            "log.tdms",
+            b"TDSm and more".as_slice(),
+            Expected::Refused(&["log.tdms", "LabVIEW", "npTDMS"]),
+        ),
     ]
 }

@@ -4,11 +4,11 @@ use crate::cli::failure::{read_failures, said};
 use crate::delay::{
     Condition, Decision, EstimateError, Method, Verdict, delay_beyond_holds, end_at_the_next_step,
 };
-use crate::experiment::{Experiment, Joint, Trial, spike_count};
-use crate::numerics::median;
+use crate::experiment::{Experiment, Joint, Trial, saturations, spike_count};
+use crate::numerics::{median, to_digits};
 use crate::report::{EstimatedJoint, input_note};
 use crate::study::JointEstimate;
-use crate::wording::number;
+use crate::wording::{number, percent};
 
 /// The delays of each joint.
 pub(crate) type Estimates = Vec<Result<JointEstimate, EstimateError>>;
@@ -63,6 +63,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
             notes.extend(smeared(joint, estimate));
             notes.extend(later_than_the_next_step(joint, estimate));
             notes.extend(spikes(joint, estimate));
+            notes.extend(saturated(joint));
         }
         let verdicts =
             || estimate.estimated().flat_map(|trial| &trial.decisions).map(Decision::verdict);
@@ -93,6 +94,23 @@ fn spikes(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
             "joint `{}`: {spikes} {samples} {spike} of the sensor: interpolated where delays are \
              estimated",
             joint.name
+        )
+    })
+}
+
+/// A line on an output that stands at the end of its sensor's range.
+fn saturated(joint: &Joint) -> Option<String> {
+    let ends: Vec<String> = saturations(&joint.trials)
+        .into_iter()
+        .map(|end| format!("{} in {} of the samples", to_digits(end.at, 6), percent(end.share)))
+        .collect();
+    (!ends.is_empty()).then(|| {
+        format!(
+            "joint `{}`: the output stands, without noise, at {}: the range of the sensor or its converter \
+             ends there; what the joint does beyond is not seen, and the delay of a step there is how late the \
+             output comes back",
+            joint.name,
+            ends.join(" and at ")
         )
     })
 }

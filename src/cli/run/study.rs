@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use super::estimates::{Estimates, estimated};
 use super::session::Session;
-use crate::cli::console::{Bar, Verbosity, warn};
+use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
 use crate::cli::output::{Contents, Detail};
-use crate::delay::Settings;
-use crate::experiment::{Experiment, Joint, Other};
+use crate::delay::{Settings, held_inputs};
+use crate::experiment::{Experiment, Joint, Other, spike_count};
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::study::{OtherResult, others_of};
 
@@ -146,14 +146,37 @@ impl<T> Study<'_, T> {
         context.show(models, revisions, None)
     }
 
-    /// Says what failed, prints the results, and ends what viewers are sent.
+    /// Says what failed, and how the logs were read, prints the results, and ends what viewers are sent.
     pub(crate) fn end<J: Serialize>(
         &self,
         failures: &[String],
         text: impl FnOnce() -> String,
         json: impl FnOnce() -> J,
     ) -> anyhow::Result<Completion> {
-        warn(failures);
+        self.session.warn(failures, &notes_on_models(&self.experiment().joints));
         self.session.end(Completion::without(failures), text, json)
     }
+}
+
+/// What models are not held against in the records of `joints`.
+fn notes_on_models(joints: &[Joint]) -> Vec<String> {
+    let note = |joint: &Joint| {
+        let name = &joint.name;
+        let spikes: usize = joint.trials.iter().map(spike_count).sum();
+        let spikes = (spikes > 0).then(|| {
+            let samples = if spikes == 1 { "sample is an" } else { "samples are" };
+            let spike = if spikes == 1 { "isolated spike" } else { "isolated spikes" };
+            let them = if spikes == 1 { "it" } else { "them" };
+            format!(
+                "joint `{name}`: {spikes} {samples} {spike} of the sensor: no error counts {them}"
+            )
+        });
+        let noise = held_inputs(&joint.trials).map(|_| {
+            format!(
+                "joint `{name}`: the input has noise or glitches: models take the levels that it holds"
+            )
+        });
+        spikes.into_iter().chain(noise)
+    };
+    joints.iter().flat_map(note).collect()
 }

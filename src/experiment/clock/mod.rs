@@ -5,6 +5,7 @@
 //! slow drift `d_k` and a jitter `j_k`. Lost rows show as a jump that the rows behind it keep;
 //! a stamp that is only late is made good by the next ones.
 
+mod bursts;
 mod evenness;
 mod fault;
 mod period;
@@ -15,6 +16,7 @@ use self::evenness::Deviations;
 use self::period::{least_squares_period, typical_period};
 use self::rows::{Found, between_restarts, is_even_once_sorted, parted, short_gaps};
 
+pub(super) use self::bursts::spread;
 pub(super) use self::evenness::Evenness;
 pub(super) use self::fault::ClockFault;
 pub(super) use self::period::rate_changes;
@@ -81,8 +83,6 @@ impl Clock {
         let period = least_squares_period(&runs, times, &typical)?;
         let deviations = Deviations::of(&runs, times, period, &typical);
         let evenness = deviations.evenness(&runs, &typical, period)?;
-        let is_mean = typical.in_bursts && evenness == Evenness::Uneven;
-        let period = if is_mean { typical.seconds } else { period };
         Ok(Self {
             gaps: short_gaps(&runs),
             runs,
@@ -162,24 +162,6 @@ mod tests {
     }
 
     #[test]
-    fn the_period_of_rows_that_come_in_bursts_is_their_mean() {
-        // Two, five and ten at a time, 1 µs to 0.2 ms apart; and each up to 50 ms late.
-        for (size, apart) in [(2, 1e-6), (2, 2e-4), (5, 1e-5), (10, 1e-4)] {
-            let time = |k: usize| 0.01 * (k - k % size) as f64 + apart * (k % size) as f64;
-            let clock = read(&stamps(3000, time));
-            assert!((clock.period / 0.01 - 1.0).abs() < 1e-2, "{size} {apart}: {}", clock.period);
-            assert_eq!(sizes(&clock), [3000], "{size} {apart}");
-        }
-        let mut latest = 0.0;
-        let late = |k: usize| {
-            latest = f64::max(latest + 1e-5, 0.01 * k as f64 + 0.025 * (1.0 + noise(k)));
-            latest
-        };
-        let clock = read(&(0..3000).map(late).collect::<Vec<_>>());
-        assert!((clock.period / 0.01 - 1.0).abs() < 1e-2, "{}", clock.period);
-    }
-
-    #[test]
     fn two_rates_in_one_trial_are_uneven() {
         let clock = read(&stamps(300, |k| 0.01 * (k + k.saturating_sub(200)) as f64));
         assert_eq!(clock.evenness, Evenness::Uneven);
@@ -216,6 +198,23 @@ mod tests {
         assert_eq!(read(&to_even).evenness, Evenness::Rounded { to_s: 1.0 });
         let few = Clock::read(&coarse(1.7e9, 4000), None);
         assert_eq!(few, Err(ClockFault::FewStamps { stamps: 3, grain_s: 128.0 }));
+    }
+
+    #[test]
+    fn stamps_that_are_rounded_to_less_than_a_period_lose_no_row() {
+        // Near 100,000 s numbers of 32 bits are 7.8125 ms apart.
+        let to_s = 0.007_812_5;
+        let rounded = |rows: usize| stamps(rows, |k| (0.01 * k as f64 / to_s).round() * to_s);
+        let clock = read(&rounded(3000));
+        assert!((clock.period / 0.01 - 1.0).abs() < 1e-5, "{clock:?}");
+        assert_eq!(
+            (clock.evenness, clock.gaps, sizes(&clock)),
+            (Evenness::Rounded { to_s }, None, vec![3000])
+        );
+        // Where rows are lost at random, times are as far apart, but on no line.
+        let kept = (0..3600).filter(|k| noise(*k).abs() < 0.8).map(|k| to_s * k as f64);
+        let kept: Vec<f64> = kept.collect();
+        assert!((read(&kept).period / to_s - 1.0).abs() < 1e-6, "rows that are lost at random");
     }
 
     #[test]

@@ -13,8 +13,6 @@ pub(super) struct Typical {
     pub(super) seconds: f64,
     /// The grain of the stamps where it is above half a period; else 0.
     pub(super) grain_s: f64,
-    /// Whether rows come in bursts, so that stamps do not say where each stands on a grid.
-    pub(super) in_bursts: bool,
 }
 
 impl Typical {
@@ -32,8 +30,8 @@ pub(super) fn typical_period(times: &[f64]) -> Result<Typical, ClockFault> {
         return Err(ClockFault::SingleRow);
     }
     let middle = median(&forward).ok_or(ClockFault::StandsStill)?;
-    if let Some(seconds) = burst_period(&forward, middle) {
-        return Ok(Typical { seconds, grain_s: 0.0, in_bursts: true });
+    if let Some(found) = rounded_period(times, &forward) {
+        return Ok(found);
     }
     let even: Vec<f64> = steps.filter(|step| (0.0..=JUMP * middle).contains(step)).collect();
     // Rows that are there twice are few; stamps that are rounded stand still often.
@@ -44,27 +42,36 @@ pub(super) fn typical_period(times: &[f64]) -> Result<Typical, ClockFault> {
     let grain = forward.iter().copied().fold(f64::INFINITY, f64::min);
     let is_multiple = |step: &f64| ((step / grain) - (step / grain).round()).abs() < 1e-3;
     let coarse = grain > 0.5 * seconds && rounded && forward.iter().all(is_multiple);
-    Ok(Typical { seconds, grain_s: if coarse { grain } else { 0.0 }, in_bursts: false })
+    Ok(Typical { seconds, grain_s: if coarse { grain } else { 0.0 } })
 }
 
-/// The mean of the `steps` of rows that come in bursts, as over a network: a few close together, and a
-/// pause. What is `middle` is a step within a burst then, and no period.
-fn burst_period(steps: &[f64], middle: f64) -> Option<f64> {
-    /// Steps to a pause, at most, and usual steps that a usual pause lasts, at least (chosen).
-    const LONGEST: usize = 25;
-    const PAUSE: f64 = 2.5;
-    /// Part of the time that passes in pauses, at least.
-    const IN_PAUSES: f64 = 0.5;
-    /// Usual pauses beyond which one parts the record.
-    const BREAK: f64 = 5.0;
-    let is_pause = |step: &f64| *step > JUMP * middle;
-    let pauses: Vec<f64> = steps.iter().copied().filter(is_pause).collect();
-    let usual = median(&pauses).filter(|usual| *usual >= PAUSE * middle)?;
-    let longest = steps.split(is_pause).map(<[f64]>::len).max().unwrap_or_default();
-    let known = || steps.iter().copied().filter(|step| *step <= BREAK * usual);
-    let (all, in_pauses) = (known().sum::<f64>(), known().filter(is_pause).sum::<f64>());
-    let are_bursts = longest <= LONGEST && in_pauses > IN_PAUSES * all;
-    are_bursts.then(|| all / known().count() as f64)
+/// The period of `times` without a gap that are rounded to a grain of less than it, as 32-bit numbers
+/// are far from zero: one grain apart or two, which looks like rows that are lost, but all of them
+/// within a grain of one line.
+fn rounded_period(times: &[f64], forward: &[f64]) -> Option<Typical> {
+    /// Part of the steps that must be of one grain, and of two: else the period is a grain.
+    const PART: f64 = 0.05;
+    /// How far times lie apart about the line, in grains; of rounding it is one.
+    const APART: f64 = 1.1;
+    /// Part of a grain that a step may be off a multiple.
+    const OFF: f64 = 1e-3;
+    let grain = forward.iter().copied().fold(f64::INFINITY, f64::min);
+    let of = |grains: f64| {
+        let count = forward.iter().filter(|step| (**step / grain - grains).abs() < OFF).count();
+        count as f64 / forward.len() as f64
+    };
+    let (one, two) = (of(1.0), of(2.0));
+    if one.min(two) < PART || one + two < 1.0 || forward.len() + 1 < times.len() {
+        return None;
+    }
+    let rows = times.len() as f64;
+    let (middle, mean) = (0.5 * (rows - 1.0), times.iter().sum::<f64>() / rows);
+    let points = || times.iter().zip(0_u32..).map(|(time, k)| (f64::from(k) - middle, time - mean));
+    let products: f64 = points().map(|(place, time)| place * time).sum();
+    let seconds = products / points().map(|(place, _)| place * place).sum::<f64>();
+    let ends = points().map(|(place, time)| time - seconds * place);
+    let (low, high) = ends.fold((f64::MAX, f64::MIN), |(l, h), off| (l.min(off), h.max(off)));
+    (high - low <= APART * grain).then_some(Typical { seconds, grain_s: grain })
 }
 
 /// The slope of stamps over places that all `runs` share.

@@ -55,6 +55,7 @@ impl ReadError {
             | Self::BeyondPrecision { column, .. }
             | Self::Missing { column, .. }
             | Self::NoTimeInRow { column, .. }
+            | Self::OneColumn { column, .. }
             | Self::SeveralSeries { column, .. }
             | Self::NeverMeasured { column, .. } => Some(column),
             _ => None,

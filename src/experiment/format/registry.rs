@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::csv;
 use super::fence;
-use super::first_bytes::{is_gzip, is_matlab, start_of};
+use super::first_bytes::{is_gzip, is_matlab, is_packed, start_of};
 #[cfg(feature = "mat")]
 use super::mat;
 #[cfg(feature = "mcap")]
@@ -34,7 +34,7 @@ struct Format {
 }
 
 /// All formats. The last one is text, which any bytes may be.
-const FORMATS: [Format; 8] = [
+const FORMATS: [Format; 13] = [
     Format {
         name: "Parquet",
         endings: &[".parquet", ".pq"],
@@ -104,6 +104,57 @@ const FORMATS: [Format; 8] = [
         open: |path, _| {
             let remedy = "save it as .xlsx, or as CSV";
             Err(unread(path, "a log", "it is a file of an old spreadsheet program", remedy))
+        },
+    },
+    Format {
+        name: "Feather",
+        endings: &[],
+        starts: |start| start.starts_with(b"ARROW1") || start.starts_with(b"FEA1"),
+        remedy: "",
+        open: |path, _| {
+            let remedy = "write it as Parquet: `pandas.read_feather(IN).to_parquet(OUT)`";
+            Err(unread(path, "a log", "it is a Feather file of Arrow", remedy))
+        },
+    },
+    Format {
+        name: "TDMS",
+        endings: &[],
+        starts: |start| start.starts_with(b"TDSm"),
+        remedy: "",
+        open: |path, _| {
+            let remedy = "export it as CSV, or convert it with npTDMS";
+            Err(unread(path, "a log", "it is a TDMS file of LabVIEW", remedy))
+        },
+    },
+    Format {
+        name: "MDF",
+        endings: &[],
+        starts: |start| start.starts_with(b"MDF     "),
+        remedy: "",
+        open: |path, _| {
+            let remedy = "export it as CSV, Parquet or .mat, with its own tool or asammdf";
+            Err(unread(path, "a log", "it is a measurement data file (MDF)", remedy))
+        },
+    },
+    Format {
+        name: "ULog",
+        endings: &[],
+        starts: |start| start.starts_with(b"ULog\x01\x12\x35"),
+        remedy: "",
+        open: |path, _| {
+            let remedy = "convert it to CSV with `ulog2csv`";
+            Err(unread(path, "a log", "it is a ULog file of PX4", remedy))
+        },
+    },
+    Format {
+        name: "packed",
+        endings: &[],
+        starts: is_packed,
+        remedy: "",
+        open: |path, _| {
+            let remedy =
+                "unpack it first; of packed files those of gzip are read, and chunks of MCAP";
+            Err(unread(path, "a log", "it is packed by zstd, xz, bzip2, lz4 or 7-Zip", remedy))
         },
     },
     Format {

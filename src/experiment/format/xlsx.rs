@@ -6,8 +6,8 @@ use std::io::{BufReader, Read as _};
 use std::path::Path;
 
 use calamine::{
-    Data, DataRef, ExcelDateTime, Range, Reader as _, Sheet, SheetVisible, Xlsx, XlsxError,
-    open_workbook,
+    Data, DataRef, ExcelDateTime, Range, Reader as _, Sheet, SheetType, SheetVisible, Xlsx,
+    XlsxError, open_workbook,
 };
 use zip::ZipArchive;
 
@@ -22,20 +22,16 @@ use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
 
 /// Opens the workbook and reads the header of its first sheet that holds rows.
 pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
-    let damaged = |reason: String| ReadError::Format {
-        path: path.to_owned(),
-        format: "XLSX",
-        reason,
-        remedy: "save it again as .xlsx, or as CSV",
-    };
-    let texts = check_unpacked(path, &budget).map_err(|error| error.refuse(path))?;
+    let damaged = |reason: String| damaged(path, reason);
+    let texts = check_unpacked(path, &budget)?;
     // They stay while cells are read that share them.
     budget.take(texts).map_err(|error| error.refuse(path))?;
     let mut workbook: Xlsx<_> =
         open_workbook(path).map_err(|error: XlsxError| damaged(error.to_string()))?;
     let hidden = |sheet: &Sheet| sheet.visible != SheetVisible::Visible;
-    let (hidden, visible): (Vec<_>, Vec<_>) =
-        workbook.sheets_metadata().iter().cloned().partition(hidden);
+    // Charts have no cells.
+    let sheets = workbook.sheets_metadata().iter().filter(|it| it.typ != SheetType::ChartSheet);
+    let (hidden, visible): (Vec<_>, Vec<_>) = sheets.cloned().partition(hidden);
     // What is hidden is read where nothing else is there.
     let names: Vec<String> = visible.into_iter().chain(hidden).map(|sheet| sheet.name).collect();
     let count = names.len();
@@ -66,6 +62,11 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
         }
     }
     Err(damaged("no sheet has a header and a row".to_owned()))
+}
+
+fn damaged(path: &Path, reason: String) -> ReadError {
+    let remedy = "save it again as .xlsx, or as CSV";
+    ReadError::Format { path: path.to_owned(), format: "XLSX", reason, remedy }
 }
 
 /// The rows of a sheet, and which one it is.
@@ -134,11 +135,23 @@ fn check_unshared(path: &Path) -> Result<(), String> {
         part.take(MOST_SHEETS as u64 * 10_000).read_to_end(&mut sheets).unwrap_or_default();
     }
     let mut seen = BTreeSet::new();
-    if ids_of_parts(&sheets).all(|id| seen.insert(id)) {
+    // Ids may be two of one part.
+    let parts = archive.file_names().filter_map(Result::ok).filter(|name| is_sheet(name)).count();
+    let ids = || ids_of_parts(&sheets);
+    if ids().all(|id| seen.insert(id)) && ids().count() <= parts {
         Ok(())
     } else {
         Err("two of its sheets are one part of the file".to_owned())
     }
+}
+
+/// Whether a part of this name is a sheet, with cells or a chart.
+fn is_sheet(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    ["worksheets/", "chartsheets/", "dialogsheets/", "macrosheets/"]
+        .iter()
+        .any(|folder| name.contains(folder))
+        && !name.contains("_rels/")
 }
 
 /// The ids of parts that `sheets` names, as `r:id="rId3"`.
@@ -153,8 +166,9 @@ fn ids_of_parts(sheets: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 /// Asks for as much memory as all of the workbook takes unpacked: a text, or what is blank, is read
 /// into memory whole. What each part says of its size is not trusted. Returns the memory of the texts
-/// that cells share.
-fn check_unpacked(path: &Path, budget: &Budget) -> Result<u64, TooLarge> {
+/// that cells share. Refuses sheets and texts that cannot be unpacked, or whose checksum is another.
+fn check_unpacked(path: &Path, budget: &Budget) -> Result<u64, ReadError> {
+    let check = |bytes: u64| budget.check(bytes).map_err(|error| error.refuse(path));
     let Some(mut archive) = archive(path) else { return Ok(0) };
     let (mut unpacked, mut piece, mut texts) = (0, vec![0; PIECE], 0);
     let mut elements = 0;
@@ -163,13 +177,21 @@ fn check_unpacked(path: &Path, budget: &Budget) -> Result<u64, TooLarge> {
         let name = part.name().map(|name| name.to_ascii_lowercase()).unwrap_or_default();
         let (is_texts, is_styles) =
             (name.ends_with("sharedstrings.xml"), name.ends_with("styles.xml"));
-        let is_sheet = name.contains("worksheets/");
+        let is_sheet = is_sheet(&name);
         let mut kept = Vec::new();
-        while let Ok(bytes @ 1..) = part.read(&mut piece) {
+        loop {
+            let bytes = match part.read(&mut piece) {
+                Ok(0) => break,
+                Ok(bytes) => bytes,
+                Err(error) if is_sheet || is_texts => {
+                    return Err(damaged(path, format!("its part `{name}` is broken: {error}")));
+                }
+                Err(_) => break,
+            };
             // Sheets are read cell by cell; of all else a library keeps what it names.
             unpacked += bytes as u64 * if is_sheet || is_texts { 1 } else { PART_SIZE };
             elements += begun(piece.get(..bytes).unwrap_or_default());
-            budget.check(unpacked + elements * ELEMENT_SIZE)?;
+            check(unpacked + elements * ELEMENT_SIZE)?;
             if is_styles || is_texts {
                 kept.extend_from_slice(piece.get(..bytes).unwrap_or_default());
             }
@@ -177,10 +199,10 @@ fn check_unpacked(path: &Path, budget: &Budget) -> Result<u64, TooLarge> {
         if is_texts {
             let listed = stated_texts(&kept).max(count_of(&kept, b"<si"));
             texts = listed.saturating_mul(TEXT_SIZE).saturating_add(kept.len() as u64);
-            budget.check(texts)?;
+            check(texts)?;
         }
         if is_styles {
-            budget.check(size_of_styles(&kept))?;
+            check(size_of_styles(&kept))?;
         }
     }
     Ok(texts)

@@ -37,9 +37,13 @@ impl Log<'_> {
     ) -> Result<(Joint, Vec<String>), ReadError> {
         self.check_joint(layout, repair)?;
         self.check_one_series(layout, trials, time)?;
+        let mut is_interpolated = false;
         let (own, mut notes) = match self.sparse_rows(layout, trials, repair) {
             Some(rows) => match self.filled_grids(layout, trials, &rows, time, repair)? {
-                Some(own) => own,
+                Some(own) => {
+                    is_interpolated = true;
+                    own
+                }
                 None => self.sparse_grids(layout, trials, rows, time)?,
             },
             None => (None, self.missing_notes(layout)),
@@ -62,6 +66,8 @@ impl Log<'_> {
             self.take(grid.samples(), size)?;
             let mut signals = self.signals(layout, rows);
             turns += wrap.map_or(0, |wrap| wrap.unwrap(&mut signals.output));
+            // What was measured is what is there on the grid without being filled.
+            signals.covariates.extend(is_interpolated.then(|| signals.output.clone()));
             let pieces = grid.pieces(signals);
             if pieces.len() > 1 {
                 let first = joint.trials.len();
@@ -70,7 +76,13 @@ impl Log<'_> {
             self.take(pieces.len(), TRIAL_SIZE + rows.label.len())?;
             let labels = part_labels(&rows.label, pieces.len(), trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
-                joint.trials.push(self.trial(layout, label, grid, piece, origin_s)?);
+                let mut piece = piece;
+                let measured = if is_interpolated { piece.signals.covariates.pop() } else { None };
+                let trial = self.trial(layout, label, grid, piece, origin_s)?;
+                joint.trials.push(match measured {
+                    Some(measured) => trial.with_interpolated(missing_ranges(&measured)),
+                    None => trial,
+                });
             }
         }
         if joint.trials.is_empty() {
@@ -105,6 +117,8 @@ impl Log<'_> {
         time: TimeSource,
         repair: Repair,
     ) -> Option<(Joint, Vec<String>)> {
+        /// Samples to a row, at most: beyond it gaps are not what is missing from a record.
+        const LONGEST: usize = 100;
         let output = &self.column(layout.output.column)?.values;
         // Where outputs are missing, the reaction may be among them.
         let is_whole = !output.iter().any(|value| value.is_nan());
@@ -114,6 +128,10 @@ impl Log<'_> {
         let gap_s = gap_with_all_steps_s(read)?;
         let repair = Repair { fill_s: Some(gap_s), ..repair };
         let (grids, _) = self.grids(time, trials, repair).ok()?;
+        let samples: usize = grids.iter().map(Grid::samples).sum();
+        if samples > LONGEST * output.len() {
+            return None;
+        }
         let (mut joint, mut notes) = self.joint(layout, trials, &grids, time, repair).ok()?;
         let marked = joint.trials.into_iter().map(|whole| {
             let gaps = unlogged(&whole, &read.trials);
@@ -122,7 +140,8 @@ impl Log<'_> {
         joint.trials = marked.collect();
         notes.push(format!(
             "joint `{}`: its input changes only in gaps (of up to {gap_s} s): they are filled, the \
-             output interpolated and the input held, and delays count from their ends",
+             output interpolated and the input held, and delays count from their ends; a reaction within a \
+             gap is not seen, and what is accepted behind it then is none",
             joint.name
         ));
         Some((joint, notes))
@@ -195,7 +214,8 @@ impl Log<'_> {
         let note = format!(
             "joint `{}`: {count} of {} rows have an output, which is interpolated between them, so that \
              steps of the input keep their times; what follows from its noise, as intervals, takes all \
-             samples for measured",
+             samples for measured, and `lag-aware` the lines between them for a lag; models are held \
+             against those that are measured",
             layout.name,
             self.table.rows.len()
         );
@@ -384,6 +404,18 @@ impl Log<'_> {
             covariates: layout.covariates.iter().map(|c| cut(c.column)).collect(),
         }
     }
+}
+
+/// The samples that are not there.
+fn missing_ranges(values: &[f64]) -> Vec<Range<usize>> {
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    for (index, _) in values.iter().enumerate().filter(|(_, value)| value.is_nan()) {
+        match ranges.last_mut().filter(|range| range.end == index) {
+            Some(range) => range.end = index + 1,
+            None => ranges.push(index..index + 1),
+        }
+    }
+    ranges
 }
 
 /// A length of time to three digits, no longer one shorter: who fills gaps up to it fills this one.

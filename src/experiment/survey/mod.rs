@@ -75,7 +75,11 @@ impl Survey {
             return Err(ReadError::NoHeader { path: head.path, row: head.header_row });
         }
         let (time, trial) = (find_time_column(&head), find_trial(&head));
-        let numeric: Vec<usize> = (0..head.headers.len()).filter(|i| Some(*i) != trial).collect();
+        // What is as long as the times are: gains and options stand beside them in a workspace.
+        let rows = time.and_then(|time| table.rows.rows_of(time));
+        let is_as_long = |column: &usize| rows.is_none() || table.rows.rows_of(*column) == rows;
+        let numeric = (0..head.headers.len()).filter(|i| Some(*i) != trial).filter(is_as_long);
+        let numeric: Vec<usize> = numeric.collect();
         let clock = head.headers.first().map_or(0, |header| header.clock);
         let read = table.read(&numeric, trial, time, clock)?;
         let read = read.columns.iter().zip(numeric);

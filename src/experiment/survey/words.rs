@@ -1,9 +1,33 @@
 //! What the words of a column's name say of it.
 
 /// Words that name what drives a joint; the first ones are the likelier.
-pub(super) const INPUT_WORDS: [&str; 20] = [
-    "u", "cmd", "command", "input", "duty", "valve", "pwm", "joystick", "lever", "spool",
-    "control", "in", "drive", "current", "volt", "voltage", "stick", "servo", "throttle", "signal",
+pub(super) const INPUT_WORDS: [&str; 26] = [
+    "u",
+    "cmd",
+    "command",
+    "input",
+    "duty",
+    "valve",
+    "pwm",
+    "joystick",
+    "lever",
+    "spool",
+    "control",
+    "in",
+    "drive",
+    "setpoint",
+    "demand",
+    "target",
+    "desired",
+    "reference",
+    "ref",
+    "current",
+    "volt",
+    "voltage",
+    "stick",
+    "servo",
+    "throttle",
+    "signal",
 ];
 /// Words that name what a joint does.
 pub(super) const OUTPUT_WORDS: [&str; 22] = [

@@ -128,5 +128,5 @@ pub(super) fn head(
         std::str::from_utf8(cell).map(unquoted).map(Header::parse).map_err(not_utf8)
     };
     let headers = record.iter().zip(1..).map(text).collect::<Result<_, _>>()?;
-    Ok(Head { path: path.to_owned(), headers, header_row })
+    Ok(Head { path: path.to_owned(), headers, header_row, unread: Vec::new() })
 }

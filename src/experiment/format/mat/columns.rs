@@ -42,7 +42,7 @@ pub(in crate::experiment::format) fn open(
         }
     }
     let rows = Box::new(Unread { variables, places, budget });
-    let head = Head { path: path.to_owned(), headers, header_row: 0 };
+    let head = Head { path: path.to_owned(), headers, header_row: 0, unread: Vec::new() };
     Ok(OpenTable { head, rows })
 }
 
@@ -59,6 +59,10 @@ impl Rows for Unread {
         }
         Table::counted(wanted.path(), rows, columns, &labels)
     }
+
+    fn rows_of(&self, column: usize) -> Option<usize> {
+        self.place(column).map(|(_, place)| place.rows).filter(|rows| *rows > 0)
+    }
 }
 
 impl Unread {
@@ -68,7 +72,8 @@ impl Unread {
         let mut first: Option<(usize, usize)> = None;
         for index in wanted.numeric.iter().chain(&wanted.label).copied() {
             let Some((variable, place)) = self.place(index) else { continue };
-            if matches!(variable.content, Content::Other(_)) {
+            // What is no column spoils its own joint.
+            if matches!(variable.content, Content::Other(_)) || place.rows == 0 {
                 continue;
             }
             let (other, expected) = *first.get_or_insert((index, place.rows));

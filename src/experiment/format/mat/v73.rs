@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use hdf5_pure::{AttrValue, Chunk, Dataset, Error, Group};
+use hdf5_pure::{AttrValue, Chunk, DType, Dataset, Error, Group};
 
 use super::variable::{Content, Numbers, Variable, damaged};
 use super::watched::{Reads, open};
@@ -216,6 +216,11 @@ impl Listing<'_> {
 const NOTHING: &str = "nothing";
 
 fn content(class: &str, dataset: Dataset) -> Content {
+    match dataset.dtype() {
+        Ok(DType::Compound(_)) => return Content::Other("complex numbers"),
+        Ok(DType::String | DType::VariableLengthString) => return Content::Other("text"),
+        _ => {}
+    }
     match class {
         "char" => Content::Other("text"),
         "cell" => Content::Other("a cell array, which is read of files saved with `save -v7` only"),

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use super::between::Between;
 use super::clock::Clock;
 use super::fault::Fault;
-use super::series::{ClockMessages, Series};
+use super::series::{ClockMessages, NUMBER_SIZE, Series};
+use crate::experiment::memory::Budget;
 use crate::experiment::names::listed;
 use crate::experiment::table::Column;
 
@@ -19,12 +21,15 @@ pub(super) struct Aligned {
     pub(super) notes: Vec<String>,
 }
 
-/// All series at the times of the one of `topic`: each is held from its latest message.
-/// What comes before the first message of any of them is left out. Where the clock starts anew, each
-/// run is aligned by itself.
+/// All series at the times of the one of `topic`, and of some between where that is slow: each is held
+/// from its latest message, and so is the column of `labels`.
+/// What comes before the first message of all others is left out; what begins later is NaN up to
+/// there, so that a joint whose command comes late takes no rows from those beside it. Where the
+/// clock starts anew, each run is aligned by itself.
 pub(super) fn align<'a>(
     series: Vec<Series>,
-    topic: usize,
+    (topic, labels): (usize, Option<usize>),
+    budget: &Budget,
     name: impl Fn(usize) -> &'a str,
 ) -> Result<Aligned, Fault> {
     let Some(clock) = series.iter().find(|series| series.topic == topic) else {
@@ -40,7 +45,7 @@ pub(super) fn align<'a>(
     }
     let (mut aligned, mut failed) = (Aligned::default(), Vec::new());
     for series in of_runs {
-        match align_run(series, topic, &name) {
+        match align_run(series, (topic, labels), budget, &name) {
             Ok(run) => aligned.append(run),
             Err(fault) => failed.push(fault),
         }
@@ -58,39 +63,44 @@ pub(super) fn align<'a>(
 /// [`align`] of a run in which the clock does not start anew.
 fn align_run<'a>(
     mut series: Vec<Series>,
-    topic: usize,
+    (topic, labels): (usize, Option<usize>),
+    budget: &Budget,
     name: &impl Fn(usize) -> &'a str,
 ) -> Result<Aligned, Fault> {
     series.iter_mut().for_each(Series::sort);
     let Some(place) = series.iter().position(|series| series.topic == topic) else {
         return Ok(Aligned::default());
     };
-    let clock = series.swap_remove(place);
+    let mut clock = series.swap_remove(place);
+    let mut notes: Vec<String> = without_values(&clock, name(topic)).into_iter().collect();
+    let held: usize = series.iter().map(|series| series.columns.len()).sum();
+    if let Some(rows) = Between::of(&clock.times, &series) {
+        budget.take_values(rows.times.len().saturating_mul(clock.columns.len()), NUMBER_SIZE)?;
+        fill(&mut clock, rows, labels);
+    }
+    // A topic of one message is held at as many rows as there are.
+    budget.take_values(clock.times.len().saturating_mul(held), NUMBER_SIZE)?;
     let own = clock.columns.into_iter().map(|column| (column.header, column.values));
     let mut columns: Vec<_> = own.collect();
-    let mut start = 0;
+    let mut start = clock.times.len();
     let mut others: Vec<&str> = Vec::new();
-    let without = (clock.empty > 0).then(|| {
-        let all = clock.empty + clock.times.len();
-        let name = name(topic);
-        format!(
-            "{} of {all} messages of `{name}` have none of its values and are left out",
-            clock.empty
-        )
-    });
-    let mut notes: Vec<String> = without.into_iter().collect();
     let end = clock.times.last().copied().unwrap_or_default();
     for held in series {
         others.push(name(held.topic));
         notes.extend(held.missing(end).note(name(held.topic)));
         for column in held.columns {
-            let values = hold(&held.times, &column.values, &clock.times);
+            let messages = held.times.iter().copied().zip(held.places.iter().copied());
+            let rows = clock.times.iter().copied().zip(clock.places.iter().copied());
+            let values = hold(messages.zip(column.values), rows);
             let first = values.iter().position(|value| !value.is_nan()).unwrap_or(values.len());
-            start = start.max(first);
+            start = start.min(first);
             columns.push((column.header, values));
         }
     }
     let mut times = clock.times;
+    if others.is_empty() {
+        start = 0;
+    }
     if start == times.len() && start > 0 {
         let (topic, others) = (name(topic), listed(others.into_iter()));
         let reason = format!("no message of {topic} comes after the first ones of {others}");
@@ -102,31 +112,81 @@ fn align_run<'a>(
     }
     let columns = columns.into_iter().collect();
     let on_others = (!others.is_empty()).then(|| {
-        let (topic, others) = (name(topic), others.join("`, `"));
+        let (topic, count, others) = (name(topic), others.len(), others.join("`, `"));
         let early = match start {
             0 => String::new(),
             1 => ", of which the first comes too early and is left out".to_owned(),
             _ => format!(", of which the first {start} come too early and are left out"),
         };
-        format!("`{others}` is held from its latest message at each message of `{topic}`{early}")
+        let are = if count > 1 { "are held from their" } else { "is held from its" };
+        format!("`{others}` {are} latest message at each message of `{topic}`{early}")
     });
     let notes = on_others.into_iter().chain(notes).collect();
     Ok(Aligned { times, columns, notes })
 }
 
-/// The latest value at each of `at`; NaN before the first.
-fn hold(times: &[i64], values: &[f64], at: &[i64]) -> Vec<f64> {
-    let mut messages = times.iter().zip(values).peekable();
+/// A line on topics whose messages are timed by clocks that differ, as those of two computers do: by the
+/// time from the stamp of a message to its recording, at least.
+pub(super) fn clocks_differ<'a>(
+    series: &[Series],
+    name: impl Fn(usize) -> &'a str,
+    clock: &str,
+) -> Option<String> {
+    /// Nanoseconds that messages may take to their recording.
+    const USUAL: i64 = 50_000_000;
+    let lags = || series.iter().filter_map(|series| Some((series.least_lag?, series.topic)));
+    let ((least, of_least), (most, of_most)) = lags().min().zip(lags().max())?;
+    let apart = most.saturating_sub(least);
+    (apart > USUAL).then(|| {
+        format!(
+            "the {clock} of `{}` is {:.3} s behind that of `{}`, by the time of recording: if these are \
+             the clocks of two computers, delays are off by that; `--time log_time` has one clock",
+            name(of_most),
+            apart as f64 * 1e-9,
+            name(of_least)
+        )
+    })
+}
+
+/// A line on messages of the topic of the times that have none of its values.
+fn without_values(clock: &Series, name: &str) -> Option<String> {
+    let all = clock.empty + clock.times.len();
+    (clock.empty > 0).then(|| {
+        format!(
+            "{} of {all} messages of `{name}` have none of its values and are left out",
+            clock.empty
+        )
+    })
+}
+
+/// Puts `rows` between the messages of the topic of the times.
+fn fill(clock: &mut Series, rows: Between, labels: Option<usize>) {
+    for column in &mut clock.columns {
+        let is_label = Some(column.header) == labels;
+        let at_rows = if is_label { Between::held } else { Between::sparse };
+        column.values = at_rows(&rows, &column.values);
+    }
+    clock.places = rows.in_file(&clock.places);
+    clock.times = rows.times;
+}
+
+/// The latest value of `messages` at each of `rows`, both by their times and places in the file, which says
+/// what came first at one time, as where a clock is coarse; NaN before the first.
+fn hold(
+    messages: impl Iterator<Item = ((i64, u32), f64)>,
+    rows: impl Iterator<Item = (i64, u32)>,
+) -> Vec<f64> {
+    let mut messages = messages.peekable();
     let mut latest = f64::NAN;
-    let value = |time: &i64| {
-        while let Some((_, value)) = messages.next_if(|(sent, _)| *sent <= time) {
+    let value = |row: (i64, u32)| {
+        while let Some((_, value)) = messages.next_if(|(sent, _)| *sent <= row) {
             if !value.is_nan() {
-                latest = *value;
+                latest = value;
             }
         }
         latest
     };
-    at.iter().map(value).collect()
+    rows.map(value).collect()
 }
 
 impl Aligned {
@@ -162,8 +222,10 @@ mod tests {
 
     #[test]
     fn a_value_is_held_from_its_message_on() {
-        let held = hold(&[10, 20, 20, 30], &[1.0, 2.0, 3.0, f64::NAN], &[5, 10, 19, 20, 40]);
+        let messages = [((10, 0), 1.0), ((20, 3), 2.0), ((20, 5), 3.0), ((30, 6), f64::NAN)];
+        let rows = [(5, 1), (10, 2), (19, 2), (20, 4), (20, 7), (40, 8)];
+        let held = hold(messages.into_iter(), rows.into_iter());
         assert!(held[0].is_nan());
-        assert_eq!(held[1..], [1.0, 1.0, 3.0, 3.0]);
+        assert_eq!(held[1..], [1.0, 1.0, 2.0, 3.0, 3.0]);
     }
 }

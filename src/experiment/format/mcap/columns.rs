@@ -1,16 +1,19 @@
 //! The columns of a file: its topics found, and the messages of those that are wanted.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufReader, Seek as _};
 use std::ops::ControlFlow;
 use std::path::Path;
 
 use mcap::records::{MessageHeader, Record};
+use re_ros_msg::deserialize::Value;
 
-use super::align::align;
+use super::align::{align, clocks_differ};
 use super::clock::Clock;
 use super::contents::{Contents, Place, broken};
 use super::fault::Fault;
+use super::later::LaterFields;
 use super::series::Series;
 use super::stream;
 use crate::experiment::error::ReadError;
@@ -46,8 +49,9 @@ pub(in crate::experiment::format) fn open(
     }
     let places = contents.places();
     let headers = places.iter().map(|place| contents.header(place)).collect();
+    let unread = std::mem::take(&mut contents.left);
     let rows = Box::new(Unread { contents, places, budget });
-    let head = Head { path: path.to_owned(), headers, header_row: 0 };
+    let head = Head { path: path.to_owned(), headers, header_row: 0, unread };
     Ok(OpenTable { head, rows })
 }
 
@@ -61,17 +65,27 @@ impl Rows for Unread {
         let mut series = self.series(wanted);
         let mut file = Hashing::new(BufReader::new(file));
         let mut place = 0_u32;
+        let mut later = LaterFields::default();
         stream::each_record(&mut file, size, &self.budget, |record| {
             if let Record::Message { header, data } = record {
-                self.collect((&header, place), &data, clock, &mut series)?;
+                if let Some((topic, value)) =
+                    self.collect((&header, place), &data, clock, &mut series)?
+                {
+                    later.look_at(&self.contents, (topic, data.len()), &value);
+                }
                 place = place.saturating_add(1);
             }
             Ok(ControlFlow::Continue(()))
         })
         .map_err(refuse)?;
         let source = file.finish(wanted.path())?;
-        let mut aligned =
-            align(series, wanted.clock, |topic| self.contents.name(topic)).map_err(refuse)?;
+        let series: Vec<Series> = series.into_values().collect();
+        let of_several = clocks_differ(&series, |topic| self.contents.name(topic), clock.name());
+        let refuse = |fault: Fault| fault.also(of_several.as_deref()).refuse(wanted.path());
+        let mut aligned = align(series, (wanted.clock, wanted.label), &self.budget, |topic| {
+            self.contents.name(topic)
+        })
+        .map_err(refuse)?;
         let zero = self.contents.zero(clock);
         let mut notes = vec![format!(
             "{}: times are {} from {:.9} s on",
@@ -79,7 +93,9 @@ impl Rows for Unread {
             clock.name(),
             zero as f64 * 1e-9
         )];
-        let held = std::mem::take(&mut aligned.notes);
+        let mut held = std::mem::take(&mut aligned.notes);
+        held.extend(later.notes(&self.contents));
+        held.extend(of_several);
         notes.extend(held.iter().map(|note| format!("{}: {note}", wanted.path().display())));
         let mut column = |index: &usize| match self.places.get(*index) {
             Some(Place::Time(other)) => aligned.times(*other, clock, zero),
@@ -107,33 +123,34 @@ impl Unread {
         wanted.numeric.iter().find_map(clock).unwrap_or(Clock::Log)
     }
 
-    /// What is to be collected of each topic.
-    fn series(&self, wanted: &Wanted<'_>) -> Vec<Series> {
-        let mut series: Vec<Series> = Vec::new();
+    /// What is to be collected, by topics.
+    fn series(&self, wanted: &Wanted<'_>) -> BTreeMap<usize, Series> {
+        let mut series: BTreeMap<usize, Series> = BTreeMap::new();
         for index in wanted.numeric.iter().chain(&wanted.label).copied() {
             if let Some(Place::Field { topic, field }) = self.places.get(index) {
-                match series.iter_mut().find(|known| known.topic == *topic) {
+                match series.get_mut(topic) {
                     Some(known) => known.add(index, field),
-                    None => series.push(Series::of(*topic, index, field)),
+                    None => {
+                        series.insert(*topic, Series::of(*topic, index, field));
+                    }
                 }
             }
         }
         series
     }
 
+    /// Takes what is wanted of a message; comes back with it and its topic, if that is wanted.
     fn collect(
         &self,
         (header, place): (&MessageHeader, u32),
         data: &[u8],
         clock: Clock,
-        series: &mut [Series],
-    ) -> Result<(), Fault> {
+        series: &mut BTreeMap<usize, Series>,
+    ) -> Result<Option<(usize, Value)>, Fault> {
         let Some((topic, decoder)) = self.contents.channels.get(&header.channel_id) else {
-            return Ok(());
+            return Ok(None);
         };
-        let Some(series) = series.iter_mut().find(|series| series.topic == *topic) else {
-            return Ok(());
-        };
+        let Some(series) = series.get_mut(topic) else { return Ok(None) };
         let name = self.contents.name(*topic);
         let value = decoder.decode(data).map_err(|reason| broken(name, header, &reason))?;
         let Some(time) = clock.time(header, &value) else {
@@ -142,7 +159,9 @@ impl Unread {
                 "choose another time column; `log_time` is the time of recording",
             ));
         };
+        let lag = Clock::Log.time(header, &value).map(|recorded| recorded.saturating_sub(time));
+        series.least_lag = [series.least_lag, lag].into_iter().flatten().min();
         series.push((time, place), &value, &self.budget)?;
-        Ok(())
+        Ok(Some((*topic, value)))
     }
 }

@@ -1,7 +1,9 @@
 //! What is known of a file before its messages are read: topics, their fields, times.
 
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use mcap::records::{MessageHeader, Record};
 
@@ -43,7 +45,9 @@ pub(super) struct Contents {
     /// Places of the topics by their names.
     pub(super) by_name: HashMap<String, usize>,
     /// Topic and decoder of each channel that can be read.
-    pub(super) channels: HashMap<u16, (usize, Decoder)>,
+    pub(super) channels: HashMap<u16, (usize, Arc<Decoder>)>,
+    /// The decoders of schemas, or why there is none.
+    pub(super) decoders: HashMap<u16, Result<Arc<Decoder>, String>>,
     pub(super) schemas: HashMap<u16, (String, String, Vec<u8>)>,
     /// Topics that cannot be read, and why.
     pub(super) left: Vec<String>,
@@ -64,9 +68,9 @@ impl Contents {
         summary: Option<&Summary>,
         budget: &Budget,
     ) -> Result<ControlFlow<()>, Fault> {
-        /// Messages of a topic that show what it holds. Nodes that take turns on one topic
+        /// Messages of a channel that show what it holds. Nodes that take turns on one topic
         /// name their own joints.
-        const ENOUGH: u64 = 20;
+        const ENOUGH: u64 = 100;
         if summary.is_some_and(|summary| self.known >= summary.counts.len()) {
             return Ok(ControlFlow::Break(()));
         }
@@ -89,31 +93,53 @@ impl Contents {
         match record {
             Record::Schema { header, data } => {
                 budget.take(data.len() as u64)?;
-                self.schemas.insert(header.id, (header.name, header.encoding, data.into_owned()));
+                let schema = (header.name, header.encoding, data.into_owned());
+                let before = self.schemas.insert(header.id, schema);
+                // A file that was appended to may use a number anew.
+                if before.as_ref() != self.schemas.get(&header.id) {
+                    self.decoders.remove(&header.id);
+                }
             }
             Record::Channel(channel) if !self.channels.contains_key(&channel.id) => {
                 let schema = self.schemas.get(&channel.schema_id);
                 let (name, encoding) = schema.map_or(("", ""), |(name, e, _)| (name, e));
                 if (encoding, channel.message_encoding.as_str()) != ("ros2msg", "cdr") {
-                    let what = format!("{} ({} {name})", channel.topic, channel.message_encoding);
-                    if self.left.len() < MOST_LEFT && !self.left.contains(&what) {
-                        self.left.push(what);
-                    }
+                    self.leave(format!("{} ({} {name})", channel.topic, channel.message_encoding));
                     return Ok(());
                 }
                 let definition = schema.map(|(_, _, text)| text.as_slice()).unwrap_or_default();
-                budget.take_values(definition.len(), DECODER_SIZE)?;
-                let decoder = Decoder::new(name, definition).map_err(|reason| {
-                    let topic = &channel.topic;
-                    let reason = format!("topic `{topic}`: definition of {name}: {reason}");
-                    Fault::new(reason, "record it again with the definitions of its messages")
-                })?;
-                let topic = self.topic(channel.topic);
-                self.channels.insert(channel.id, (topic, decoder));
+                let decoder = match self.decoders.entry(channel.schema_id) {
+                    Entry::Occupied(known) => known.into_mut(),
+                    Entry::Vacant(new) => {
+                        budget.take_values(definition.len(), DECODER_SIZE)?;
+                        new.insert(Decoder::new(name, definition).map(Arc::new))
+                    }
+                };
+                match decoder {
+                    Ok(decoder) => {
+                        let decoder = Arc::clone(decoder);
+                        budget.take_values(channel.topic.len() + 1, FIELD_SIZE)?;
+                        let topic = self.topic(channel.topic);
+                        self.channels.insert(channel.id, (topic, decoder));
+                    }
+                    // Another topic may be all that is asked for.
+                    Err(reason) => {
+                        let topic = &channel.topic;
+                        let what = format!("{topic} (definition of {name}: {reason})");
+                        self.leave(what);
+                    }
+                }
             }
             _ => {}
         }
         Ok(())
+    }
+
+    /// Notes a topic, or a message of it, that cannot be read, and why.
+    fn leave(&mut self, what: String) {
+        if self.left.len() < MOST_LEFT && !self.left.contains(&what) {
+            self.left.push(what);
+        }
     }
 
     /// The place of the topic with this name, which may be new.
@@ -133,7 +159,15 @@ impl Contents {
     ) -> Result<(), Fault> {
         let Some((topic, decoder)) = self.channels.get(&header.channel_id) else { return Ok(()) };
         let Some(topic) = self.topics.get_mut(*topic) else { return Ok(()) };
-        let value = decoder.decode(data).map_err(|reason| broken(&topic.name, header, &reason))?;
+        let value = match decoder.decode(data) {
+            Ok(value) => value,
+            // It is refused where it is asked for.
+            Err(reason) => {
+                let what = format!("{} (a message of it: {reason})", topic.name);
+                self.leave(what);
+                return Ok(());
+            }
+        };
         for field in message::fields(&value) {
             if topic.known.insert(field.text.clone()) {
                 budget.take_values(field.text.len() + 1, FIELD_SIZE)?;
@@ -152,7 +186,7 @@ impl Contents {
         let reason = match self.left.as_slice() {
             [] => "it holds no message with a number in it".to_owned(),
             left => format!(
-                "no topic has messages of ROS 2 (ros2msg, cdr) with numbers; it holds {}",
+                "no topic has messages of ROS 2 (ros2msg, cdr) with numbers that can be read; it holds {}",
                 listed(left.iter().map(String::as_str))
             ),
         };
@@ -181,6 +215,11 @@ impl Contents {
                 Header::plain(&format!("{}.{}", self.name(*topic), field.text), *topic)
             }
         }
+    }
+
+    /// Whether a topic has the field of this name.
+    pub(super) fn has(&self, topic: usize, field: &str) -> bool {
+        self.topics.get(topic).is_some_and(|topic| topic.known.contains(field))
     }
 
     pub(super) fn name(&self, topic: usize) -> &str {

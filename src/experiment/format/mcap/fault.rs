@@ -19,6 +19,16 @@ impl Fault {
         Self::Damaged { reason, remedy }
     }
 
+    /// This fault, and what may be the reason for it.
+    pub(super) fn also(self, more: Option<&str>) -> Self {
+        match (self, more) {
+            (Self::Damaged { reason, remedy }, Some(more)) => {
+                Self::Damaged { reason: format!("{reason}: {more}"), remedy }
+            }
+            (fault, _) => fault,
+        }
+    }
+
     pub(super) fn refuse(self, path: &Path) -> ReadError {
         match self {
             Self::Damaged { reason, remedy } => {

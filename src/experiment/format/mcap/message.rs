@@ -1,6 +1,7 @@
 //! Messages of ROS 2: decoded by their definition, and their numbers by name.
 
-use std::collections::BTreeMap;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
 
 use re_cdr::{BigEndian, LittleEndian};
 use re_ros_msg::MessageSchema;
@@ -95,20 +96,29 @@ impl Field {
 
     /// The number in a message, where it has one.
     pub(super) fn number(&self, message: &Value) -> Option<f64> {
-        find(message, &self.steps)
+        find(message, &mut Vec::new(), &self.steps)
     }
 }
 
-fn find(value: &Value, steps: &[Step]) -> Option<f64> {
+/// The number at the end of `steps`, in a message that lies in those of `outer`.
+fn find<'m>(value: &'m Value, outer: &mut Vec<&'m Fields>, steps: &[Step]) -> Option<f64> {
     let Some((Step::Field(name), rest)) = steps.split_first() else {
         return scalar(value).filter(|_| steps.is_empty());
     };
     let Value::Message(fields) = value else { return None };
     let field = fields.get(name)?;
-    let Some((Step::Element(key), rest)) = rest.split_first() else { return find(field, rest) };
-    let index = index_of(fields, key, length(field)?)?;
+    outer.push(fields);
+    let Some((Step::Element(key), rest)) = rest.split_first() else {
+        return find(field, outer, rest);
+    };
+    let length = length(field)?;
+    let index = match keys(outer, field, length) {
+        Some(names) => names.iter().position(|name| name == key),
+        None => key.parse().ok().filter(|index| *index < length),
+    };
+    let index = index?;
     match field {
-        Value::Array(values) | Value::Sequence(values) => find(values.get(index)?, rest),
+        Value::Array(values) | Value::Sequence(values) => find(values.get(index)?, outer, rest),
         Value::PrimitiveArray(values) | Value::PrimitiveSeq(values) => {
             primitive(values, index).filter(|_| rest.is_empty())
         }
@@ -119,28 +129,31 @@ fn find(value: &Value, steps: &[Step]) -> Option<f64> {
 /// All numbers of a message.
 pub(super) fn fields(message: &Value) -> Vec<Field> {
     let mut found = Vec::new();
-    collect(message, &Field::new(), &mut found);
+    collect(message, &mut Vec::new(), &Field::new(), &mut found);
     found
 }
 
-fn collect(value: &Value, at: &Field, found: &mut Vec<Field>) {
+fn collect<'m>(value: &'m Value, outer: &mut Vec<&'m Fields>, at: &Field, found: &mut Vec<Field>) {
     let Value::Message(fields) = value else {
         found.extend(scalar(value).map(|_| at.clone()));
         return;
     };
+    outer.push(fields);
     for (name, field) in fields {
         let at = at.field(name);
         let elements = length(field).map(|length| length.min(MOST_ELEMENTS + 1));
         let Some(length) = elements else {
-            collect(field, &at, found);
+            collect(field, outer, &at, found);
             continue;
         };
+        let names = keys(outer, field, length).map(|names| names.to_vec());
         for index in 0..length.min(if length > MOST_ELEMENTS { 0 } else { length }) {
-            let at = at.element(&key_of(fields, index, length));
+            let name = names.as_ref().and_then(|names| names.get(index).cloned());
+            let at = at.element(&name.unwrap_or_else(|| index.to_string()));
             match field {
                 Value::Array(values) | Value::Sequence(values) => {
                     if let Some(value) = values.get(index) {
-                        collect(value, &at, found);
+                        collect(value, outer, &at, found);
                     }
                 }
                 Value::PrimitiveArray(values) | Value::PrimitiveSeq(values) => {
@@ -150,6 +163,7 @@ fn collect(value: &Value, at: &Field, found: &mut Vec<Field>) {
             }
         }
     }
+    outer.pop();
 }
 
 /// Elements of an array.
@@ -174,12 +188,30 @@ fn length(value: &Value) -> Option<usize> {
     }
 }
 
-/// The names of the elements of arrays with `length` of them, as the message itself gives them.
+/// The names of the elements of `array`, as the messages in which it lies give them, the last of which
+/// has it; of numbers those further out may, as the joints of a trajectory; or as its elements do.
+fn keys<'m>(outer: &[&'m Fields], array: &'m Value, length: usize) -> Option<Cow<'m, [String]>> {
+    let (own, further) = outer.split_last()?;
+    let of_itself = || names(own, length).map(|names| Cow::Borrowed(names.as_slice()));
+    match array {
+        Value::Array(values) | Value::Sequence(values) => {
+            of_itself().or_else(|| own_names(values).map(Cow::Owned))
+        }
+        _ => of_itself().or_else(|| {
+            let names = further.iter().rev().find_map(|fields| names(fields, length));
+            names.map(|names| Cow::Borrowed(names.as_slice()))
+        }),
+    }
+}
+
+/// The names in a message of the elements of its arrays with `length` of them.
 fn names(fields: &Fields, length: usize) -> Option<&Vec<String>> {
+    const NAMES: [&str; 5] = ["name", "joint", "joints", "labels", "ids"];
     fields.iter().find_map(|(name, value)| match value {
         Value::PrimitiveSeq(PrimitiveArray::String(names))
         | Value::PrimitiveArray(PrimitiveArray::String(names))
-            if names.len() == length && (name == "name" || name.ends_with("names")) =>
+            if names.len() == length
+                && (NAMES.contains(&name.as_str()) || name.ends_with("names")) =>
         {
             Some(names)
         }
@@ -187,18 +219,21 @@ fn names(fields: &Fields, length: usize) -> Option<&Vec<String>> {
     })
 }
 
-/// What the element at `index` is called.
-fn key_of(fields: &Fields, index: usize, length: usize) -> String {
-    let name = names(fields, length).and_then(|names| names.get(index));
-    name.cloned().unwrap_or_else(|| index.to_string())
-}
-
-/// The place of the element that is called `key`.
-fn index_of(fields: &Fields, key: &str, length: usize) -> Option<usize> {
-    match names(fields, length) {
-        Some(names) => names.iter().position(|name| name == key),
-        None => key.parse().ok().filter(|index| *index < length),
-    }
+/// The names that messages bear themselves, where each has one of its own.
+fn own_names(messages: &[Value]) -> Option<Vec<String>> {
+    const NAMES: [&str; 5] = ["name", "joint", "label", "id", "child_frame_id"];
+    let name = |message: &Value| {
+        let Value::Message(fields) = message else { return None };
+        fields.iter().find_map(|(field, value)| match value {
+            Value::String(name) if NAMES.contains(&field.as_str()) || field.ends_with("_name") => {
+                Some(name.clone()).filter(|name| !name.is_empty())
+            }
+            _ => None,
+        })
+    };
+    let names: Vec<String> = messages.iter().map(name).collect::<Option<_>>()?;
+    let different: BTreeSet<&String> = names.iter().collect();
+    (different.len() == names.len()).then_some(names)
 }
 
 fn scalar(value: &Value) -> Option<f64> {
@@ -299,6 +334,37 @@ mod tests {
             (2.5, "parts[arm].values[effort]"),
         ];
         assert_eq!(found, expected.map(|(value, text)| (value, text.to_owned())));
+    }
+
+    #[test]
+    fn names_further_out_and_within_elements_name_them() {
+        let text = |text: &str| Value::String(text.to_owned());
+        let message = |fields: &[(&str, Value)]| {
+            let fields = fields.iter().map(|(name, value)| ((*name).to_owned(), value.clone()));
+            Value::Message(fields.collect())
+        };
+        let numbers = |numbers: &[f64]| Value::PrimitiveSeq(PrimitiveArray::F64(numbers.to_vec()));
+        let joints = ["boom", "arm"].map(str::to_owned).to_vec();
+        let trajectory = |joints: &[String]| {
+            message(&[
+                ("joint_names", Value::PrimitiveSeq(PrimitiveArray::String(joints.to_vec()))),
+                ("points", Value::Sequence(vec![message(&[("velocities", numbers(&[1.0, 2.0]))])])),
+            ])
+        };
+        let found = fields(&trajectory(&joints));
+        let texts: Vec<&str> = found.iter().map(|field| field.text.as_str()).collect();
+        assert_eq!(texts, ["points[0].velocities[boom]", "points[0].velocities[arm]"]);
+        let turned: Vec<String> = joints.iter().rev().cloned().collect();
+        assert_eq!(found[0].number(&trajectory(&joints)), Some(1.0));
+        assert_eq!(found[0].number(&trajectory(&turned)), Some(2.0));
+        let axis =
+            |name: &str, angle| message(&[("name", text(name)), ("angle", Value::F64(angle))]);
+        let axes = |axes: Vec<Value>| message(&[("axes", Value::Sequence(axes))]);
+        let found = fields(&axes(vec![axis("boom", 1.0), axis("arm", 2.0)]));
+        assert_eq!(found[0].text, "axes[boom].angle");
+        assert_eq!(found[0].number(&axes(vec![axis("arm", 2.0), axis("boom", 3.0)])), Some(3.0));
+        let unnamed = fields(&axes(vec![axis("", 1.0), axis("", 2.0)]));
+        assert_eq!(unnamed[1].text, "axes[1].angle");
     }
 
     #[test]

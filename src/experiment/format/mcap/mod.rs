@@ -6,15 +6,18 @@
 //! definitions that the file itself holds.
 //!
 //! Topics come in their own time. The rows are the messages of the topic of the output; what
-//! comes from other topics is held from their latest message. Messages are read twice at
+//! comes from other topics is held from their latest message; of a slow output there are rows meanwhile.
+//! Messages are read twice at
 //! most: until each topic is known, and for their values, which are all that is kept.
 
 mod align;
+mod between;
 mod clock;
 mod columns;
 mod contents;
 mod decode;
 mod fault;
+mod later;
 mod lengths;
 mod message;
 mod pauses;

@@ -11,7 +11,7 @@ use crate::experiment::memory::{Budget, TooLarge};
 use crate::numerics::median;
 
 /// Memory of a number: itself, a copy, and what its vector has to spare.
-const NUMBER_SIZE: usize = 3 * size_of::<f64>();
+pub(super) const NUMBER_SIZE: usize = 3 * size_of::<f64>();
 
 /// The times and values of the messages of one topic.
 #[derive(Debug)]
@@ -22,8 +22,10 @@ pub(super) struct Series {
     pub(super) columns: Vec<Collected>,
     /// Messages that have none of the values.
     pub(super) empty: usize,
+    /// How long before their recording the messages are timed, at least, nanoseconds.
+    pub(super) least_lag: Option<i64>,
     /// Where each message stands among all in the file.
-    places: Vec<u32>,
+    pub(super) places: Vec<u32>,
 }
 
 /// The values of a field of the messages.
@@ -45,8 +47,8 @@ impl Collected {
 
 impl Series {
     pub(super) fn of(topic: usize, header: usize, field: &Field) -> Self {
-        let mut series =
-            Self { topic, times: Vec::new(), columns: Vec::new(), empty: 0, places: Vec::new() };
+        let (times, columns, places) = (Vec::new(), Vec::new(), Vec::new());
+        let mut series = Self { topic, times, columns, empty: 0, least_lag: None, places };
         series.add(header, field);
         series
     }
@@ -115,6 +117,7 @@ impl Series {
             times: self.times[run.clone()].to_vec(),
             columns: self.columns.iter().map(|column| column.part(run.clone())).collect(),
             empty: if number == 0 { self.empty } else { 0 },
+            least_lag: self.least_lag,
             places: self.places[run].to_vec(),
         };
         if starts.len() == 1 {
@@ -145,6 +148,7 @@ impl Series {
             let value = |index: &usize| column.values.get(*index).copied();
             column.values = order.iter().filter_map(value).collect();
         }
+        self.places = order.iter().filter_map(|index| self.places.get(*index).copied()).collect();
         self.times.sort_unstable();
     }
 }

@@ -23,14 +23,16 @@ const LARGEST_RECORD: u64 = 1 << 30;
 const RECORD_HEAD: usize = 9;
 
 /// Hands each record of a file of `size` bytes to `visit` until that breaks off, those in chunks
-/// one by one, with memory for one record.
+/// one by one, with memory for one record. Checksums of chunks and of all data are compared where the
+/// file has them.
 pub(super) fn each_record(
     file: impl Read,
     size: u64,
     budget: &Budget,
     visit: impl FnMut(Record<'_>) -> Result<ControlFlow<()>, Fault>,
 ) -> Result<(), Fault> {
-    each_from(file, size, LinearReaderOptions::default(), budget, visit)
+    let options = LinearReaderOptions::default().with_validate_data_section_crc(true);
+    each_from(file, size, options, budget, visit)
 }
 
 fn each_from(

@@ -50,7 +50,7 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
     let columns = reader.metadata().file_metadata().schema_descr().columns();
     let durations = durations::durations(&reader);
     let headers = columns.iter().map(|column| header(column, &durations)).collect();
-    let head = Head { path: path.to_owned(), headers, header_row: 0 };
+    let head = Head { path: path.to_owned(), headers, header_row: 0, unread: Vec::new() };
     Ok(OpenTable { head, rows: Box::new(Unread { reader, budget }) })
 }
 
