@@ -249,7 +249,7 @@ pub enum ReadError {
         joint: String,
     },
     /// A joint is read with another, with which something is wrong.
-    #[error("{}: as joint `{other}`, whose output is on the same topic", path.display())]
+    #[error("{}: it cannot be read, as joint `{other}`, whose output has the same clock", path.display())]
     AsOther {
         /// The log.
         path: PathBuf,

@@ -24,7 +24,8 @@ pub(super) fn grids(
     repair: Repair,
     number: &dyn Fn(usize, usize) -> u64,
 ) -> Result<(Vec<Grid>, Vec<String>), (usize, Fault)> {
-    let in_bursts: Vec<Option<Vec<f64>>> = trials.iter().map(|times| spread(times)).collect();
+    let in_bursts = trials.iter().map(|times| if is_uniform(times) { None } else { spread(times) });
+    let in_bursts: Vec<Option<Vec<f64>>> = in_bursts.collect();
     let even = trials.iter().zip(&in_bursts);
     let trials: Vec<&[f64]> = even.map(|(times, even)| even.as_deref().unwrap_or(times)).collect();
     let trials = trials.as_slice();

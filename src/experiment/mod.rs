@@ -55,6 +55,6 @@ pub use read::{Experiment, Failure, ReadOptions, expand_folders};
 pub use sampling::Repair;
 pub(crate) use saturation::saturations;
 pub use source::Source;
-pub(crate) use spikes::{joint_without_spikes, spike_count, weights, without_spikes};
+pub(crate) use spikes::{Spikes, spike_count, without_spikes};
 pub use survey::{Role, Survey, SurveyedColumn};
 pub(crate) use table::LARGEST;

@@ -17,7 +17,7 @@ use super::period::is_period;
 use super::sampling::Repair;
 use super::source::{Source, source_of};
 use super::survey::Survey;
-use super::table::{Head, OpenTable, TrialRows};
+use super::table::{Head, OpenTable, Table, TrialRows};
 use super::time_column::{find_time_column, note_on_times};
 use crate::units::SamplePeriod;
 
@@ -265,30 +265,41 @@ fn read_log(
     let unequal = layout.without_unequal(&table.head, |column| table.rows.rows_of(column));
     found.failures.extend(unequal.into_iter().map(failed));
     let mut next = Some(table);
-    let layouts = layout.by_clock();
-    let is_one = layouts.len() == 1;
-    for layout in layouts {
+    let mut failed_clocks = Vec::new();
+    for layout in layout.by_clock() {
         // Each clock has rows of its own, and is read in a pass of its own.
         let table = next.take().map_or_else(open, Ok)?;
-        let read = found.read_clock(table, &layout, stem, options.repair, budget);
-        match (read, layout.joints.split_first()) {
-            (Err(error), Some((first, others))) if !is_one => {
-                // What is wrong with one costs no other its rows.
-                let names = others.iter().map(|joint| joint.name.clone());
-                let as_first = |name: String| {
-                    let (path, other) = (path.to_owned(), first.name.clone());
-                    (name, ReadError::AsOther { path, other })
-                };
-                found.failures.extend(names.map(as_first).map(failed));
-                found.failures.push(failed((first.name.clone(), error)));
-            }
-            (read, _) => read?,
+        if let Err(error) = found.read_clock(table, &layout, stem, options.repair, budget) {
+            failed_clocks.push((layout.joints, error));
         }
     }
-    if found.sources.is_empty() {
-        found.sources.push(source_of(path)?);
+    if found.joints.is_empty() && !failed_clocks.is_empty() {
+        return Err(failed_clocks.swap_remove(0).1);
+    }
+    // What is wrong with the rows of one clock costs the joints of no other theirs.
+    for (joints, error) in failed_clocks {
+        let Some((first, others)) = joints.split_first() else { return Err(error) };
+        let as_first = |joint: &JointLayout| {
+            let (path, other) = (path.to_owned(), first.name.clone());
+            failed((joint.name.clone(), ReadError::AsOther { path, other }))
+        };
+        found.failures.push(failed((first.name.clone(), error)));
+        found.failures.extend(others.iter().map(as_first));
     }
     Ok(found)
+}
+
+/// Adds to whole seconds what stands in a column of its own.
+fn add_rest_of_times(table: &mut Table, head: &Head, layout: &Layout, numeric: &[usize]) {
+    let place = |column: usize| numeric.binary_search(&column).ok();
+    let name = |column: usize| head.headers.get(column).map_or("", |header| &header.text);
+    let of = |time: usize| {
+        let (rest, unit_s) = layout.time_rest?;
+        Some(((place(time)?, place(rest)?), unit_s, [name(time), name(rest)]))
+    };
+    if let Some((places, unit_s, names)) = layout.time.column().and_then(of) {
+        table.add_to_times(places, unit_s, names, &head.path);
+    }
 }
 
 /// What every column means, and the joints that are not to be had.
@@ -363,13 +374,7 @@ impl Experiment {
         }
         let numeric = layout.numeric_columns();
         let mut table = table.read(&numeric, layout.trial, layout.time_column(), layout.clock())?;
-        let place = |column: usize| numeric.binary_search(&column).ok();
-        if let Some((time, rest, unit_s)) = layout.time.column().and_then(place).and_then(|time| {
-            let (rest, unit_s) = layout.time_rest?;
-            Some((time, place(rest)?, unit_s))
-        }) {
-            table.add(time, rest, unit_s);
-        }
+        add_rest_of_times(&mut table, &head, layout, &numeric);
         if !repair.as_it_stands {
             table.oldest_first(layout.place_of_time(&numeric), &head.path);
         }

@@ -41,19 +41,22 @@ fn rows_of_a_reading(values: &[f64], trials: &[Range<usize>]) -> Option<usize> {
     const ONE: f64 = 0.5;
     /// How much larger large changes are than small ones, at least.
     const APART: f64 = 3.0;
+    let trials = || trials.iter().filter_map(|trial| values.get(trial.clone()));
+    let is_new = |pair: &&[f64]| (pair[1] - pair[0]).abs() > 0.0;
+    // Of most outputs every sample is a new one.
+    let new = trials().flat_map(|values| values.windows(2)).filter(is_new).count();
+    if new <= FEWEST || new * FEWEST_ROWS > values.len() {
+        return None;
+    }
     let (mut intervals, mut changes) = (Vec::new(), Vec::new());
-    for values in trials.iter().filter_map(|trial| values.get(trial.clone())) {
-        let pairs = values.windows(2).enumerate();
-        let changed = pairs.filter(|(_, pair)| (pair[1] - pair[0]).abs() > 0.0);
+    for values in trials() {
+        let changed = values.windows(2).enumerate().filter(|(_, pair)| is_new(pair));
         let mut before = None;
         for (row, pair) in changed {
             intervals.extend(before.map(|before| row - before));
             changes.push((pair[1] - pair[0]).abs());
             before = Some(row);
         }
-    }
-    if intervals.len() < FEWEST {
-        return None;
     }
     let of = |part: f64| {
         let mut sorted = intervals.clone();

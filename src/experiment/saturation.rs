@@ -25,12 +25,6 @@ pub(crate) fn saturations(trials: &[Trial]) -> Vec<Saturation> {
     let outputs = || trials.iter().flat_map(Trial::output).copied();
     let (low, high) = outputs().fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
     let is_at = |end: f64, value: f64| (value - end).abs() <= 0.0;
-    let pairs = || trials.iter().flat_map(|trial| trial.output().windows(2));
-    let others = || pairs().filter(|pair| !(is_at(low, pair[1]) || is_at(high, pair[1])));
-    let still = others().filter(|pair| is_at(pair[0], pair[1])).count() as f64;
-    if high <= low || still > STILL * others().count() as f64 {
-        return Vec::new();
-    }
     let samples = outputs().count() as f64;
     let at = |end: f64| {
         let runs = trials.iter().flat_map(|trial| {
@@ -41,7 +35,15 @@ pub(crate) fn saturations(trials: &[Trial]) -> Vec<Saturation> {
         let share = inside as f64 / samples;
         (count >= FEWEST && share >= SHARE).then_some(Saturation { at: end, share })
     };
-    [low, high].into_iter().filter_map(at).collect()
+    let found: Vec<Saturation> = [low, high].into_iter().filter_map(at).collect();
+    if found.is_empty() {
+        return found;
+    }
+    let pairs = || trials.iter().flat_map(|trial| trial.output().windows(2));
+    let others = || pairs().filter(|pair| !(is_at(low, pair[1]) || is_at(high, pair[1])));
+    let still = others().filter(|pair| is_at(pair[0], pair[1])).count() as f64;
+    let has_noise = high > low && still <= STILL * others().count() as f64;
+    if has_noise { found } else { Vec::new() }
 }
 
 #[cfg(test)]

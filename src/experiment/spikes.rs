@@ -22,21 +22,47 @@ const LONGEST: usize = 2;
 /// where differences show only half of a noise with a memory.
 const BEYOND: f64 = 8.0;
 
-/// For each trial the weights of its samples, 0 for spikes and for what was filled in where nothing
-/// was logged or measured, and 1 for others; `None` where all are 1.
-pub(crate) fn weights(trials: &[Trial]) -> Option<Vec<Vec<f64>>> {
-    let noise = noise(trials);
-    let found: Vec<_> = trials.iter().map(|trial| spikes(trial.output(), noise)).collect();
-    let of = |(trial, spikes): (&Trial, &Vec<Range<usize>>)| {
-        let mut weights = vec![1.0; trial.output().len()];
-        for range in spikes.iter().chain(trial.unlogged()).chain(trial.interpolated()) {
-            weights[range.clone()].fill(0.0);
+/// The spikes in the trials of a joint, whose sensor has one noise.
+pub(crate) struct Spikes(Vec<Vec<Range<usize>>>);
+
+impl Spikes {
+    pub(crate) fn of(trials: &[Trial]) -> Self {
+        let noise = noise(trials);
+        Self(trials.iter().map(|trial| spikes(trial.output(), noise)).collect())
+    }
+
+    /// For each of the `trials` the weights of its samples, 0 for spikes and for what was filled in where
+    /// nothing was logged or measured, and 1 for others; `None` where all are 1.
+    pub(crate) fn weights(&self, trials: &[Trial]) -> Option<Vec<Vec<f64>>> {
+        let without = |(trial, spikes): (&Trial, &Vec<Range<usize>>)| -> Vec<Range<usize>> {
+            let filled = trial.unlogged().iter().chain(trial.interpolated());
+            spikes.iter().chain(filled).cloned().collect()
+        };
+        let without: Vec<_> = trials.iter().zip(&self.0).map(without).collect();
+        let of = |(trial, without): (&Trial, &Vec<Range<usize>>)| {
+            let mut weights = vec![1.0; trial.len()];
+            for range in without {
+                weights[range.clone()].fill(0.0);
+            }
+            weights
+        };
+        let any = without.iter().any(|ranges| !ranges.is_empty());
+        any.then(|| trials.iter().zip(&without).map(of).collect())
+    }
+
+    /// `joint` with lines in the place of the spikes of its output, so that they are no part of its range
+    /// either; none where it has no spike.
+    pub(crate) fn taken_out(&self, joint: &Joint) -> Option<Joint> {
+        if self.0.iter().all(Vec::is_empty) {
+            return None;
         }
-        weights
-    };
-    let any = found.iter().any(|spikes| !spikes.is_empty())
-        || trials.iter().any(|t| !(t.unlogged().is_empty() && t.interpolated().is_empty()));
-    any.then(|| trials.iter().zip(&found).map(of).collect())
+        let mut joint = joint.clone();
+        for (trial, spikes) in joint.trials.iter_mut().zip(&self.0) {
+            let mended = with_lines(trial.output(), spikes);
+            trial.set_output(mended);
+        }
+        Some(joint)
+    }
 }
 
 /// Samples of `trial` that are spikes.
@@ -48,34 +74,14 @@ pub(crate) fn spike_count(trial: &Trial) -> usize {
 
 /// The output of `trial` with lines in the place of its spikes; none where it has no spike.
 pub(crate) fn without_spikes(trial: &Trial) -> Option<Vec<f64>> {
-    mended(trial.output(), noise(std::slice::from_ref(trial)))
+    let spikes = spikes(trial.output(), noise(std::slice::from_ref(trial)));
+    (!spikes.is_empty()).then(|| with_lines(trial.output(), &spikes))
 }
 
-/// `joint` with lines in the place of the spikes of its output, so that they are no part of its range
-/// either; none where it has no spike.
-pub(crate) fn joint_without_spikes(joint: &Joint) -> Option<Joint> {
-    let noise = noise(&joint.trials);
-    let outputs: Vec<_> = joint.trials.iter().map(|trial| mended(trial.output(), noise)).collect();
-    if outputs.iter().all(Option::is_none) {
-        return None;
-    }
-    let mut joint = joint.clone();
-    for (trial, output) in joint.trials.iter_mut().zip(outputs) {
-        if let Some(output) = output {
-            trial.set_output(output);
-        }
-    }
-    Some(joint)
-}
-
-/// `output` with lines in the place of its spikes; none where it has no spike.
-fn mended(output: &[f64], noise: f64) -> Option<Vec<f64>> {
-    let spikes = spikes(output, noise);
-    if spikes.is_empty() {
-        return None;
-    }
+/// `output` with lines in the place of its `spikes`.
+fn with_lines(output: &[f64], spikes: &[Range<usize>]) -> Vec<f64> {
     let mut mended = output.to_vec();
-    for Range { start, end } in spikes {
+    for &Range { start, end } in spikes {
         // A spike is never at an end of a trial.
         let (from, to) = (mended[start - 1], output[end]);
         let step = (to - from) / (end - start + 1) as f64;
@@ -83,7 +89,7 @@ fn mended(output: &[f64], noise: f64) -> Option<Vec<f64>> {
             *value = from + step * (k + 1) as f64;
         }
     }
-    Some(mended)
+    mended
 }
 
 /// Standard deviation of the sensor's noise: from differences of the second order, which leave

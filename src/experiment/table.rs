@@ -77,7 +77,11 @@ impl Head {
     pub(super) fn names(&self) -> String {
         let names = listed(self.headers.iter().map(|header| header.text.as_str()));
         let unread = listed(self.unread.iter().map(String::as_str));
-        if unread.is_empty() { names } else { format!("{names}; it cannot be read: {unread}") }
+        if unread.is_empty() {
+            names
+        } else {
+            format!("{names}; topics that cannot be read: {unread}")
+        }
     }
 }
 
@@ -193,19 +197,28 @@ impl Table {
         self.notes.push(format!("{}: {note}", path.display()));
     }
 
-    /// Adds to the whole seconds in the column at `place` those at `rest`, which are parts of one in `unit`s;
-    /// nothing where they are more: then each says the time by itself.
-    pub(super) fn add(&mut self, place: usize, rest: usize, unit: f64) {
+    /// Adds to the whole seconds in the column at `time` those at `rest`, which are parts of one in units of
+    /// `unit_s` seconds; nothing where they are more, so that each says the
+    /// time by itself.
+    pub(super) fn add_to_times(
+        &mut self,
+        (time, rest): (usize, usize),
+        unit_s: f64,
+        names: [&str; 2],
+        path: &Path,
+    ) {
         let Some(rest) = self.columns.get(rest).map(|column| column.values.clone()) else { return };
-        let Some(column) = self.columns.get_mut(place) else { return };
-        let is_part = |rest: &f64| rest.is_nan() || (0.0..1.0).contains(&(unit * rest));
+        let Some(column) = self.columns.get_mut(time) else { return };
+        let is_part = |rest: &f64| rest.is_nan() || (0.0..1.0).contains(&(unit_s * rest));
         let is_whole = |value: &f64| value.is_nan() || value.fract() == 0.0;
-        if !(rest.iter().all(is_part) && column.values.iter().all(is_whole)) {
-            return;
+        let are_two = rest.iter().all(is_part) && column.values.iter().all(is_whole);
+        if are_two {
+            column.values.iter_mut().zip(rest).for_each(|(value, rest)| *value += unit_s * rest);
         }
-        for (value, rest) in column.values.iter_mut().zip(rest) {
-            *value += unit * rest;
-        }
+        let [whole, part] = names;
+        let and =
+            if are_two { format!(" and `{part}`") } else { format!("; `{part}` is not used") };
+        self.notes.push(format!("{}: the times are those in `{whole}`{and}", path.display()));
     }
 
     /// Leaves each reading of the `outputs` of joints, by their names and columns, in one row, where a

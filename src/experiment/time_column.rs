@@ -172,10 +172,6 @@ pub(super) fn note_on_times(head: &Head, column: usize) -> Option<String> {
     let used = named(column, header);
     let more = if names.len() > MOST { ", …" } else { "" };
     match names.as_slice() {
-        [] if rest.is_some() => {
-            let rest = rest.and_then(|rest| Some(named(rest, head.headers.get(rest)?)));
-            Some(format!("the times are those in {used} and {}", rest.unwrap_or_default()))
-        }
         [] if header.name == "T" => Some(format!("the times are those in {used}")),
         [] => None,
         [other] => Some(format!("the times are those in {used}; {other} is not used")),
@@ -307,8 +303,7 @@ mod tests {
             assert_eq!(rest_of_times(&head, 0), Some((2, unit_s)), "{whole}");
             assert_eq!(rest_of_times(&head, 1), None);
         }
-        let said = note(&["sec", "nanosec", "u"]);
-        assert_eq!(said.as_deref(), Some("the times are those in `sec` and `nanosec`"));
+        assert_eq!(note(&["sec", "nanosec", "u"]), None, "it is used");
     }
 
     #[test]

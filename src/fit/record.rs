@@ -15,7 +15,7 @@ use super::unlogged::commands;
 use super::window::{Horizon, Part, Split, Window, changes, cut, places, shorter};
 use crate::delay::{StepDelay, step_delays};
 use crate::effect::{RecordRange, SignalRange};
-use crate::experiment::{Joint, Trial, has_word, weights};
+use crate::experiment::{Joint, Spikes, Trial, has_word};
 use crate::model::{Arrivals, Commands, JointModel, Signals, Surroundings, coded_neutral};
 use crate::units::{floor_to_index, radians_in};
 
@@ -72,7 +72,8 @@ impl<'a> FitRecord<'a> {
     /// measured one where noise leaves it well known (to 1 % of the speeds in the record);
     /// else the simulation goes on with its own, and is steady where a trial begins.
     pub fn new(joint: &'a Joint, split: Split, horizon: Horizon) -> Self {
-        let (measured, mended) = (joint, mended(joint).map(Arc::new));
+        let (measured, spikes) = (joint, Spikes::of(&joint.trials));
+        let mended = mended(joint, &spikes).map(Arc::new);
         let joint = mended.as_deref().unwrap_or(measured);
         let horizon = horizon.of(joint);
         let windows = windows(joint, split, horizon);
@@ -98,7 +99,7 @@ impl<'a> FitRecord<'a> {
             spans,
             neutral,
             signals: Arc::new(signal_ranges(measured)),
-            weights: weights(&measured.trials).map(Arc::new),
+            weights: spikes.weights(&measured.trials).map(Arc::new),
         }
     }
 

@@ -82,20 +82,19 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
 
 /// A line on isolated spikes of the sensor, where they do not count.
 fn spikes(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
-    let spikes: usize = if estimate.settings.paper || estimate.settings.grows {
-        0
-    } else {
-        joint.trials.iter().map(spike_count).sum()
-    };
-    (spikes > 0).then(|| {
-        let samples = if spikes == 1 { "sample is an" } else { "samples are" };
-        let spike = if spikes == 1 { "isolated spike" } else { "isolated spikes" };
-        format!(
-            "joint `{}`: {spikes} {samples} {spike} of the sensor: interpolated where delays are \
-             estimated",
-            joint.name
-        )
-    })
+    let count = !(estimate.settings.paper || estimate.settings.grows);
+    let spikes = Some(joint).filter(|_| count).and_then(spikes_of)?;
+    Some(format!("{spikes}: interpolated where delays are estimated"))
+}
+
+/// That there are isolated spikes in the output of a joint, where there are any.
+pub(super) fn spikes_of(joint: &Joint) -> Option<String> {
+    let name = &joint.name;
+    match joint.trials.iter().map(spike_count).sum::<usize>() {
+        0 => None,
+        1 => Some(format!("joint `{name}`: 1 sample is an isolated spike of the sensor")),
+        count => Some(format!("joint `{name}`: {count} samples are isolated spikes of the sensor")),
+    }
 }
 
 /// A line on an output that stands at the end of its sensor's range.

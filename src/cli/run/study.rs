@@ -4,13 +4,13 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::estimates::{Estimates, estimated};
+use super::estimates::{Estimates, estimated, spikes_of};
 use super::session::Session;
 use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
 use crate::cli::output::{Contents, Detail};
 use crate::delay::{Settings, held_inputs};
-use crate::experiment::{Experiment, Joint, Other, spike_count};
+use crate::experiment::{Experiment, Joint, Other};
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::study::{OtherResult, others_of};
 
@@ -161,19 +161,11 @@ impl<T> Study<'_, T> {
 /// What models are not held against in the records of `joints`.
 fn notes_on_models(joints: &[Joint]) -> Vec<String> {
     let note = |joint: &Joint| {
-        let name = &joint.name;
-        let spikes: usize = joint.trials.iter().map(spike_count).sum();
-        let spikes = (spikes > 0).then(|| {
-            let samples = if spikes == 1 { "sample is an" } else { "samples are" };
-            let spike = if spikes == 1 { "isolated spike" } else { "isolated spikes" };
-            let them = if spikes == 1 { "it" } else { "them" };
-            format!(
-                "joint `{name}`: {spikes} {samples} {spike} of the sensor: no error counts {them}"
-            )
-        });
+        let spikes = spikes_of(joint).map(|spikes| format!("{spikes}, which no error counts"));
         let noise = held_inputs(&joint.trials).map(|_| {
             format!(
-                "joint `{name}`: the input has noise or glitches: models take the levels that it holds"
+                "joint `{}`: the input has noise or glitches: models take the levels that it holds",
+                joint.name
             )
         });
         spikes.into_iter().chain(noise)

@@ -33,8 +33,8 @@ struct Format {
     open: fn(&Path, Budget) -> Result<OpenTable, ReadError>,
 }
 
-/// All formats. The last one is text, which any bytes may be.
-const FORMATS: [Format; 13] = [
+/// All formats that are read. The last one is text, which any bytes may be.
+const FORMATS: [Format; 5] = [
     Format {
         name: "Parquet",
         endings: &[".parquet", ".pq"],
@@ -76,93 +76,63 @@ const FORMATS: [Format; 13] = [
         open: |path, _| workbook(path, left_out(path, "XLSX", "xlsx")),
     },
     Format {
-        name: "rosbag2 in SQLite",
-        endings: &[],
-        starts: |start| start.starts_with(b"SQLite format 3\0"),
-        remedy: "",
-        open: |path, _| {
-            let remedy = "convert it to MCAP: `ros2 bag convert -i BAG -o out.yaml`, with \
-                          `storage_id: mcap` in out.yaml";
-            Err(unread(path, "a log", "it is an SQLite database, as rosbag2 writes", remedy))
-        },
-    },
-    Format {
-        name: "ROS 1",
-        endings: &[],
-        starts: |start| start.starts_with(b"#ROSBAG V"),
-        remedy: "",
-        open: |path, _| {
-            let remedy = "convert it to MCAP: `mcap convert in.bag out.mcap`";
-            Err(unread(path, "a log", "it is a recording of ROS 1", remedy))
-        },
-    },
-    Format {
-        name: "XLS",
-        endings: &[],
-        starts: |start| start.starts_with(b"\xd0\xcf\x11\xe0"),
-        remedy: "",
-        open: |path, _| {
-            let remedy = "save it as .xlsx, or as CSV";
-            Err(unread(path, "a log", "it is a file of an old spreadsheet program", remedy))
-        },
-    },
-    Format {
-        name: "Feather",
-        endings: &[],
-        starts: |start| start.starts_with(b"ARROW1") || start.starts_with(b"FEA1"),
-        remedy: "",
-        open: |path, _| {
-            let remedy = "write it as Parquet: `pandas.read_feather(IN).to_parquet(OUT)`";
-            Err(unread(path, "a log", "it is a Feather file of Arrow", remedy))
-        },
-    },
-    Format {
-        name: "TDMS",
-        endings: &[],
-        starts: |start| start.starts_with(b"TDSm"),
-        remedy: "",
-        open: |path, _| {
-            let remedy = "export it as CSV, or convert it with npTDMS";
-            Err(unread(path, "a log", "it is a TDMS file of LabVIEW", remedy))
-        },
-    },
-    Format {
-        name: "MDF",
-        endings: &[],
-        starts: |start| start.starts_with(b"MDF     "),
-        remedy: "",
-        open: |path, _| {
-            let remedy = "export it as CSV, Parquet or .mat, with its own tool or asammdf";
-            Err(unread(path, "a log", "it is a measurement data file (MDF)", remedy))
-        },
-    },
-    Format {
-        name: "ULog",
-        endings: &[],
-        starts: |start| start.starts_with(b"ULog\x01\x12\x35"),
-        remedy: "",
-        open: |path, _| {
-            let remedy = "convert it to CSV with `ulog2csv`";
-            Err(unread(path, "a log", "it is a ULog file of PX4", remedy))
-        },
-    },
-    Format {
-        name: "packed",
-        endings: &[],
-        starts: is_packed,
-        remedy: "",
-        open: |path, _| {
-            let remedy =
-                "unpack it first; of packed files those of gzip are read, and chunks of MCAP";
-            Err(unread(path, "a log", "it is packed by zstd, xz, bzip2, lz4 or 7-Zip", remedy))
-        },
-    },
-    Format {
         name: "CSV",
         endings: &[".csv", ".tsv", ".txt", ".lvm", ".csv.gz", ".tsv.gz", ".txt.gz"],
         starts: |_| true,
         remedy: "write it as text",
         open: csv::open,
+    },
+];
+
+/// A format that is known by its first bytes, and not read.
+struct Foreign {
+    starts: fn(&[u8]) -> bool,
+    /// What a file of it is.
+    what: &'static str,
+    remedy: &'static str,
+}
+
+const FOREIGN: [Foreign; 8] = [
+    Foreign {
+        starts: |start| start.starts_with(b"SQLite format 3\0"),
+        what: "it is an SQLite database, as rosbag2 writes",
+        remedy: "convert it to MCAP: `ros2 bag convert -i BAG -o out.yaml`, with \
+                 `storage_id: mcap` in out.yaml",
+    },
+    Foreign {
+        starts: |start| start.starts_with(b"#ROSBAG V"),
+        what: "it is a recording of ROS 1",
+        remedy: "convert it to MCAP: `mcap convert in.bag out.mcap`",
+    },
+    Foreign {
+        starts: |start| start.starts_with(b"\xd0\xcf\x11\xe0"),
+        what: "it is a file of an old spreadsheet program",
+        remedy: "save it as .xlsx, or as CSV",
+    },
+    Foreign {
+        starts: |start| start.starts_with(b"ARROW1") || start.starts_with(b"FEA1"),
+        what: "it is a Feather file of Arrow",
+        remedy: "write it as Parquet: `pandas.read_feather(IN).to_parquet(OUT)`",
+    },
+    Foreign {
+        starts: |start| start.starts_with(b"TDSm"),
+        what: "it is a TDMS file of LabVIEW",
+        remedy: "export it as CSV, or convert it with npTDMS",
+    },
+    Foreign {
+        starts: |start| start.starts_with(b"MDF     "),
+        what: "it is a measurement data file (MDF)",
+        remedy: "export it as CSV, Parquet or .mat, with its own tool or asammdf",
+    },
+    Foreign {
+        starts: |start| start.starts_with(b"ULog\x01\x12\x35"),
+        what: "it is a ULog file of PX4",
+        remedy: "convert it to CSV with `ulog2csv`",
+    },
+    Foreign {
+        starts: is_packed,
+        what: "it is packed by zstd, xz, bzip2, lz4 or 7-Zip",
+        remedy: "unpack it first; of packed files those of gzip are read, and chunks of MCAP",
     },
 ];
 
@@ -211,6 +181,9 @@ fn open_any(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     if start.is_empty() {
         return Err(ReadError::Empty { path: path.to_owned() });
     }
+    if let Some(foreign) = foreign(&start) {
+        return Err(unread(path, "a log", foreign.what, foreign.remedy));
+    }
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let named = FORMATS.iter().find(|format| format.ends(&name));
     match FORMATS.iter().find(|format| (format.starts)(&start)) {
@@ -224,11 +197,16 @@ fn open_any(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     }
 }
 
+/// The format of a file that begins like this, where it is one that is not read.
+fn foreign(start: &[u8]) -> Option<&'static Foreign> {
+    FOREIGN.iter().find(|foreign| (foreign.starts)(start))
+}
+
 /// Whether a log that begins like this, or will be called so, is text.
 pub(in crate::experiment) fn is_text(path: &Path, start: &[u8]) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let other = |format: &&Format| format.ends(&name) || (format.starts)(start);
-    !is_gzip(start) && FORMATS.iter().filter(other).all(Format::is_text)
+    !is_gzip(start) && foreign(start).is_none() && FORMATS.iter().filter(other).all(Format::is_text)
 }
 
 impl Format {
@@ -259,8 +237,7 @@ pub(in crate::experiment) fn is_named_like_a_log(name: &str) -> bool {
 
 /// The formats that are read, for help: text first.
 pub(crate) fn format_names() -> String {
-    let read = FORMATS.iter().rev().filter(|format| !format.endings.is_empty());
-    read.map(|format| format.name).collect::<Vec<_>>().join(", ")
+    FORMATS.iter().rev().map(|format| format.name).collect::<Vec<_>>().join(", ")
 }
 
 /// How the names of logs end, for messages.
