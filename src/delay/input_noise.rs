@@ -17,6 +17,9 @@ pub(super) struct Levels<'a> {
     pub(super) reach: usize,
 }
 
+/// What an input may hold so briefly that hardly a joint moves, seconds.
+const BRIEF_S: f64 = 0.02;
+
 /// Part of the range that noise must stay below, and steps exceed.
 const OF_RANGE: f64 = 0.08;
 
@@ -25,48 +28,95 @@ impl<'a> Levels<'a> {
         /// The window of the median: well below the shortest hold.
         const WINDOW_S: f64 = 0.09;
         const SAMPLES: std::ops::RangeInclusive<usize> = 5..=15;
-        let as_it_is = |tolerance: f64| Self { values: Cow::Borrowed(input), tolerance, reach: 0 };
+        let exact = |values| Self { values, tolerance: 0.0, reach: 0 };
+        if let Some(values) = without_dropouts(input, period_s) {
+            return exact(Cow::Owned(values));
+        }
         let Some(noise) = noise(input) else {
-            let values = without_glitches(input).map_or(Cow::Borrowed(input), Cow::Owned);
-            return Self { values, tolerance: 0.0, reach: 0 };
+            return exact(without_glitches(input).map_or(Cow::Borrowed(input), Cow::Owned));
         };
-        let is_small = |noise: f64| {
-            let (low, high) = range(input);
-            noise < OF_RANGE * (high - low)
-        };
+        let input = without_spikes(input, noise, period_s).map_or(Cow::Borrowed(input), Cow::Owned);
+        let (low, high) = range(&input);
+        let is_small = |noise: f64| noise < OF_RANGE * (high - low);
         if is_small(noise) {
-            return as_it_is(noise);
+            return Self { tolerance: noise, ..exact(input) };
         }
         let window = in_samples(WINDOW_S, period_s).clamp(*SAMPLES.start(), *SAMPLES.end()) | 1;
         let tolerance = noise * left_by_median(window);
         if !is_small(tolerance) {
-            return as_it_is(0.0);
+            return exact(input);
         }
-        let values = Cow::Owned(running_median(input, window));
+        let values = Cow::Owned(running_median(&input, window));
         Self { values, tolerance, reach: window / 2 }
     }
 }
 
-/// Samples of an exact input that lie far beyond all others, as faults of a logger do, with the level
-/// before and behind them in their place; none where there are none.
+/// Single samples between two of one level.
+fn alone(input: &[f64]) -> impl Iterator<Item = usize> {
+    let comes_back = |k: &usize| (input[k + 1] - input[k - 1]).abs() <= 0.0;
+    let all = (1..input.len().saturating_sub(1)).filter(comes_back);
+    all.filter(|k| (input[*k] - input[*k - 1]).abs() > 0.0)
+}
+
+/// An input with the sample before each of its `faults` in the place of it; none where there are none.
+fn mended(input: &[f64], faults: impl Iterator<Item = usize>) -> Option<Vec<f64>> {
+    let mut mended: Option<Vec<f64>> = None;
+    for fault in faults {
+        mended.get_or_insert_with(|| input.to_vec())[fault] = input[fault - 1];
+    }
+    mended
+}
+
+/// An exact input that holds its levels for long, without single samples of another one: so briefly that
+/// hardly a joint moves, as a logger drops a value.
+fn without_dropouts(input: &[f64], period_s: f64) -> Option<Vec<f64>> {
+    /// Samples of other holds, but for one in ten: a value may be dropped beside an edge.
+    const LONG: usize = 10;
+    const SHORT: usize = 10;
+    let without = mended(input, alone(input).filter(|_| period_s <= BRIEF_S))?;
+    let holds = holds(&without);
+    let short = holds.iter().filter(|hold| **hold < LONG).count();
+    // What comes more often is noise or dither.
+    let are_few = alone(input).count() <= holds.len();
+    (are_few && SHORT * short <= holds.len()).then_some(without)
+}
+
+/// An input measured with noise without single samples that are off those before and behind them by more
+/// than the largest change that is noise, as a logger drops a value; none where there are none, or many.
+fn without_spikes(input: &[f64], noise: f64, period_s: f64) -> Option<Vec<f64>> {
+    /// Samples to each, at least (chosen).
+    const SELDOM: usize = 100;
+    let is_spike = |k: &usize| {
+        let [before, at, behind] = [input[k - 1], input[*k], input[k + 1]];
+        (behind - before).abs() <= noise && (at - before).abs().min((at - behind).abs()) > noise
+    };
+    let inside = 1..input.len().saturating_sub(1);
+    let spikes: Vec<usize> = inside.filter(|_| period_s <= BRIEF_S).filter(is_spike).collect();
+    let are_few = SELDOM * spikes.len() <= input.len();
+    mended(input, spikes.into_iter().filter(|_| are_few))
+}
+
+/// An exact input without samples far beyond all others, as faults of a logger are.
 fn without_glitches(input: &[f64]) -> Option<Vec<f64>> {
     /// Parts of the samples that are beyond all others, at most, and times the range of these.
     const SELDOM: f64 = 1e-3;
     const BEYOND: f64 = 1.0;
-    let comes_back = |k: &usize| (input[k + 1] - input[k - 1]).abs() <= 0.0;
-    let alone = (1..input.len().saturating_sub(1)).filter(comes_back);
-    let alone: Vec<usize> = alone.filter(|k| (input[*k] - input[*k - 1]).abs() > 0.0).collect();
-    if alone.is_empty() {
-        return None;
-    }
+    alone(input).next()?;
     let (low, high) = (quantile(input, SELDOM)?, quantile(input, 1.0 - SELDOM)?);
     let room = BEYOND * (high - low);
     let is_far = |k: &usize| !(low - room..=high + room).contains(&input[*k]);
-    let mut mended: Option<Vec<f64>> = None;
-    for glitch in alone.into_iter().filter(is_far) {
-        mended.get_or_insert_with(|| input.to_vec())[glitch] = input[glitch - 1];
-    }
-    mended
+    mended(input, alone(input).filter(is_far))
+}
+
+/// Samples of each run of one level, but for those at the ends of the record and single samples on the way
+/// from one level to the next, as a logger that averages has them at an edge.
+fn holds(input: &[f64]) -> Vec<usize> {
+    let runs: Vec<&[f64]> = input.chunk_by(|a, b| (b - a).abs() <= 0.0).collect();
+    let is_edge = |three: &[&[f64]]| {
+        let [before, at, behind] = [three[0][0], three[1][0], three[2][0]];
+        three[1].len() == 1 && (at - before) * (behind - at) > 0.0
+    };
+    runs.windows(3).filter(|three| !is_edge(three)).map(|three| three[1].len()).collect()
 }
 
 /// The part of the standard deviation of normal noise that a median of so many samples has
@@ -197,6 +247,55 @@ mod tests {
         assert!(!InputMotion::of(std::slice::from_ref(&marred)).is_continuous());
         let steps = |trial: &Trial| trial_steps(trial, &Settings::default());
         assert_eq!(steps(&marred), steps(&clean));
+    }
+
+    #[test]
+    fn a_spike_in_a_measured_input_is_no_step() {
+        let clean = trial(stairs, 0.01);
+        for height in [0.8, 5.0, 40.0] {
+            let mut input = clean.input().to_vec();
+            input[3000] = height;
+            input[5555] = -height;
+            let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
+            let marred = Trial::new("1", 0.0, period, input.clone(), input).unwrap();
+            assert!(!InputMotion::of(std::slice::from_ref(&marred)).is_continuous(), "{height}");
+            let samples = |trial: &Trial| -> Vec<usize> {
+                let steps = trial_steps(trial, &Settings::default());
+                steps.iter().map(|step| step.sample).collect()
+            };
+            assert_eq!(samples(&marred), samples(&clean), "{height}");
+        }
+    }
+
+    #[test]
+    fn a_sample_that_was_not_logged_is_no_step() {
+        let clean = trial(stairs, 0.0);
+        let mut input = clean.input().to_vec();
+        for dropped in [200, 1033, 3000, 3500, 6100] {
+            input[dropped] = 0.0;
+        }
+        let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
+        let marred = Trial::new("1", 0.0, period, input.clone(), input).unwrap();
+        let steps = |trial: &Trial| trial_steps(trial, &Settings::default());
+        assert_eq!(steps(&marred), steps(&clean));
+        // One edge that a logger averaged, and a value that it dropped beside another.
+        let edges: Vec<usize> = clean
+            .input()
+            .windows(2)
+            .zip(1..)
+            .filter(|(pair, _)| pair[0] < pair[1])
+            .map(|(_, at)| at)
+            .collect();
+        let mut input = marred.input().to_vec();
+        input[edges[3]] = 0.5 * (input[edges[3] - 1] + input[edges[3] + 1]);
+        input[edges[5] + 1] = -7.0;
+        let averaged = Trial::new("1", 0.0, period, input.clone(), input).unwrap();
+        assert_eq!(steps(&averaged).len(), steps(&clean).len());
+        // A joint has the time to follow a tenth of a second.
+        let slow = SamplePeriod::from_seconds(0.1).unwrap();
+        let input = marred.input().to_vec();
+        let slow = Trial::new("1", 0.0, slow, input.clone(), input).unwrap();
+        assert!(steps(&slow).len() > steps(&clean).len());
     }
 
     #[test]

@@ -3,8 +3,11 @@
 //! A joint that is driven against its stop bends there as much as where it departed, and answers
 //! no step of the input.
 
+use std::cmp::Ordering;
+
 use super::hold::level_tolerance;
 use super::motion::{StepMotion, arrival};
+use super::neutral::Neutral;
 use super::prepared::Prepared;
 use super::steps::{InputStep, hold_ranges};
 use crate::experiment::Trial;
@@ -40,7 +43,16 @@ impl Stops {
         };
         let mut holds: Vec<_> = trials.iter().zip(steps).flat_map(of_trial).collect();
         holds.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let holds = driven(&holds, level_tolerance(trials));
+        let tolerance = level_tolerance(trials);
+        // Between levels that drive it one way and the other a joint is left alone.
+        let neutral = Neutral::within(trials, tolerance).filter(|neutral| {
+            let is_on =
+                |side: Ordering| holds.iter().any(|(level, _)| neutral.side(*level) == side);
+            is_on(Ordering::Less) && is_on(Ordering::Greater)
+        });
+        let is_neutral = |level: f64| neutral.is_some_and(|it| it.side(level) == Ordering::Equal);
+        holds.retain(|(level, _)| !is_neutral(*level));
+        let holds = driven(&holds, tolerance);
         let ends = || holds.iter().filter_map(|held| Some((held, end_of(held)?)));
         let levels = ends().filter_map(|(_, end)| median(end));
         let (low, high) = levels.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
@@ -49,7 +61,7 @@ impl Stops {
             let is_near = |y: &f64| (y - level).abs() <= NEAR * (high - low);
             let arrived = ends().filter(|(held, _)| !held.first().is_some_and(is_near));
             arrived
-                .filter(|(_, end)| end.iter().all(is_near))
+                .filter(|(held, end)| end.iter().all(is_near) && stands(held))
                 .filter_map(|(_, end)| median(end))
                 .collect()
         };
@@ -131,6 +143,23 @@ fn driven<'a>(holds: &[(f64, &'a [f64])], same: f64) -> Vec<&'a [f64]> {
     levels.flatten().map(|(_, held)| *held).collect()
 }
 
+/// Whether the output goes no longer at the end of a hold in which it went: of what a hold ends with by
+/// chance at the end of the range, it does.
+fn stands(held: &[f64]) -> bool {
+    /// Parts of a hold in which one goes, and the part of its fastest in which it stands.
+    const PARTS: usize = 10;
+    const STILL: f64 = 0.25;
+    let length = STANDING.max(held.len() / PARTS);
+    let way = |part: &[f64]| {
+        let (first, second) = part.split_at(part.len() / 2);
+        Some((median(second)? - median(first)?).abs())
+    };
+    let parts = held.rchunks(length).filter(|part| part.len() == length);
+    let ways: Vec<f64> = parts.filter_map(way).collect();
+    let fastest = ways.iter().copied().fold(0.0, f64::max);
+    ways.first().is_some_and(|last| *last <= STILL * fastest)
+}
+
 /// The last samples of a hold.
 fn end_of<'a>(held: &&'a [f64]) -> Option<&'a [f64]> {
     held.get(held.len().checked_sub(STANDING)?..)
@@ -182,6 +211,16 @@ mod tests {
         let delays: Vec<f64> = found.decisions.iter().filter_map(Decision::delay).collect();
         let is_right = |delay: &&f64| (**delay - DELAY as f64).abs() <= 5.0;
         assert!(delays.iter().filter(is_right).count() > 36, "{delays:?}");
+    }
+
+    #[test]
+    fn a_joint_that_is_switched_off_where_it_began_shows_none() {
+        for (speed, hold) in [(1.0, 150), (0.3, 150), (0.3, 300)] {
+            let levels: Vec<f64> = (0..42).map(|k| speed * [1.0, -1.0, 0.0][k % 3]).collect();
+            let trial = between_stops(&levels, hold);
+            let steps = super::super::steps::input_steps(trial.input(), 0.0);
+            assert_eq!(Stops::of(std::slice::from_ref(&trial), &[steps]), None, "{speed}");
+        }
     }
 
     #[test]

@@ -72,6 +72,10 @@ fn finding(found: &DeadTime) -> String {
         Finding::Unknown(Unknown::NotExplained) => {
             "no dead time: the input does not explain what the output does".to_owned()
         }
+        Finding::Unknown(Unknown::OneFrequency(hz)) => format!(
+            "no dead time: the input is a sine of {hz:.3} Hz alone, whose phase a lag explains as well as \
+             a dead time does; drive the joint at several frequencies, or in steps"
+        ),
         Finding::Unknown(Unknown::TooLong(longest_s)) => format!(
             "no dead time: it would be longer than the {longest_s:.3} s that are looked through; \
              `--max-delay` looks further"

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::curve::Curve;
+use super::excitation::one_frequency;
 use super::feedback::feedback;
 use super::profile::Profile;
 use super::record::{Samples, Whitened, averaged};
@@ -134,6 +135,9 @@ pub fn dead_time(trials: &[Trial], settings: &Settings) -> DeadTime {
     let rows = record.rows(ENOUGH);
     if rows.iter().flatten().map(ExactSizeIterator::len).sum::<usize>() < FEWEST {
         return unknown(Unknown::TooShort, confidence);
+    }
+    if let Some(cycles) = one_frequency(&record.inputs) {
+        return unknown(Unknown::OneFrequency(cycles / record.period_s), confidence);
     }
     let (filter, start) = noise(&record, &rows);
     if start.is_none() {

@@ -5,9 +5,10 @@
 //!
 //! Here, `response` is the structure in recursions, `curve` the static curve before it,
 //! `record` and `moments` the regression, `search` and `profile` its minimum, `uncertainty`
-//! the interval, `windows` and `feedback` what their names say.
+//! the interval, `excitation`, `windows` and `feedback` what their names say.
 
 mod curve;
+mod excitation;
 mod feedback;
 mod fit;
 mod moments;

@@ -53,6 +53,8 @@ pub enum Unknown {
     TooShort,
     /// What the output does is not explained by the input at any delay.
     NotExplained,
+    /// The input is a sine of this frequency, Hz: a lag explains its phase as a dead time does.
+    OneFrequency(f64),
     /// Longer than any dead time that is tried, in seconds.
     TooLong(f64),
 }

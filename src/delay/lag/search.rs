@@ -72,8 +72,25 @@ impl<'a> LagSearch<'a> {
         /// Times the median of the squared error per degree of freedom: with eight degrees
         /// noise alone exceeds it in one of two million windows (χ² tail).
         const OUTLYING: f64 = 6.0;
+        self.trim_beyond(OUTLYING)
+    }
+
+    /// Leaves out, before the lag is moved, windows in which plainly something else happened, as a joint
+    /// that is moved by hand: one of them draws the lag of all to itself.
+    fn trim_events(mut self) -> Self {
+        /// Times the median (chosen): behind a lag that is not known yet the errors are as the squares of
+        /// the changes of speed, a change three times that of most ten times theirs.
+        const EVENT: f64 = 100.0;
+        self.regress(FINE);
+        self.trim_beyond(EVENT)
+    }
+
+    /// Leaves out windows whose squared error per degree of freedom is beyond so many times the median;
+    /// rounding is none.
+    fn trim_beyond(&self, times: f64) -> Self {
         let levels = self.levels();
-        let most = OUTLYING * median(&levels).unwrap_or(0.0);
+        let rounding = ROUNDING * self.power / self.samples().max(1.0);
+        let most = (times * median(&levels).unwrap_or(0.0)).max(rounding);
         self.subset(&levels.iter().map(|level| *level <= most).collect::<Vec<_>>())
     }
 
@@ -157,7 +174,7 @@ impl<'a> LagSearch<'a> {
     /// The least squared error near a lag that is almost right, without outliers; or a simpler
     /// lag, where onsets that are known better no longer speak for all of its poles.
     pub(crate) fn refit(self) -> Self {
-        let usual = self.minimise(1).trim_outliers().with_its_noise();
+        let usual = self.trim_events().minimise(1).trim_outliers().with_its_noise();
         let simpler = usual.model.simpler().into_iter();
         let rivals: Vec<_> = simpler.map(|model| usual.with_lag(model).minimise(STEPS)).collect();
         let better = |best: Self, rival: Self| {
@@ -273,9 +290,10 @@ impl<'a> LagSearch<'a> {
 
     /// The best lag: no poles, a real one, a pair, or all three.
     pub(crate) fn select(self) -> Self {
-        let mut white = self.of_each_order();
+        let joint = self.trim_events();
+        let mut white = joint.of_each_order();
         let usual = richest(&white).map(Self::trim_outliers);
-        if let Some(usual) = usual.filter(|usual| usual.windows.len() < self.windows.len()) {
+        if let Some(usual) = usual.filter(|usual| usual.windows.len() < joint.windows.len()) {
             // Each order was searched with the outliers among the windows.
             white = usual.with_lag(LagModel::NONE).of_each_order();
         }
@@ -287,13 +305,13 @@ impl<'a> LagSearch<'a> {
             white
         };
         let best = all.into_iter().min_by(|a, b| a.criterion().total_cmp(&b.criterion()));
-        best.unwrap_or(self)
+        best.unwrap_or(joint)
     }
 
     /// The best lag of any kind from onsets that are about right behind the one at hand; a
     /// simpler one if it is worse by no more than the part `caution` of a squared error.
     pub(crate) fn reselected(self, caution: f64) -> Self {
-        let usual = self.minimise(1);
+        let usual = self.trim_events().minimise(1);
         let usual = usual.subset(&usual.plausible());
         let rivals = usual.whitened(usual.residual_noise()).rivals();
         let noise = richest(&rivals).map_or_else(NoiseModel::white, Self::residual_noise);

@@ -104,6 +104,7 @@ fn verdict(found: &DeadTime) -> &'static str {
         Finding::LagOnly(_) => "lag_without_dead_time",
         Finding::Unknown(Unknown::TooShort) => "too_short",
         Finding::Unknown(Unknown::NotExplained) => "not_explained",
+        Finding::Unknown(Unknown::OneFrequency(_)) => "one_frequency",
         Finding::Unknown(Unknown::TooLong(_)) => "too_long",
     }
 }
