@@ -96,6 +96,23 @@ fn a_text_of_a_model_file_becomes_no_code() {
 }
 
 #[test]
+#[cfg(unix)]
+fn the_name_of_a_log_moves_no_cursor_where_delays_are_exported() {
+    let folder = TempDir::new().unwrap();
+    let log = "a\u{1b}[31m\u{202e}b.csv";
+    fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/data/manipulator.csv"), folder.path().join(log))
+        .unwrap();
+    for name in ["out.c", "out.m", "out.py"] {
+        let arguments = ["estimate", log, "--joint", "shoulder_pitch", "--export", name];
+        let output = tauscope(folder.path(), &arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = fs::read_to_string(folder.path().join(name)).unwrap();
+        assert!(text.contains("31m"), "{text}");
+        assert!(!text.contains(['\u{1b}', '\u{202e}']), "{name}");
+    }
+}
+
+#[test]
 fn a_model_that_gives_no_finite_numbers_is_refused_and_nothing_is_written() {
     let folder = TempDir::new().unwrap();
     let add = ["add", "gravity_load", LOG, "--joint", "boom", "-m", "model.toml", "-w", "new.toml"];

@@ -11,6 +11,8 @@ use std::process::{Child, ChildStdout, Stdio};
 use std::time::Duration;
 
 use desk::{Desk, banded, joint};
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use serde_json::Value;
 
 /// A log that is written in pieces while the program follows it.
@@ -95,6 +97,20 @@ fn decisions_come_while_the_log_grows_and_are_those_of_the_whole_log() {
         assert_eq!(cells[16], text("verdict"), "{row}");
     }
     assert_eq!(desk.read("followed.csv"), whole);
+}
+
+#[test]
+fn a_log_that_is_no_text_is_read_to_its_last_byte() {
+    let desk = Desk::with(vec![joint("boom")]);
+    let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+    packed.write_all(desk.read("log.csv").as_bytes()).unwrap();
+    let packed = packed.finish().unwrap();
+    assert_ne!(packed.last(), Some(&b'\n'));
+    std::fs::write(desk.folder.path().join("grows.csv.gz"), packed).unwrap();
+    let output = desk.run("estimate grows.csv.gz --follow --idle 0 --beta 2");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && !said.contains("waiting"), "{said}");
+    assert!(String::from_utf8(output.stdout).unwrap().lines().count() > 15);
 }
 
 #[test]

@@ -45,6 +45,12 @@ fn on_reading(error: &ReadError) -> String {
             "; `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN` says which are those of a joint, and \
              `tauscope columns` which they may be"
         }
+        ReadError::NoTime { index: Some(index), .. } => {
+            return format!(
+                "; `--time '{index}'` takes the first column, which has no name of its own, or give the \
+                 period with `--sample-period SECONDS`"
+            );
+        }
         ReadError::NoTime { .. } => {
             "; name one with `--time COLUMN`, or give the period with `--sample-period SECONDS`"
         }

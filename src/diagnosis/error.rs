@@ -8,13 +8,18 @@ pub struct ErrorFigures {
     /// Root of the mean squared residual, output units.
     pub rmse: f64,
     /// `100 · (1 − ‖y − ŷ‖ / ‖y − mean(y)‖)`: 100 for a perfect model, 0 for one that is
-    /// no better than the mean of each window.
+    /// no better than the mean of each window; −∞ of an output that stands still.
     pub fit_percent: f64,
     /// Largest residual, output units.
     pub max: f64,
 }
 
 impl ErrorFigures {
+    /// The fit as it is shown: `88.2 %`; none of an output that stands still.
+    pub(crate) fn fit_text(&self) -> Option<String> {
+        Some(self.fit_percent).filter(|fit| fit.is_finite()).map(|fit| format!("{fit:.1} %"))
+    }
+
     /// The error of an evaluated model on `part`; `None` where it has no sample.
     pub fn of(record: &FitRecord<'_>, evaluation: &Evaluation, part: Part) -> Option<Self> {
         Self::over(record, evaluation, record.part(part))
@@ -48,7 +53,10 @@ impl ErrorFigures {
             let mean = measured.iter().sum::<f64>() / measured.len() as f64;
             spread += measured.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>();
         }
-        let fit_percent = 100.0 * (1.0 - (squares / spread.max(f64::MIN_POSITIVE)).sqrt());
+        let fit_percent = match spread {
+            moves if moves > 0.0 => 100.0 * (1.0 - (squares / moves).sqrt()),
+            _ => f64::NEG_INFINITY,
+        };
         (samples > 0).then(|| Self { rmse: (squares / samples as f64).sqrt(), fit_percent, max })
     }
 }

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{Error, ErrorKind, Read as _};
 use std::path::Path;
 
+use super::format::text_of;
+
 /// Bytes that nobody writes by hand.
 const MOST: u64 = 64 << 20;
 
@@ -19,6 +21,18 @@ pub(crate) fn read_text(path: &Path) -> std::io::Result<String> {
     read_text_to(path, MOST)
 }
 
+/// The text of a table that somebody filled in, as a spreadsheet program writes it: UTF-8, UTF-16 or
+/// Windows-1252.
+///
+/// # Errors
+/// What the system says; [`ErrorKind::InvalidData`] for what is longer than 64 MB, or is no text.
+pub(crate) fn read_sheet(path: &Path) -> std::io::Result<String> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(MOST + 1).read_to_end(&mut bytes)?;
+    check_length(bytes.len(), MOST)?;
+    text_of(bytes).ok_or_else(|| Error::new(ErrorKind::InvalidData, "it is no text"))
+}
+
 /// The text of a file that this program wrote, or another one in its form, as [`read_text`] gives it.
 ///
 /// # Errors
@@ -30,11 +44,16 @@ pub(crate) fn read_result(path: &Path) -> std::io::Result<String> {
 fn read_text_to(path: &Path, most: u64) -> std::io::Result<String> {
     let mut text = String::new();
     File::open(path)?.take(most + 1).read_to_string(&mut text)?;
-    if text.len() as u64 > most {
-        let reason = format!("it holds more than {} MB, so it is no such file", most >> 20);
-        return Err(Error::new(ErrorKind::InvalidData, reason));
-    }
+    check_length(text.len(), most)?;
     Ok(text)
+}
+
+fn check_length(bytes: usize, most: u64) -> std::io::Result<()> {
+    if bytes as u64 <= most {
+        return Ok(());
+    }
+    let reason = format!("it holds more than {} MB, so it is no such file", most >> 20);
+    Err(Error::new(ErrorKind::InvalidData, reason))
 }
 
 #[cfg(test)]

@@ -316,13 +316,18 @@ pub enum ReadError {
     },
     /// The log has no time, and no sample period was given.
     #[error(
-        "{}{}: no time column (`time_s`, `t_s`, `time` or `t`)", path.display(), header(*row)
+        "{}{}: no time column (`time_s`, `t_s`, `time` or `t`); found {available}",
+        path.display(), header(*row)
     )]
     NoTime {
         /// The log.
         path: PathBuf,
         /// Line of the header.
         row: u64,
+        /// The columns that are there.
+        available: String,
+        /// The first column, where it has the name that programs give to an index without one.
+        index: Option<String>,
     },
     /// The sample period is none that a log can have.
     #[error("{}: a sample period of {seconds} s is not one from 1e-9 to 1e8 s", path.display())]

@@ -200,14 +200,26 @@ impl Findings<'_> {
         Some((count, (self.number)(trial, row)))
     }
 
+    /// Whether nothing is to be said of a clock but where it is cut.
+    fn is_only_cut(&self, trial: usize) -> bool {
+        /// Jitter, in periods, that is rounding.
+        const NONE: f64 = 1e-3;
+        let Some(clock) = self.clocks.get(trial).filter(|clock| clock.jitter < NONE) else {
+            return false;
+        };
+        match clock.evenness {
+            Evenness::Jitters => true,
+            Evenness::Uneven => clock.gaps.is_some() && self.on_rates(&[trial]).is_none(),
+            Evenness::Rounded { .. } => false,
+        }
+    }
+
     /// A line on each rate and kind of clock.
     fn on_periods(&self) -> Vec<String> {
         let kind = |index: usize| {
             let (clock, period) = (self.clocks.get(index)?, self.periods.get(index)?);
             let uniform = self.uniform.get(index).copied().unwrap_or_default();
-            // A clock that is only cut is reported where it is cut.
-            let even = clock.jitter < 1e-3 && clock.evenness == Evenness::Jitters;
-            (!uniform && !even).then_some((clock.evenness, *period))
+            (!uniform && !self.is_only_cut(index)).then_some((clock.evenness, *period))
         };
         let mut kinds: Vec<(Evenness, f64)> = Vec::new();
         for found in (0..self.clocks.len()).filter_map(kind) {
@@ -290,15 +302,18 @@ impl Findings<'_> {
     }
 
     fn on_gaps(&self) -> Option<String> {
-        let is_even = |clock: &&Clock| clock.evenness != Evenness::Uneven;
-        // Uneven samples are interpolated anyhow.
-        let even = |clock: &Clock| {
-            let (many, _, row) = clock.gaps?;
-            (clock.evenness != Evenness::Uneven).then_some((many, row))
+        // Other uneven samples are interpolated anyhow.
+        let is_told = |trial: &usize| {
+            let even = self.clocks.get(*trial).map(|clock| clock.evenness != Evenness::Uneven);
+            even == Some(true) || self.is_only_cut(*trial)
         };
-        let (many, row) = self.first(even)?;
-        let longest = self.clocks.iter().filter(is_even).filter_map(|clock| clock.gaps);
-        let longest = longest.map(|(_, periods, _)| periods).max().unwrap_or_default();
+        let told = (0..self.clocks.len()).filter(is_told);
+        let told = told.filter_map(|trial| Some((trial, self.clocks.get(trial)?.gaps?)));
+        let told: Vec<(usize, (usize, usize, usize))> = told.collect();
+        let (trial, (_, _, row)) = *told.first()?;
+        let row = (self.number)(trial, row);
+        let many: usize = told.iter().map(|(_, (many, ..))| many).sum();
+        let longest = told.iter().map(|(_, (_, periods, _))| *periods).max()?;
         let gaps = if many == 1 { "gap" } else { "gaps" };
         Some(format!(
             "rows are lost in {many} {gaps} of up to {longest} periods (first before row {row}): \

@@ -346,8 +346,21 @@ fn find_time(
     }
     match find_time_column(head) {
         Some(column) => times(head, column, None),
-        None => Err(ReadError::NoTime { path: head.path.clone(), row: head.header_row }),
+        None => Err(ReadError::NoTime {
+            path: head.path.clone(),
+            row: head.header_row,
+            available: head.names(),
+            index: index_column(head),
+        }),
     }
+}
+
+/// The name of the first column, where it is that of an index which has none: pandas writes nothing or
+/// `__index_level_0__`, and reads `Unnamed: 0`.
+fn index_column(head: &Head) -> Option<String> {
+    let text = head.headers.first()?.text.as_str();
+    let is_index = text.is_empty() || text == "__index_level_0__" || text.starts_with("Unnamed: 0");
+    is_index.then(|| text.to_owned())
 }
 
 /// Columns among which a name is looked for that is nearly the one that is missing: each joint

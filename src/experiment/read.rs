@@ -1,6 +1,6 @@
 //! Logs into an [`Experiment`]; what cannot be read is listed beside what can.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -16,7 +16,7 @@ use super::names::on_one_line;
 use super::period::is_period;
 use super::sampling::Repair;
 use super::source::{Source, source_of};
-use super::survey::Survey;
+use super::survey::{Survey, further_joint};
 use super::table::{Head, OpenTable, Table, TrialRows};
 use super::time_column::{find_time_column, note_on_times};
 use crate::units::SamplePeriod;
@@ -166,7 +166,7 @@ fn unique_stem(path: &Path, taken: &[String]) -> String {
 /// Files as they are; of a folder its logs, known by their endings (`.csv`, `.xlsx`, `.parquet`,
 /// `.mat`, `.mcap` and others), sorted by name.
 ///
-/// Truth files (`*.truth.csv`) are no logs and are left out: of a folder, and beside logs, as
+/// Hidden files (`.*`) are left out. Truth files (`*.truth.csv`) are no logs and are left out: of a folder, and beside logs, as
 /// a shell's pattern `*.csv` names both.
 ///
 /// Beside the files, the folders that cannot be listed ([`ReadError::Io`]) or hold no log
@@ -236,7 +236,10 @@ fn folders_with_logs(path: &Path) -> Vec<PathBuf> {
 }
 
 fn is_log(path: &Path) -> bool {
-    is_named_like_a_log(&lower_name(path)) && !is_truth(path) && path.is_file()
+    let name = lower_name(path);
+    // As a shell's pattern does: `._run.csv` is what macOS says of a log, and none.
+    let is_hidden = name.starts_with('.');
+    !is_hidden && is_named_like_a_log(&name) && !is_truth(path) && path.is_file()
 }
 
 fn is_truth(path: &Path) -> bool {
@@ -326,8 +329,23 @@ pub(super) fn laid_out(
         ));
     }
     let note = layout.time.column().and_then(|column| note_on_times(head, column));
-    found.notes.extend(note.map(|note| format!("{}: {note}", head.path.display())));
+    let are_native = options.columns.joints.is_empty() && options.joints.is_empty();
+    let further = if are_native { note_on_further_joint(head, &layout) } else { None };
+    let notes = note.into_iter().chain(further);
+    found.notes.extend(notes.map(|note| format!("{}: {note}", head.path.display())));
     Ok((layout, found))
+}
+
+/// Says which columns look like a joint beside those with native names, and are not read.
+fn note_on_further_joint(head: &Head, layout: &Layout) -> Option<String> {
+    let mut taken: HashSet<usize> = layout.numeric_columns().into_iter().collect();
+    taken.extend(layout.trial);
+    let [input, output] = further_joint(head, &taken)?;
+    Some(format!(
+        "`{input}` and `{output}` look like a joint, but are not named like the others \
+         (`<joint>.input`, `<joint>.output`) and are not read: name the columns of all joints with \
+         `--columns`"
+    ))
 }
 
 /// What every column means in a log without native names, where `survey` is sure of it.

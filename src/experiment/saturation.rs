@@ -1,6 +1,7 @@
 //! Sensors and converters whose range ends before the motion does.
 
 use super::joint::Trial;
+use crate::numerics::robust_scale;
 
 /// Samples in a row at the end of a range that are no chance.
 const IN_A_ROW: usize = 5;
@@ -17,11 +18,14 @@ pub(crate) struct Saturation {
 /// The ends of its range at which the output of `trials` stands exactly, while it has noise elsewhere: a
 /// joint that rests at a stop has it there, too, or nowhere.
 pub(crate) fn saturations(trials: &[Trial]) -> Vec<Saturation> {
-    /// Stretches, and the part of the samples in them, at least; and the part of all other samples that
-    /// are as the one before, at most.
+    /// Stretches, or samples of a long one, and the part of all samples in them, at least.
     const FEWEST: usize = 3;
+    const LONG: usize = 50;
     const SHARE: f64 = 0.01;
+    /// The part of all other samples that are as the one before, at most, and counts of the sensor that
+    /// its noise has at least: with less a joint that rests shows none.
     const STILL: f64 = 0.05;
+    const COUNTS: f64 = 1.0;
     let outputs = || trials.iter().flat_map(Trial::output).copied();
     let (low, high) = outputs().fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
     let is_at = |end: f64, value: f64| (value - end).abs() <= 0.0;
@@ -31,9 +35,10 @@ pub(crate) fn saturations(trials: &[Trial]) -> Vec<Saturation> {
             trial.output().chunk_by(move |a, b| is_at(end, *a) && is_at(end, *b))
         });
         let runs = runs.map(<[f64]>::len).filter(|length| *length >= IN_A_ROW);
-        let (count, inside) = runs.fold((0, 0), |(count, all), length| (count + 1, all + length));
-        let share = inside as f64 / samples;
-        (count >= FEWEST && share >= SHARE).then_some(Saturation { at: end, share })
+        let runs: Vec<usize> = runs.collect();
+        let share = runs.iter().sum::<usize>() as f64 / samples;
+        let is_long = runs.len() >= FEWEST || runs.iter().any(|length| *length >= LONG);
+        (is_long && share >= SHARE).then_some(Saturation { at: end, share })
     };
     let found: Vec<Saturation> = [low, high].into_iter().filter_map(at).collect();
     if found.is_empty() {
@@ -42,8 +47,22 @@ pub(crate) fn saturations(trials: &[Trial]) -> Vec<Saturation> {
     let pairs = || trials.iter().flat_map(|trial| trial.output().windows(2));
     let others = || pairs().filter(|pair| !(is_at(low, pair[1]) || is_at(high, pair[1])));
     let still = others().filter(|pair| is_at(pair[0], pair[1])).count() as f64;
-    let has_noise = high > low && still <= STILL * others().count() as f64;
+    let changes = others().map(|pair| (pair[1] - pair[0]).abs());
+    let count = changes.filter(|change| *change > 0.0).fold(f64::MAX, f64::min);
+    let has_noise = high > low
+        && still <= STILL * others().count() as f64
+        && noise(trials, |value| is_at(low, value) || is_at(high, value)) >= COUNTS * count;
     if has_noise { found } else { Vec::new() }
+}
+
+/// The standard deviation of the noise of outputs where none of three neighbours `is_at` an end: that of
+/// their second differences, in which a joint that moves evenly has no part.
+fn noise(trials: &[Trial], is_at: impl Fn(f64) -> bool) -> f64 {
+    let bends = trials.iter().flat_map(|trial| trial.output().windows(3));
+    let bends = bends.filter(|three| !three.iter().any(|value| is_at(*value)));
+    let bends: Vec<f64> = bends.map(|three| three[0] - 2.0 * three[1] + three[2]).collect();
+    // Var(e₁ − 2e₂ + e₃) = 6σ².
+    robust_scale(&bends) / 6.0_f64.sqrt()
 }
 
 #[cfg(test)]
@@ -69,5 +88,10 @@ mod tests {
         assert_eq!(found(|k, noise| motion(k) + noise), []);
         assert_eq!(found(|k, noise| motion(k).clamp(-0.6, 0.8) + noise), [], "a stop");
         assert_eq!(found(|k, _| (20.0 * motion(k)).round()), [], "a coarse encoder");
+        // Off where it began, which a sensor of counts beyond its noise shows as one value.
+        let cycle = |k: usize| (k % 400).min(400 - k % 400).saturating_sub(60) as f64;
+        assert_eq!(found(|k, noise| (cycle(k) + noise).round()), [], "counts beyond the noise");
+        let once = found(|k, noise| (motion(k.min(500)) + noise).min(0.8));
+        assert_eq!(once.len(), 1, "one long stretch");
     }
 }

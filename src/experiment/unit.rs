@@ -92,7 +92,7 @@ const TIMES: [(&[&str], &[&str], f64); 7] = [
         1e-9,
     ),
     (&["min", "minutes"], &["mins", "minute", "minuten", "minutos", "minuti"], 60.0),
-    (&[], &["h", "hr", "hrs", "hour", "hours", "stunde", "stunden", "heure", "heures"], 3600.0),
+    (&["h", "hours"], &["hr", "hrs", "hour", "stunde", "stunden", "heure", "heures"], 3600.0),
     (&[], &["d", "day", "days", "tag", "tage", "jour", "jours"], 86_400.0),
 ];
 

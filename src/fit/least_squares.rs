@@ -13,8 +13,8 @@ use super::space::Space;
 use super::starts::starts;
 use super::turn;
 use super::window::Part;
-use crate::effect::RecordRange;
-use crate::experiment::LARGEST;
+use crate::effect::{RecordRange, UNLIMITED};
+use crate::experiment::{LARGEST, Trial};
 use crate::model::JointModel;
 
 /// Fits the free parameters of `model` to the training windows of `record`.
@@ -92,7 +92,7 @@ fn fit_to(
     limits: Limits,
 ) -> Result<Fit, FitError> {
     let space = Space::of(model, range);
-    check_size(record, &space)?;
+    check_record(record, &space)?;
     let slopes = record.training_samples() * space.free.len();
     let _turn = turn::wait_for(slopes);
     let (training, short) = (record.for_training(), record.shortened());
@@ -172,7 +172,7 @@ pub fn survey(
     range: &RecordRange<'_>,
 ) -> Result<Survey, FitError> {
     let space = Space::of(model, range);
-    check_size(record, &space)?;
+    check_record(record, &space)?;
     let short = record.shortened();
     let best = rough(&short, None, model, &space, range)
         .into_iter()
@@ -193,7 +193,7 @@ pub fn assess(
     range: &RecordRange<'_>,
 ) -> Result<Assessment, FitError> {
     let space = Space::of(model, range);
-    check_size(record, &space)?;
+    check_record(record, &space)?;
     let training = record.for_training();
     // The bounds are those of a fit to this record: a model that is compared as it is may lie
     // beyond them.
@@ -204,7 +204,12 @@ pub fn assess(
     Ok(assessment)
 }
 
-fn check_size(record: &FitRecord<'_>, space: &Space) -> Result<(), FitError> {
+/// Whether there are samples enough, and a model of them has parameters within their bounds.
+fn check_record(record: &FitRecord<'_>, space: &Space) -> Result<(), FitError> {
+    let mut outputs = record.joint().trials.iter().flat_map(Trial::output);
+    if outputs.any(|output| output.abs() > UNLIMITED) {
+        return Err(FitError::BeyondParameters);
+    }
     let samples = record.training_samples();
     let parameters = space.free.len();
     if samples <= parameters + record.part(Part::Training).count() {

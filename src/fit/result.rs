@@ -5,6 +5,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use super::evaluation::Evaluation;
+use crate::effect::UNLIMITED;
 use crate::model::JointModel;
 
 /// A model, fitted or as it was given, with how sure its parameters are.
@@ -129,6 +130,11 @@ pub enum FitError {
          check its parameters and the unit of the log"
     )]
     NotFinite,
+    /// Outputs beyond the largest value that a parameter may have.
+    #[error(
+        "its outputs go beyond {UNLIMITED:e}, where parameters of models end; log it in a larger unit"
+    )]
+    BeyondParameters,
 }
 
 /// A model surveyed: where a rough descent in short windows leads, and its sum of

@@ -241,8 +241,7 @@ fn errors(page: &mut String, unit: &str, models: &[&ComparedJoint<'_>]) -> std::
         let rmse = |error: &Option<ErrorFigures>| {
             error.map_or_else(|| "–".to_owned(), |e| format!("{} {unit}", number(e.rmse)))
         };
-        let percent =
-            validation.map_or_else(|| "–".to_owned(), |e| format!("{:.1} %", e.fit_percent));
+        let percent = validation.and_then(|e| e.fit_text()).unwrap_or_else(|| "–".to_owned());
         let is = lack_of_fit.map_or("unknown", |t| if t.adequate { "not shown" } else { "shown" });
         let (train, valid) = (rmse(training), rmse(validation));
         writeln!(page, "| {} | {train} | {valid} | {percent} | {is} |", compared.model)?;

@@ -156,7 +156,7 @@ pub(super) fn figures(joint: &Joint, comparison: &Comparison) -> [String; 5] {
     let dash = || "-".to_owned();
     let output = |value: f64| with_unit(value, joint.output_unit.as_deref());
     let rmse = |error: &Option<ErrorFigures>| error.map_or_else(dash, |error| output(error.rmse));
-    let percent = validation.map_or_else(dash, |error| format!("{:.1} %", error.fit_percent));
+    let percent = validation.and_then(|error| error.fit_text()).unwrap_or_else(dash);
     let verdict = lack_of_fit.map_or_else(dash, wording::lack_of_fit);
     let noise = noise_of(joint).map_or_else(dash, output);
     [rmse(training), rmse(validation), percent, noise, verdict]

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::estimate::JointEstimate;
 use crate::delay::{Decision, EstimateError, ReviewerVerdict};
-use crate::experiment::{Joint, Trial, read_text};
+use crate::experiment::{Joint, Trial, read_sheet};
 
 /// Why a review cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -98,14 +98,15 @@ struct Row {
 
 impl Review {
     /// Reads a review: a table with the columns `joint,trial,i,verdict,delay_s,note,reviewer`,
-    /// and those further ones that a review sheet has. Rows without a verdict say nothing yet.
+    /// and those further ones that a review sheet has, also as a spreadsheet program saves it again: in
+    /// its encoding, with its delimiter and its decimal mark. Rows without a verdict say nothing yet.
     ///
     /// # Errors
     /// [`ReviewError::Table`] for a file that is none or cannot be opened,
     /// [`ReviewError::Column`] and [`ReviewError::Cell`] for what is missing or makes no sense.
     pub fn read(path: &Path) -> Result<Self, ReviewError> {
         let table = |source| ReviewError::Table { path: path.to_owned(), source };
-        let text = read_text(path).map_err(|error| table(error.into()))?;
+        let text = read_sheet(path).map_err(|error| table(error.into()))?;
         Self::parse(text.trim_start_matches('\u{feff}'), path)
     }
 
@@ -172,7 +173,8 @@ impl Row {
         };
         let number = |column, text: &str| match text {
             "" => Ok(None),
-            _ => match text.parse::<f64>() {
+            // Where commas part the cells there is none in a number.
+            _ => match text.replace(',', ".").parse::<f64>() {
                 Ok(value) if value.abs() <= LONGEST_S => Ok(Some(value)),
                 _ => Err(wrong(column, text, "seconds, as in 0.15, or nothing")),
             },
@@ -181,11 +183,11 @@ impl Row {
             Ok(value) if value > 0 => Ok(value),
             _ => Err(wrong(column, text, "a number from 1 up")),
         };
-        let accepted = match self.verdict.as_str() {
+        let accepted = match self.verdict.to_lowercase().as_str() {
             "" => return Ok(None),
             "accepted" => true,
             "rejected" => false,
-            other => return Err(wrong("verdict", other, "`accepted`, `rejected` or nothing")),
+            _ => return Err(wrong("verdict", &self.verdict, "`accepted`, `rejected` or nothing")),
         };
         let shown = Shown {
             p: (!self.p.is_empty()).then(|| count("p", &self.p)).transpose()?,
@@ -394,6 +396,24 @@ mod tests {
         let trial = estimates.remove(0).unwrap().trials.remove(0).unwrap();
         let tau = trial.profile.at(150);
         (trial.decisions, notes, tau)
+    }
+
+    #[test]
+    fn a_sheet_may_be_as_a_spreadsheet_program_saves_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("review.csv");
+        let plain = format!("{HEADER}\nboom,1,2,Accepted,0.25,größer,Ann\n");
+        let expected = parse(&plain).unwrap();
+        let parted = plain.replace(',', ";").replace("0.25", "0,25");
+        let latin: Vec<u8> = parted.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
+        let tabbed = format!("\u{feff}{}", plain.replace(',', "\t"));
+        let wide: Vec<u8> = tabbed.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        for bytes in [plain.into_bytes(), parted.into_bytes(), latin, wide, tabbed.into_bytes()] {
+            std::fs::write(&path, bytes).unwrap();
+            assert_eq!(Review::read(&path).unwrap(), expected);
+        }
+        std::fs::write(&path, b"\x00\xff\x01\xfe").unwrap();
+        assert!(Review::read(&path).is_err());
     }
 
     #[test]

@@ -54,9 +54,13 @@ fn a_log_without_time_is_refused_with_both_remedies() {
     outcome.is_refused().says(&[
         "log.csv",
         "row 1",
+        "found boom.input, boom.output",
         "`--time COLUMN`",
         "`--sample-period SECONDS`",
     ]);
+    let unnamed = Workspace::new().with_log(&boom().renamed("time_s", ""));
+    let says = ["`--time ''` takes the first column", "`--sample-period SECONDS`"];
+    unnamed.estimate("log.csv").is_refused().says(&says);
 }
 
 #[test]

@@ -12,11 +12,12 @@ pub(crate) struct Ended {
     pub(crate) said: String,
 }
 
-/// Far longer than any of these files takes, also on a machine that is busy.
-const LONGEST: Duration = Duration::from_secs(20);
+/// Where the program waits for something that does not come: far longer than any of these files takes.
+const LONGEST: Duration = Duration::from_mins(3);
 
-/// Kilobytes of address space, of which threads and libraries take a part.
-const MEMORY: &str = "ulimit -v 800000";
+/// Kilobytes of address space, of which threads and libraries take a part, and seconds of the processor,
+/// which a busy machine does not lengthen.
+const LIMITS: &str = "ulimit -v 800000; ulimit -t 40";
 
 /// What a file that is refused may cost: two seconds of the processor, which a busy machine does not
 /// lengthen, and 200 MB of memory that is written to, whatever addresses libraries keep.
@@ -29,7 +30,7 @@ pub(crate) fn tauscope(arguments: &[&str]) -> Ended {
 
 /// Runs the program.
 pub(crate) fn run(arguments: &[&str]) -> Ended {
-    run_within(MEMORY, arguments)
+    run_within(LIMITS, arguments)
 }
 
 /// Runs the program within the limits that a shell sets.

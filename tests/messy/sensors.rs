@@ -27,6 +27,18 @@ pub(crate) fn sensors() -> Vec<Messy> {
             SAME,
         ),
         messy(
+            "dropped_values.csv",
+            plain(&measured(|k, level| if k % 311 == 200 { 0.0 } else { level }, as_read)),
+            SAME,
+        ),
+        messy(
+            "zero_set_anew.csv",
+            plain(&measured(as_sent, |rows, k| {
+                rows[k].output + if k < 1000 { 0.0 } else { -250.0 }
+            })),
+            read(0.011, "the output jumps by -250 at row 1002"),
+        ),
+        messy(
             "slow_sensor.csv",
             plain(&measured(as_sent, |rows, k| rows[k - k % 4].output)),
             read(0.051, "each reading of the output stands in 4 rows"),

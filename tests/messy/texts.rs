@@ -68,7 +68,44 @@ pub(crate) fn texts() -> Vec<Messy> {
             all.replacen(HEADER, "t_s,boom.input_pct,boom.output_deg", 1),
             SAME,
         ),
+    ]
+}
+
+/// Cells without a number, and rows and columns that are none of the table's or of the joint's.
+pub(crate) fn cells_and_rows() -> Vec<Messy> {
+    let all = plain(&clean());
+    vec![
+        messy(
+            "header_again.csv",
+            said_again(&all.replacen('\n', "\ns,V,deg\n", 1), 900),
+            read(1e-6, "row 901 repeats the header"),
+        ),
+        messy(
+            "power_cut.csv",
+            format!("{}{}", &all[..all.len() - 12], "\0".repeat(4096)),
+            read(0.011, "bytes of zero, as a power cut leaves them"),
+        ),
+        messy(
+            "further_signal_of_words.csv",
+            with_mode(&all, "boom.mode"),
+            read(1e-6, "the signal `mode` is left out"),
+        ),
+        messy(
+            "joint_named_otherwise.csv",
+            twice_as_wide(&all).replacen(&format!(",{HEADER}"), ",step,stick_cmd,stick_angle", 1),
+            read(1e-6, "`stick_cmd` and `stick_angle` look like a joint"),
+        ),
         messy("missing_NA.csv", cell(&all, 617, 2, "#N/A"), read(0.051, "1 cell is empty or NaN")),
+        messy(
+            "missing_in_windows.csv",
+            cell(&all, 617, 2, "-nan(ind)"),
+            read(0.051, "1 cell is empty or NaN"),
+        ),
+        messy(
+            "missing_in_sql.csv",
+            cell(&all, 617, 2, "\\N"),
+            read(0.051, "1 cell is empty or NaN"),
+        ),
         messy("missing_dash.csv", cell(&all, 617, 2, "--"), read(0.051, "1 cell is empty or NaN")),
         messy(
             "missing_null.csv",
@@ -77,6 +114,30 @@ pub(crate) fn texts() -> Vec<Messy> {
         ),
         messy("empty_cell.csv", cell(&all, 617, 2, ""), read(0.051, "1 cell is empty or NaN")),
     ]
+}
+
+/// Each line twice, one behind the other.
+fn twice_as_wide(log: &str) -> String {
+    let twice = |line: &str| [line, ",", line, "\n"].concat();
+    log.lines().map(twice).collect()
+}
+
+/// The first two lines once more behind so many.
+fn said_again(log: &str, behind: usize) -> String {
+    let (mut made, head): (String, Vec<&str>) = (String::new(), log.lines().take(2).collect());
+    for (index, line) in log.lines().enumerate() {
+        if index == behind {
+            writeln!(made, "{}\n{}", head[0], head[1]).unwrap();
+        }
+        writeln!(made, "{line}").unwrap();
+    }
+    made
+}
+
+/// One more column of this name, with a word in each row.
+fn with_mode(log: &str, name: &str) -> String {
+    let cell = |(index, line)| format!("{line},{}\n", if index == 0 { name } else { "auto" });
+    log.lines().enumerate().map(cell).collect()
 }
 
 /// The first lines of a log of LabVIEW, and the header of its table.
@@ -276,8 +337,8 @@ pub(crate) fn broken() -> Vec<Messy> {
     vec![
         messy(
             "no_number.csv",
-            cell(&all, 617, 2, "#REF!"),
-            Expected::Refused(&["row 617", "`boom.output`", "#REF!", "write a number"]),
+            cell(&all, 617, 2, "#x!"),
+            Expected::Refused(&["row 617", "`boom.output`", "#x!", "write a number"]),
         ),
         messy(
             "infinite.csv",

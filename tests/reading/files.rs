@@ -47,7 +47,9 @@ fn a_joint_in_other_units_is_not_mixed_with_the_first_ones() {
 #[test]
 fn of_a_folder_the_logs_are_read_in_order_and_the_truth_is_left_out() {
     let reading = Reading::nothing();
-    for name in ["b.csv", "a.CSV", "c.tsv", "d.txt", "b.truth.csv", "notes.md", "e.csv.bak"] {
+    for name in
+        ["b.csv", "a.CSV", "c.tsv", "d.txt", "b.truth.csv", "notes.md", "e.csv.bak", "._b.csv"]
+    {
         reading.file(name, PLAIN);
     }
     fs::create_dir(reading.folder.path().join("f.csv")).unwrap();

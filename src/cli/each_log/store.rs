@@ -106,10 +106,19 @@ pub(crate) fn read_folders(
 ) -> anyhow::Result<(String, Vec<LogResult>, Vec<String>)> {
     // A result is told by the name of its file, too, which has a hash of the log's.
     let mut found: BTreeMap<(String, OsString), (PathBuf, Kept)> = BTreeMap::new();
+    let mut unread = Vec::new();
     for path in results_in(folders)? {
-        let kept = Kept::read(&path)?;
+        let kept = match Kept::read(&path) {
+            Ok(kept) => kept,
+            Err(error) => {
+                unread.push(format!("{error:#}"));
+                continue;
+            }
+        };
         if kept.is_copied_to(&path) {
-            bail!("{}: a copy of the result of {}; remove it", path.display(), kept.file);
+            let path = path.display();
+            unread.push(format!("{path}: a copy of the result of {}; remove it", kept.file));
+            continue;
         }
         let different = found.values().next().filter(|(_, first)| !first.is_like(&kept));
         if let Some((other, _)) = different {
@@ -134,6 +143,9 @@ pub(crate) fn read_folders(
     }
     let of = found.values().map(|(_, kept)| kept.of).max().unwrap_or_default();
     let Some(command) = found.values().next().map(|(_, kept)| kept.command.clone()) else {
+        if let Some(first) = unread.first() {
+            bail!("{first}");
+        }
         bail!("no result in these folders; give those of `--results`");
     };
     let missing = of.saturating_sub(found.len());
@@ -141,7 +153,7 @@ pub(crate) fn read_folders(
         format!("{missing} of {of} logs have no result yet; run the command again for them")
     });
     let results = found.into_values().map(|(_, kept)| kept.result()).collect();
-    Ok((command, results, missing.into_iter().collect()))
+    Ok((command, results, unread.into_iter().chain(missing).collect()))
 }
 
 impl Kept {

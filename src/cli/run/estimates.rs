@@ -1,14 +1,15 @@
 //! Delays of joints: those that have one, and what is said of them.
 
+use super::sensor::notes_on_sensor;
 use crate::cli::failure::{read_failures, said};
 use crate::delay::{
     Condition, Decision, EstimateError, Method, Verdict, delay_beyond_holds, end_at_the_next_step,
 };
-use crate::experiment::{Experiment, Joint, Trial, saturations, spike_count};
-use crate::numerics::{median, to_digits};
+use crate::experiment::{Experiment, Joint, Trial};
+use crate::numerics::median;
 use crate::report::{EstimatedJoint, input_note};
 use crate::study::JointEstimate;
-use crate::wording::{number, percent};
+use crate::wording::number;
 
 /// The delays of each joint.
 pub(crate) type Estimates = Vec<Result<JointEstimate, EstimateError>>;
@@ -61,9 +62,9 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
             notes.extend(unresolved(joint, estimate));
             notes.extend(cut_at_the_next_step(joint, estimate));
             notes.extend(smeared(joint, estimate));
+            notes.extend(as_long_as_allowed(joint, estimate));
             notes.extend(later_than_the_next_step(joint, estimate));
-            notes.extend(spikes(joint, estimate));
-            notes.extend(saturated(joint));
+            notes.extend(notes_on_sensor(joint, estimate));
         }
         let verdicts =
             || estimate.estimated().flat_map(|trial| &trial.decisions).map(Decision::verdict);
@@ -78,40 +79,6 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
     }
     notes.extend(coarse_grid(joints));
     notes
-}
-
-/// A line on isolated spikes of the sensor, where they do not count.
-fn spikes(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
-    let count = !(estimate.settings.paper || estimate.settings.grows);
-    let spikes = Some(joint).filter(|_| count).and_then(spikes_of)?;
-    Some(format!("{spikes}: interpolated where delays are estimated"))
-}
-
-/// That there are isolated spikes in the output of a joint, where there are any.
-pub(super) fn spikes_of(joint: &Joint) -> Option<String> {
-    let name = &joint.name;
-    match joint.trials.iter().map(spike_count).sum::<usize>() {
-        0 => None,
-        1 => Some(format!("joint `{name}`: 1 sample is an isolated spike of the sensor")),
-        count => Some(format!("joint `{name}`: {count} samples are isolated spikes of the sensor")),
-    }
-}
-
-/// A line on an output that stands at the end of its sensor's range.
-fn saturated(joint: &Joint) -> Option<String> {
-    let ends: Vec<String> = saturations(&joint.trials)
-        .into_iter()
-        .map(|end| format!("{} in {} of the samples", to_digits(end.at, 6), percent(end.share)))
-        .collect();
-    (!ends.is_empty()).then(|| {
-        format!(
-            "joint `{}`: the output stands, without noise, at {}: the range of the sensor or its converter \
-             ends there; what the joint does beyond is not seen, and the delay of a step there is how late the \
-             output comes back",
-            joint.name,
-            ends.join(" and at ")
-        )
-    })
 }
 
 /// A line where most reactions begin within a sample of their step.
@@ -197,6 +164,25 @@ fn later_than_the_next_step(joint: &Joint, estimate: &JointEstimate) -> Option<S
              delay (`tauscope compare`), and so does an input that holds its levels for longer",
             joint.name,
             number(delay_s),
+        )
+    })
+}
+
+/// A line on delays that `--max-delay` may have cut short.
+fn as_long_as_allowed(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
+    /// Part of the accepted delays, at least; fewer are chance.
+    const PART: f64 = 0.1;
+    let settings = estimate.settings.in_samples(&joint.trials);
+    let longest = settings.max_delay? as f64;
+    let delays: Vec<f64> = accepted(estimate).filter_map(Decision::delay).collect();
+    let near = if settings.method.spec().has_rows { settings.beta as f64 } else { 1.0 };
+    let bounded = delays.iter().filter(|delay| **delay > longest - near).count();
+    (bounded > 0 && bounded as f64 >= PART * delays.len() as f64).then(|| {
+        format!(
+            "joint `{}`: {bounded} of {} delays are as long as `--max-delay` allows: the reaction may be \
+             later; look further",
+            joint.name,
+            delays.len()
         )
     })
 }

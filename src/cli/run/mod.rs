@@ -5,6 +5,7 @@ mod against;
 mod estimates;
 mod outcomes;
 mod revisions;
+mod sensor;
 mod session;
 mod study;
 

@@ -3,9 +3,44 @@
 use super::date::{seconds_of_compact_date, seconds_of_date};
 use crate::experiment::table::BadCell;
 
-/// What programs write for a value that is missing, in lower case; `nv` is `#nv` at the beginning of a
-/// line, where the mark of a comment is taken off.
-const MISSING: [&str; 10] = ["na", "n/a", "#n/a", "nv", "#nv", "null", "none", "nan", "-", "--"];
+/// What programs write for a value that is missing, in lower case: `\n` is a database's, those with
+/// `ind` and `nan` the C libraries' of Windows.
+const MISSING: [&str; 19] = [
+    "na",
+    "n/a",
+    "nv",
+    "null",
+    "none",
+    "nan",
+    "-",
+    "--",
+    "\\n",
+    "nan(ind)",
+    "-nan(ind)",
+    "nan(snan)",
+    "-nan(snan)",
+    "1.#ind",
+    "-1.#ind",
+    "1.#qnan",
+    "-1.#qnan",
+    "1.#snan",
+    "-1.#snan",
+];
+
+/// What spreadsheet programs write for a value that is none, behind a `#`. At the beginning of a line,
+/// where that would be the mark of a comment, it is taken off.
+pub(super) const NO_VALUES: [&str; 12] = [
+    "N/A", "NV", "REF!", "BEZUG!", "DIV/0!", "VALUE!", "WERT!", "NAME?", "NUM!", "ZAHL!", "NULL!",
+    "SPILL!",
+];
+
+/// Whether a cell says that it has no value.
+fn is_missing(text: &str) -> bool {
+    let is_one_of =
+        |text: &str, words: &[&str]| words.iter().any(|word| text.eq_ignore_ascii_case(word));
+    let without_mark = text.strip_prefix('#').unwrap_or(text);
+    is_one_of(text, &MISSING) || is_one_of(without_mark, &NO_VALUES)
+}
 
 /// The number in a cell; NaN where there is none. A comma may stand for the point where it
 /// does not part the cells.
@@ -14,11 +49,10 @@ pub(super) fn parse_cell(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
         return Ok(f64::NAN);
     }
     let text = std::str::from_utf8(cell).ok();
-    let is_missing = |text: &str| MISSING.iter().any(|word| text.eq_ignore_ascii_case(word));
-    if text.is_some_and(is_missing) {
+    let number = text.and_then(|text| text.parse::<f64>().ok());
+    if number.is_none() && text.is_some_and(is_missing) {
         return Ok(f64::NAN);
     }
-    let number = text.and_then(|text| text.parse::<f64>().ok());
     let with_comma = || {
         let text = text.filter(|text| text.matches(',').count() == 1 && !text.contains('.'))?;
         // Between quotation marks, where commas part the cells, `1,200` may be a thousand and more.
@@ -28,8 +62,14 @@ pub(super) fn parse_cell(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
     match number.or_else(with_comma) {
         Some(value) if value.is_infinite() => Err(BadCell::Infinite),
         Some(value) => Ok(value),
+        None if text.is_some_and(is_infinite) => Err(BadCell::Infinite),
         None => Err(BadCell::Text(String::from_utf8_lossy(cell).into_owned())),
     }
+}
+
+/// Whether a cell is infinite as the C library of Windows writes it.
+fn is_infinite(text: &str) -> bool {
+    text.trim_start_matches(['+', '-']).eq_ignore_ascii_case("1.#inf")
 }
 
 /// Whether a comma of a number may stand between its thousands: three digits follow it, and one to
@@ -155,10 +195,27 @@ mod tests {
         assert!(parse(b"NaN").unwrap().is_nan());
         assert_eq!(parse(b"inf"), Err(BadCell::Infinite));
         assert_eq!(parse(b"1e999"), Err(BadCell::Infinite));
-        for word in ["NA", "n/a", "#N/A", "#NV", "NULL", "None", "-", "--"] {
+        for word in [
+            "NA",
+            "n/a",
+            "#N/A",
+            "#NV",
+            "NULL",
+            "None",
+            "-",
+            "--",
+            "\\N",
+            "-nan(ind)",
+            "1.#QNAN",
+            "-1.#IND",
+            "#REF!",
+            "#DIV/0!",
+            "DIV/0!",
+        ] {
             assert!(parse(word.as_bytes()).unwrap().is_nan(), "{word}");
         }
-        assert_eq!(parse(b"#REF!"), Err(BadCell::Text("#REF!".to_owned())));
+        assert_eq!(parse(b"#1"), Err(BadCell::Text("#1".to_owned())));
+        assert_eq!(parse(b"1.#INF"), Err(BadCell::Infinite));
         assert_eq!(parse_cell(b"-1,5", b';'), Ok(-1.5));
         assert_eq!(parse_cell(b"1,200", b';'), Ok(1.2));
         for (text, number) in [("1,5", 1.5), ("0,125", 0.125), ("-0,5e2", -50.0)] {

@@ -26,3 +26,4 @@ pub(super) use csv::GrowingRows;
 pub(super) use date::date_of_seconds;
 pub(crate) use registry::format_names;
 pub(super) use registry::{endings, is_named_like_a_log, is_text, open};
+pub(super) use text::text_of;

@@ -157,6 +157,14 @@ fn damaged(path: &Path, error: &io::Error) -> ReadError {
     }
 }
 
+/// A text as tables are read, whatever program wrote it; none of bytes that are no text.
+pub(in crate::experiment) fn text_of(bytes: Vec<u8>) -> Option<String> {
+    match encoding_of(&bytes) {
+        Some(encoding) => Some(encoding.decode(&bytes).0.into_owned()),
+        None => String::from_utf8(bytes).ok(),
+    }
+}
+
 /// How a text that starts so is written, where it is not UTF-8.
 fn encoding_of(start: &[u8]) -> Option<&'static Encoding> {
     if let Some((encoding, _)) = Encoding::for_bom(start) {

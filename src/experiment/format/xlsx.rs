@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufReader, Read as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use calamine::{
     Data, DataRef, ExcelDateTime, Range, Reader as _, Sheet, SheetType, SheetVisible, Xlsx,
@@ -18,7 +18,8 @@ use super::text::Bytes;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, TooLarge};
 use crate::experiment::names::on_one_line;
-use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
+use crate::experiment::table::{Head, Header, OpenTable, Rows, Table, Wanted};
+use crate::experiment::time_column::find_time_column;
 
 /// Opens the workbook and reads the header of its first sheet that holds rows.
 pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
@@ -39,29 +40,38 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
         return Err(damaged(format!("{count} sheets; {MOST_SHEETS} are the most")));
     }
     check_unshared(path).map_err(damaged)?;
-    // Where none holds numbers, the first with rows is to say what is wrong with it.
-    for is_log in [holds_a_table, |range: &Range<Data>| range.height() > 1] {
-        for name in &names {
-            check_size(&mut workbook, name, &budget)
-                .map_err(|error| damaged(error.to_string()))?
-                .map_err(|error| error.refuse(path))?;
-            let range =
-                workbook.worksheet_range(name).map_err(|error| damaged(error.to_string()))?;
-            if !is_log(&range) {
-                continue;
-            }
-            let text = text_of(&range).map_err(|error| damaged(error.to_string()))?;
-            drop((range, workbook));
-            budget.give_back(texts);
-            let (bytes, start) = Bytes::made(text, path);
-            let OpenTable { head, rows } = table(path, bytes, &start, Some(b','), budget)?;
-            let note = (count > 1).then(|| {
-                format!("{}: the sheet `{}` of {count} is read", path.display(), on_one_line(name))
-            });
-            return Ok(OpenTable { head, rows: Box::new(OfSheet { note, rows }) });
+    let mut read = |name: &String| {
+        check_size(&mut workbook, name, &budget)
+            .map_err(|error| damaged(error.to_string()))?
+            .map_err(|error| error.refuse(path))?;
+        workbook.worksheet_range(name).map_err(|error| damaged(error.to_string()))
+    };
+    let mut likeliest: Option<(Likeness, &String, Option<Range<Data>>)> = None;
+    for (index, name) in names.iter().enumerate() {
+        let range = read(name)?;
+        let found = Likeness::of(&range);
+        if found > likeliest.as_ref().map_or(Likeness::None, |(before, ..)| *before) {
+            // Of two sheets at a time there may be no room for the cells.
+            let is_it = found == Likeness::Log || index + 1 == count;
+            likeliest = Some((found, name, is_it.then_some(range)));
+        }
+        if found == Likeness::Log {
+            break;
         }
     }
-    Err(damaged("no sheet has a header and a row".to_owned()))
+    let Some((_, name, range)) = likeliest else {
+        return Err(damaged("no sheet has a header and a row".to_owned()));
+    };
+    let range = range.map_or_else(|| read(name), Ok)?;
+    let text = text_of(&range).map_err(|error| damaged(error.to_string()))?;
+    drop((range, workbook));
+    budget.give_back(texts);
+    let (bytes, start) = Bytes::made(text, path);
+    let OpenTable { head, rows } = table(path, bytes, &start, Some(b','), budget)?;
+    let note = (count > 1).then(|| {
+        format!("{}: the sheet `{}` of {count} is read", path.display(), on_one_line(name))
+    });
+    Ok(OpenTable { head, rows: Box::new(OfSheet { note, rows }) })
 }
 
 fn damaged(path: &Path, reason: String) -> ReadError {
@@ -83,14 +93,47 @@ impl Rows for OfSheet {
     }
 }
 
-/// Whether a sheet holds what a log consists of: a row with two numbers or dates.
-fn holds_a_table(range: &Range<Data>) -> bool {
-    let is_value = |cell: &&Data| match cell {
-        Data::Float(_) | Data::Int(_) | Data::DateTime(_) => true,
-        Data::String(text) => parse_time(text.trim().as_bytes(), b';').is_ok(),
-        _ => false,
+/// How much a sheet is like a log.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Likeness {
+    /// It has not even two rows.
+    None,
+    /// It has rows: the first such is to say what is wrong with it.
+    Rows,
+    /// A row has two numbers or dates.
+    Numbers,
+    /// So it has, and a column of times.
+    Log,
+}
+
+impl Likeness {
+    fn of(range: &Range<Data>) -> Self {
+        let is_value = |cell: &&Data| match cell {
+            Data::Float(_) | Data::Int(_) | Data::DateTime(_) => true,
+            Data::String(text) => parse_time(text.trim().as_bytes(), b';').is_ok(),
+            _ => false,
+        };
+        let mut rows = range.rows();
+        match range.height() {
+            ..2 => Self::None,
+            _ if !rows.any(|row| row.iter().filter(is_value).count() > 1) => Self::Rows,
+            _ if has_times(range) => Self::Log,
+            _ => Self::Numbers,
+        }
+    }
+}
+
+/// Whether a row in the upper part of a sheet names a column of times.
+fn has_times(range: &Range<Data>) -> bool {
+    /// Rows above a table.
+    const ABOVE: usize = 100;
+    let names_a_time = |row: &[Data]| {
+        let name = |value: &Data| Header::parse(cell(value).trim());
+        let headers: Vec<Header> = row.iter().map(name).collect();
+        let head = Head { path: PathBuf::new(), headers, header_row: 1, unread: Vec::new() };
+        find_time_column(&head).is_some()
     };
-    range.height() > 1 && range.rows().any(|row| row.iter().filter(is_value).count() > 1)
+    range.rows().take(ABOVE).any(names_a_time)
 }
 
 /// Memory for a byte of a part that lists names: relationships, formats, names of ranges (measured: 4 to 9
@@ -358,6 +401,29 @@ mod tests {
             assert!((date(from_1900 - 1462.0, true) - days).abs() < 1e-9);
         }
     }
+
+    #[test]
+    fn a_sheet_with_times_is_likelier_than_one_with_numbers() {
+        let sheet = |rows: &[&[&str]]| {
+            let mut range = Range::new((0, 0), (4, 2));
+            for (row, cells) in (0..).zip(rows) {
+                for (column, text) in (0..).zip(*cells) {
+                    let number = text.parse().map(Data::Float);
+                    let value = number.unwrap_or_else(|_| Data::String((*text).to_owned()));
+                    range.set_value((row, column), value);
+                }
+            }
+            range
+        };
+        let log = sheet(&[&["Rig 3"], &["time_s", "u", "y"], &["0", "1", "2"]]);
+        let levels = sheet(&[&["No", "Level"], &["1", "0.5"]]);
+        let words = sheet(&[&["made", "by"], &["some", "body"]]);
+        let all = [&log, &levels, &words].map(Likeness::of);
+        assert!(all == [Likeness::Log, Likeness::Numbers, Likeness::Rows]);
+        assert!(Likeness::of(&Range::empty()) == Likeness::None);
+        assert!(all.is_sorted_by(|a, b| a > b));
+    }
+
     #[test]
     fn a_date_is_text_and_no_number() {
         let text = |value, kind| cell(&Data::DateTime(ExcelDateTime::new(value, kind, false)));

@@ -11,7 +11,6 @@ use crate::experiment::layout::JointLayout;
 use crate::experiment::sampling::{Grid, Piece, Repair, Signals};
 use crate::experiment::table::{Coarse, TrialRows};
 use crate::experiment::time_column::TimeSource;
-use crate::experiment::wrap::Wrap;
 use crate::numerics::{median, to_digits_by};
 
 /// Memory of a sample of a signal: the number as it was read, on its grid and in its trial, and
@@ -19,8 +18,8 @@ use crate::numerics::{median, to_digits_by};
 const SAMPLE_SIZE: usize = 8 * size_of::<f64>();
 
 /// Memory of a trial of a joint beside its samples and its label: itself, what its vector has to
-/// spare, and its allocations.
-const TRIAL_SIZE: usize = 2 * size_of::<Trial>() + 128;
+/// spare, its allocations, and what is kept of its delays.
+const TRIAL_SIZE: usize = 2 * size_of::<Trial>() + 640;
 
 /// Grids of a joint, where they are not those of its log, and what should be known of them.
 type OwnGrids = (Option<Vec<Grid>>, Vec<String>);
@@ -36,6 +35,8 @@ impl Log<'_> {
         repair: Repair,
     ) -> Result<(Joint, Vec<String>), ReadError> {
         self.check_joint(layout, repair)?;
+        let (layout, unread) = self.with_readable_covariates(layout);
+        let layout = &layout;
         self.check_one_series(layout, trials, time)?;
         let mut is_interpolated = false;
         let (own, mut notes) = match self.sparse_rows(layout, trials, repair) {
@@ -49,6 +50,7 @@ impl Log<'_> {
             None => (None, self.missing_notes(layout)),
         };
         notes.extend(self.coarse_notes(layout));
+        notes.extend(unread);
         let grids = own.as_deref().unwrap_or(grids);
         let origin_s = self.origin_s(time);
         let mut joint = Joint {
@@ -58,14 +60,13 @@ impl Log<'_> {
             covariates: layout.covariates.iter().map(|c| c.signal.clone()).collect::<Vec<Signal>>(),
             trials: Vec::new(),
         };
-        let wrap = self.wrap(layout, trials, repair);
-        let mut turns = 0;
+        let mut continuous = self.continuous(layout, trials, time, repair);
         let mut split: Vec<(&TrialRows, Range<usize>)> = Vec::new();
         let size = (2 + joint.covariates.len()) * SAMPLE_SIZE;
         for (rows, grid) in trials.iter().zip(grids) {
             self.take(grid.samples(), size)?;
             let mut signals = self.signals(layout, rows);
-            turns += wrap.map_or(0, |wrap| wrap.unwrap(&mut signals.output));
+            continuous.make(rows, &mut signals.output);
             // What was measured is what is there on the grid without being filled.
             signals.covariates.extend(is_interpolated.then(|| signals.output.clone()));
             let pieces = grid.pieces(signals);
@@ -90,20 +91,8 @@ impl Log<'_> {
             return Err(ReadError::NoSamples { path, joint });
         }
         notes.extend(self.split_notes(&joint, layout, &split, time));
-        let note = |wrap: Wrap| {
-            format!("joint `{}`: {}", joint.name, wrap.note(turns, joint.output_unit.as_deref()))
-        };
-        notes.extend(wrap.filter(|_| turns > 0).map(note));
+        notes.extend(continuous.note(&joint, |row| self.row(row)));
         Ok((joint, notes))
-    }
-
-    /// The turn after which the output of a joint wraps. Of a log that still grows it is
-    /// not known.
-    fn wrap(&self, layout: &JointLayout, trials: &[TrialRows], repair: Repair) -> Option<Wrap> {
-        let output = self.column(layout.output.column).filter(|_| !repair.as_it_stands)?;
-        let values = |rows: &TrialRows| output.values.get(rows.start..rows.end);
-        let trials: Vec<&[f64]> = trials.iter().filter_map(values).collect();
-        Wrap::of(&trials, layout.output.signal.unit.as_deref())
     }
 
     /// The joint once more, where its input changes in gaps alone: these are filled, so that its
@@ -350,11 +339,26 @@ impl Log<'_> {
         [layout.input.column, layout.output.column].into_iter().filter_map(note).collect()
     }
 
+    /// The joint without the further signals that have bad cells, and a line on each of these: what drives
+    /// and what it does are there without them.
+    fn with_readable_covariates(&self, layout: &JointLayout) -> (JointLayout, Vec<String>) {
+        let mut readable = layout.clone();
+        let mut notes = Vec::new();
+        readable.covariates.retain(|covariate| match self.bad_cell(covariate.column) {
+            Some(error) => {
+                let (joint, signal) = (&layout.name, &covariate.signal.name);
+                notes.push(format!("joint `{joint}`: the signal `{signal}` is left out: {error}"));
+                false
+            }
+            None => true,
+        });
+        (readable, notes)
+    }
+
     /// Refuses bad cells, and missing ones where they may not be filled.
     fn check_joint(&self, layout: &JointLayout, repair: Repair) -> Result<(), ReadError> {
         let needed = [layout.input.column, layout.output.column];
-        let further = layout.covariates.iter().map(|covariate| covariate.column);
-        if let Some(error) = needed.into_iter().chain(further).find_map(|c| self.bad_cell(c)) {
+        if let Some(error) = needed.into_iter().find_map(|column| self.bad_cell(column)) {
             return Err(error);
         }
         let empty = |column: &usize| {

@@ -198,13 +198,30 @@ impl Columns<'_> {
         self.signals.get(column)?.as_ref().filter(|signal| !signal.is_constant())
     }
 
+    /// The first pair that its names say is a joint, of the columns that `is_free` says are none's.
+    pub(super) fn first_by_names(&self, is_free: impl Fn(usize) -> bool) -> Option<(usize, usize)> {
+        let named = |known: &[&str]| -> Vec<usize> {
+            let all = (0..self.head.headers.len()).filter(|column| is_free(*column));
+            all.filter(|column| self.rank(*column, known).is_some()).collect()
+        };
+        let outputs = named(&OUTPUT_WORDS);
+        let mut inputs = named(&INPUT_WORDS);
+        inputs.retain(|column| !outputs.contains(column));
+        let pairs = self.sharing(&inputs, &outputs)?;
+        pairs.into_iter().map(|(_, input, output)| (input, output)).min()
+    }
+
+    /// The place among these words of the one that a name has, and no word of something else.
+    fn rank(&self, column: usize, known: &[&str]) -> Option<usize> {
+        let words = self.words(column);
+        rank(&words, known).filter(|_| rank(&words, &OTHER_WORDS).is_none())
+    }
+
     /// Columns that move and whose names have one of these words, the likeliest first.
     fn named(&self, known: &[&str]) -> Vec<usize> {
         let ranked = |column: usize| {
-            let words = self.words(column);
             self.signal(column)?;
-            let other = rank(&words, &OTHER_WORDS).is_some();
-            rank(&words, known).filter(|_| !other).map(|rank| (rank, column))
+            self.rank(column, known).map(|rank| (rank, column))
         };
         let mut found: Vec<_> = (0..self.head.headers.len()).filter_map(ranked).collect();
         found.sort_unstable();

@@ -5,7 +5,7 @@ mod joints;
 mod signal;
 mod words;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::columns::{ColumnMap, JointColumns};
@@ -102,6 +102,17 @@ impl Survey {
         let joints = columns.joints();
         columns.survey(time, trial, &joints)
     }
+}
+
+/// The names of an input and an output that look like one more joint beside those whose columns are `taken`.
+pub(super) fn further_joint<'h>(head: &'h Head, taken: &HashSet<usize>) -> Option<[&'h str; 2]> {
+    let is_free = |column: usize| {
+        // Names with a point are native, as `boom.pressure`.
+        let header = head.headers.get(column);
+        !taken.contains(&column) && header.is_some_and(|header| !header.name.contains('.'))
+    };
+    let (input, output) = Columns { head, signals: &[] }.first_by_names(is_free)?;
+    Some([head.headers.get(input)?.text.as_str(), head.headers.get(output)?.text.as_str()])
 }
 
 impl Columns<'_> {

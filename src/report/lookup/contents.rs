@@ -6,7 +6,7 @@ use crate::delay::{
     Automatic, CurvePoint, DelayCurve, DelayTable, Finding, Neutral, Settings, Transition,
     TypicalDelay,
 };
-use crate::experiment::Source;
+use crate::experiment::{Source, is_control};
 use crate::report::text::settings_line;
 use crate::report::{EstimatedJoint, dead_time_sentences};
 use crate::wording::number;
@@ -48,7 +48,7 @@ impl<'a> Lookup<'a> {
             sentences.map(|sentence| format!("joint {}: {sentence}", joint.joint.name))
         });
         let counted = counted.chain(dead_times);
-        let origin = lines.chain(counted).map(|line| line.replace(['\n', '\r'], " ")).collect();
+        let origin = lines.chain(counted).map(|line| line.replace(is_control, " ")).collect();
         let joints = tables.into_iter().map(|(joint, table)| JointLookup {
             name: &joint.name,
             input_unit: joint.input_unit.as_deref(),
@@ -143,5 +143,5 @@ pub(super) fn numbers(curve: &DelayCurve) -> (String, String) {
 /// A text between double quotes, as C and Python read it.
 pub(super) fn quoted(text: &str) -> String {
     let escaped = text.replace('\\', "\\\\").replace('"', "\\\"");
-    format!("\"{}\"", escaped.replace(|c: char| c.is_control(), " "))
+    format!("\"{}\"", escaped.replace(is_control, " "))
 }

@@ -112,7 +112,8 @@ fn error_of(improved: &ImprovedJoint<'_>, comparison: &Comparison) -> String {
     let noise = noise_of(improved.finding.compared.joint);
     let times = noise
         .map_or_else(String::new, |noise| format!(", {:.2} times the noise", error.rmse / noise));
-    format!("{rmse}{times} (fit {:.1} %)", error.fit_percent)
+    let fit = error.fit_text().map_or_else(String::new, |fit| format!(" (fit {fit})"));
+    format!("{rmse}{times}{fit}")
 }
 
 /// The model in equations with its numbers, in the order in which a signal runs through it.

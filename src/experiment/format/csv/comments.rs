@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::super::cell::NO_VALUES;
 use crate::experiment::error::ReadError;
 use crate::experiment::table::Wanted;
 
@@ -97,15 +98,9 @@ fn label_of(line: &[u8], mark: u8) -> Option<&[u8]> {
     (is_parted && is_label).then_some(label)
 }
 
-/// What spreadsheet programs write for a value that is none. At the beginning of a line it is no comment.
-const NO_VALUES: [&[u8]; 12] = [
-    b"#N/A", b"#NV", b"#REF!", b"#BEZUG!", b"#DIV/0!", b"#VALUE!", b"#WERT!", b"#NAME?", b"#NUM!",
-    b"#ZAHL!", b"#NULL!", b"#SPILL!",
-];
-
 /// Whether a line begins with the cell of a value that is none.
 fn begins_without_value(line: &[u8]) -> bool {
-    let behind = |cell: &&[u8]| line.strip_prefix(*cell);
+    let behind = |cell: &&str| line.strip_prefix(b"#")?.strip_prefix(cell.as_bytes());
     let ends = |rest: &[u8]| rest.first().is_none_or(|byte| b",;|\t\r\n".contains(byte));
     NO_VALUES.iter().filter_map(behind).any(ends)
 }

@@ -8,7 +8,7 @@ use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::names::shown;
 use crate::experiment::source::Source;
-use crate::experiment::table::{BadCell, Column, Labels, RowNumbers, Table, Wanted};
+use crate::experiment::table::{BadCell, Column, Header, Labels, RowNumbers, Table, Wanted};
 
 /// Rows of words that may stand below a table.
 const MOST_REMARKS: usize = 20;
@@ -34,8 +34,13 @@ pub(super) struct Gathered {
     time: Option<usize>,
     pub(super) table: Table,
     labels: Option<Labels>,
-    /// Rows of words, which belong to the table if rows of numbers follow.
+    /// Rows of words and of zero bytes, which belong to the table if rows of numbers follow.
     held_back: Vec<(csv::ByteRecord, Place)>,
+    /// The first row among those of numbers that says what the header or the rows of words below it say,
+    /// where logs were put behind one another or a logger writes its header anew.
+    repeat: Option<u64>,
+    /// The rows of words below the header.
+    above: Vec<csv::ByteRecord>,
     /// Cells of each row, which the first one shows.
     width: Option<usize>,
     budget: Budget,
@@ -62,6 +67,8 @@ impl Gathered {
             table,
             labels,
             held_back,
+            repeat: None,
+            above: Vec::new(),
             width: None,
             budget,
         }
@@ -158,6 +165,7 @@ impl Gathered {
 
     /// Says which rows below the header were left out that are no units.
     pub(super) fn note_above(&mut self, above: &[(csv::ByteRecord, Place)], wanted: &Wanted<'_>) {
+        self.above = above.iter().map(|(record, _)| record.clone()).collect();
         for (record, place) in above.iter().filter(|(record, _)| !are_units(record)) {
             let (path, row) = (wanted.path().display(), place.row);
             let says = says(record);
@@ -168,7 +176,7 @@ impl Gathered {
         }
     }
 
-    /// Holds a row back that may be words below the table; whether it does.
+    /// Holds a row back that may be words below the table, or what a power cut left; whether it does.
     pub(super) fn holds_back(
         &mut self,
         record: &csv::ByteRecord,
@@ -177,7 +185,7 @@ impl Gathered {
     ) -> Result<bool, ReadError> {
         let is_held = !self.table.rows.is_empty()
             && self.held_back.len() < MOST_REMARKS
-            && is_remark(record, self.delimiter);
+            && (is_remark(record, self.delimiter) || has_zero_bytes(record));
         if is_held {
             let memory = self.budget.take(memory_of(record));
             memory.map_err(|error| error.refuse(wanted.path()))?;
@@ -186,10 +194,26 @@ impl Gathered {
         Ok(is_held)
     }
 
-    /// Takes the rows that were held back, as more follows.
+    /// Takes the rows that were held back, as more follows, but for those that say what the header says.
     pub(super) fn release(&mut self, wanted: &Wanted<'_>) -> Result<(), ReadError> {
-        let held_back = self.take_held_back();
-        held_back.iter().try_for_each(|(record, place)| self.take(record, place, wanted))
+        for (record, place) in self.take_held_back() {
+            if self.repeats_head(&record, wanted) {
+                self.repeat.get_or_insert(place.row);
+            } else {
+                self.take(&record, &place, wanted)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a row says what the header or a row of words below it says.
+    fn repeats_head(&self, record: &csv::ByteRecord, wanted: &Wanted<'_>) -> bool {
+        let headers = &wanted.head.headers;
+        let is_name = |(cell, header): (&[u8], &Header)| {
+            String::from_utf8_lossy(cell).trim() == header.text.trim()
+        };
+        let is_header = record.len() == headers.len() && record.iter().zip(headers).all(is_name);
+        is_header || self.above.contains(record)
     }
 
     /// The rows that were held back, and are no longer.
@@ -202,17 +226,26 @@ impl Gathered {
     /// Says that words below the table, which were held back, are no rows of it.
     pub(super) fn leave_out(&mut self, wanted: &Wanted<'_>) {
         let Some((first, place)) = self.held_back.first() else { return };
-        let rows = match self.held_back.len() {
-            1 => format!("the last row, {}, is left out: it holds", place.row),
+        let (rows, hold) = match self.held_back.len() {
+            1 => (format!("the last row, {}, is left out", place.row), "it holds"),
             count => {
-                format!("the last {count} rows, from {} on, are left out: they hold", place.row)
+                let rows = format!("the last {count} rows, from {} on, are left out", place.row);
+                (rows, "they hold")
             }
         };
-        self.table.notes.push(format!(
-            "{}: {rows} no number and no time (`{}`)",
-            wanted.path().display(),
-            says(first)
-        ));
+        let what = if has_zero_bytes(first) {
+            "bytes of zero, as a power cut leaves them".to_owned()
+        } else {
+            format!("no number and no time (`{}`)", says(first))
+        };
+        let path = wanted.path().display();
+        self.table.notes.push(format!("{path}: {rows}: {hold} {what}"));
+    }
+
+    fn note_once(&mut self, note: String) {
+        if !self.table.notes.contains(&note) {
+            self.table.notes.push(note);
+        }
     }
 
     /// What came so far, of this much of the file.
@@ -227,13 +260,21 @@ impl Gathered {
         let time = self.time.and_then(|time| self.table.columns.get_mut(time));
         if time.is_some_and(|time| self.milliseconds.apply(&mut time.values)) {
             let note = format!("{}: {IN_MILLISECONDS}", self.table.source.path.display());
-            if !self.table.notes.contains(&note) {
-                self.table.notes.push(note);
-            }
+            self.note_once(note);
+        }
+        if let Some(row) = self.repeat {
+            let path = self.table.source.path.display();
+            let note = format!("{path}: row {row} repeats the header: such rows are left out");
+            self.note_once(note);
         }
         self.table.trials = self.labels.as_ref().map_or_else(Vec::new, Labels::runs);
         &self.table
     }
+}
+
+/// Whether a row holds what stands in a file whose last bytes were not written before the power went.
+fn has_zero_bytes(record: &csv::ByteRecord) -> bool {
+    record.as_slice().contains(&0)
 }
 
 /// The time in a cell, where it is written as the first one is: in words (`Some(true)`) or as a number.

@@ -96,18 +96,50 @@ pub(super) fn usual(counts: &[usize]) -> usize {
     rows.iter().copied().max_by_key(|count| (times(count), *count)).unwrap_or_default()
 }
 
-/// Delimiters of a line, units and quoted cells left out.
+/// Delimiters of a line, units and quoted cells left out: from a bracket, or a quotation mark that begins
+/// a cell, to the one that answers it, where one does.
 pub(super) fn count(line: &[u8], delimiter: u8) -> usize {
-    let mut enclosed = None;
-    let mut count = 0;
-    for &byte in line {
-        enclosed = match (enclosed, byte) {
-            (None, b'[') => Some(b']'),
-            (None, b'"') => Some(b'"'),
-            (Some(end), byte) if end == byte => None,
-            (enclosed, _) => enclosed,
+    let last_quotation = line.iter().rposition(|byte| *byte == b'"').unwrap_or(0);
+    let (mut at, mut count, mut begins) = (0, 0, true);
+    while let Some(&byte) = line.get(at) {
+        at += 1;
+        let behind = line.get(at..).unwrap_or_default();
+        let answer = match byte {
+            // One that comes before the answer is the beginning of another unit.
+            b'[' => behind
+                .iter()
+                .position(|byte| b"[]".contains(byte))
+                .filter(|place| behind.get(*place) == Some(&b']')),
+            b'"' if begins && at <= last_quotation => behind.iter().position(|byte| *byte == b'"'),
+            _ => None,
         };
-        count += usize::from(enclosed.is_none() && delimiter == byte);
+        if let Some(answer) = answer {
+            at += answer + 1;
+            begins = false;
+        } else {
+            count += usize::from(byte == delimiter);
+            begins = byte == delimiter || begins && byte.is_ascii_whitespace();
+        }
     }
     count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_within_units_and_quoted_cells_part_nothing() {
+        for (line, marks) in [
+            ("t,u [a,b],y", 2),
+            ("t,\"u, V\", \"y, deg\"", 2),
+            ("t,u [V,y", 2),
+            ("t,a\"b,c\"d", 2),
+            ("t,\"open,y", 2),
+            ("t,u [V,y [deg],z [a,b]", 3),
+        ] {
+            assert_eq!(count(line.as_bytes(), b','), marks, "{line}");
+        }
+        assert_eq!(count(&vec![b'['; 100_000], b','), 0);
+    }
 }

@@ -1,0 +1,136 @@
+//! Sensors whose zero is set anew amid a record.
+//!
+//! An incremental encoder that is homed again goes on from another value: from one row to the next the
+//! output jumps as it never moves. What follows is taken back by the jump.
+
+/// Jumps of a joint, at most.
+const MOST: usize = 8;
+
+/// Changes of an input that holds its levels for each jump, at least, and jumps where it moves all the
+/// time, at most: what answers most steps of the input is how the output moves.
+const STEPS: usize = 4;
+const FEW: usize = 3;
+
+/// Times the largest change from row to row elsewhere that a jump is, at least (chosen).
+const TIMES: f64 = 20.0;
+
+/// Rows between two jumps, at least: a spike of the sensor jumps to and fro.
+const APART: usize = 50;
+
+/// A change from row to row beyond which an output jumps, output units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Shifts {
+    least: f64,
+}
+
+impl Shifts {
+    /// That of a joint with the inputs and outputs of its `trials`, not a number where they are missing;
+    /// none where its output does not jump.
+    pub(super) fn of(trials: &[[&[f64]; 2]]) -> Option<Self> {
+        let changes = |of: usize| {
+            let pairs = trials.iter().flat_map(move |trial| trial[of].windows(2));
+            pairs.map(|pair| (pair[1] - pair[0]).abs())
+        };
+        // The largest first, one more than may be jumps.
+        let mut largest = [0.0_f64; MOST + 1];
+        for change in changes(1) {
+            let place = largest.partition_point(|known| *known >= change);
+            if change.is_finite() && place < largest.len() {
+                largest[place..].rotate_right(1);
+                largest[place] = change;
+            }
+        }
+        let is_far =
+            |jumps: &usize| largest[*jumps] > 0.0 && largest[jumps - 1] >= TIMES * largest[*jumps];
+        let jumps = (1..=MOST).find(is_far)?;
+        let steps = changes(0).filter(|change| *change > 0.0).count();
+        let is_held = STEPS * steps <= changes(0).count();
+        let most = if is_held { steps / STEPS } else { FEW };
+        let least = largest[jumps - 1];
+        let found = Self { least };
+        let are_apart = trials.iter().all(|[_, output]| {
+            let jumps: Vec<usize> = found.jumps(output).collect();
+            let inside = |row: &usize| *row >= APART && row + APART <= output.len();
+            jumps.iter().all(inside) && jumps.windows(2).all(|pair| pair[1] - pair[0] >= APART)
+        });
+        (jumps <= most && are_apart).then_some(found)
+    }
+
+    /// The indices behind the jumps of an output.
+    pub(super) fn jumps(self, output: &[f64]) -> impl Iterator<Item = usize> {
+        let pairs = output.windows(2).zip(1..);
+        pairs.filter(move |(pair, _)| (pair[1] - pair[0]).abs() >= self.least).map(|(_, row)| row)
+    }
+
+    /// Takes the jumps out of `output`: the change of the row before is taken for that of the jump's. The
+    /// indices behind them, with how far they go.
+    pub(super) fn put_back(self, output: &mut [f64]) -> Vec<(usize, f64)> {
+        let rows: Vec<usize> = self.jumps(output).collect();
+        let size = |row: usize| {
+            let before = if row > 1 { output[row - 1] - output[row - 2] } else { 0.0 };
+            let before = if before.is_finite() { before } else { 0.0 };
+            (row, output[row] - output[row - 1] - before)
+        };
+        let jumps: Vec<(usize, f64)> = rows.into_iter().map(size).collect();
+        for (row, size) in &jumps {
+            output[*row..].iter_mut().for_each(|value| *value -= size);
+        }
+        jumps
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::testing::noise;
+
+    fn input() -> Vec<f64> {
+        (0..4000).map(|k| [0.0, 1.0, -1.0][k / 150 % 3]).collect()
+    }
+
+    /// What moves by 0.05 a row and has some noise.
+    fn output(jump: impl Fn(usize) -> f64) -> Vec<f64> {
+        let (mut angle, noise) = (3.0, noise(5, 0.0, 4000));
+        let row = |(k, level): (usize, f64)| {
+            angle += 0.05 * level;
+            angle + 0.02 * noise[k] + jump(k)
+        };
+        input().into_iter().enumerate().map(row).collect()
+    }
+
+    #[test]
+    fn an_output_is_put_back_by_its_jump() {
+        let clean = output(|_| 0.0);
+        let often = |k: usize| 40.0 * f64::from(u8::try_from(k / 700).unwrap());
+        let mut homed = output(often);
+        assert_eq!(Shifts::of(&[[&input(), &homed]]).unwrap().put_back(&mut homed).len(), 5);
+        for jump in [30.0, -1000.0] {
+            let mut marred = output(|k| if k < 2000 { 0.0 } else { jump });
+            let found = Shifts::of(&[[&input(), &marred]]).unwrap();
+            let jumps = found.put_back(&mut marred);
+            assert_eq!(jumps.len(), 1);
+            assert_eq!(jumps[0].0, 2000);
+            assert!(marred.iter().zip(&clean).all(|(a, b)| (a - b).abs() < 0.3), "{jumps:?}");
+        }
+    }
+
+    #[test]
+    fn motion_and_spikes_are_no_jumps() {
+        let of = |output: &[f64]| Shifts::of(&[[&input(), output]]);
+        assert_eq!(of(&output(|_| 0.0)), None);
+        assert_eq!(of(&output(|k| if k == 2000 { 30.0 } else { 0.0 })), None, "a spike");
+        assert_eq!(of(&output(|k| if k < 2000 { 0.0 } else { 0.5 })), None, "as far as it moves");
+        let often = output(|k| f64::from(u8::from(k % 400 < 200)) * 30.0);
+        assert_eq!(of(&often), None);
+        // What answers each step, of a log that is slow beside the joint.
+        let (slow, noise) = (|k: usize| [0.0, 3.0, -2.0][k / 150 % 3], noise(7, 0.0, 1100));
+        let input: Vec<f64> = (0..1100).map(slow).collect();
+        let follows: Vec<f64> =
+            (0..1100).map(|k: usize| slow(k.saturating_sub(2)) + 0.01 * noise[k]).collect();
+        assert_eq!(Shifts::of(&[[&input, &follows]]), None);
+        // One step, and the answer to it.
+        let step: Vec<f64> = (0..4000).map(|k| f64::from(u8::from(k > 2000))).collect();
+        let answer: Vec<f64> = output(|k| if k < 2003 { 0.0 } else { 30.0 });
+        assert_eq!(Shifts::of(&[[&step, &answer]]), None);
+    }
+}
