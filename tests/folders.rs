@@ -121,9 +121,14 @@ fn what_is_done_and_unchanged_is_not_done_again() {
     assert_eq!((again.out.as_str(), workspace.read("all.csv")), (first.out.as_str(), table));
 
     workspace.write_log("logs/run_01.csv", 40);
-    workspace.run("estimate logs --results kept").is_whole().says("2 of 3 logs are done already");
+    let changed = workspace.run("estimate logs --results kept");
+    changed.is_whole().says("2 of 3 logs are done already");
+    changed.says(
+        "1 result is replaced: logs/run_01.csv, or a file that is given beside it, has changed",
+    );
     let other = workspace.run("estimate logs --results kept --beta 2");
-    assert!(!other.is_whole().error.contains("already"), "{}", other.error);
+    let other = &other.is_whole().error;
+    assert!(!other.contains("already") && !other.contains("replaced"), "{other}");
     fs::write(workspace.path("map.toml"), "time = \"time_s\"").unwrap();
     let map = "estimate logs --results kept --columns map.toml";
     workspace.run(map).is_whole();

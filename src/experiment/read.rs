@@ -368,6 +368,13 @@ pub(super) fn laid_out_by_names(
         head.path.display(),
         joints.join(", ")
     ));
+    let further = survey.further_inputs.iter().filter(|_| survey.is_sure);
+    found.notes.extend(further.map(|(joint, column)| {
+        format!(
+            "joint `{joint}`: `{column}` is named like what drives it, too, and is not read: where it does, as \
+             the second coil of a valve, the input is one column of both, and `--joint` names it"
+        )
+    }));
     Ok((layout, found))
 }
 

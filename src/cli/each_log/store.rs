@@ -157,6 +157,11 @@ pub(crate) fn read_folders(
 }
 
 impl Kept {
+    /// Whether it was made by this version of the program with these settings.
+    pub(super) fn has(&self, settings: &str) -> bool {
+        self.version == env!("CARGO_PKG_VERSION") && self.settings == settings
+    }
+
     /// Whether a file is not called as the result of this log is.
     fn is_copied_to(&self, path: &Path) -> bool {
         // Of a log whose name is no text only the text is known.

@@ -44,6 +44,11 @@ impl Work<'_> {
         if left < all && self.each.run.verbosity() == Verbosity::Normal {
             message("note", &format!("{} of {all} logs are done already", all - left));
         }
+        if self.each.run.verbosity() == Verbosity::Normal {
+            self.note_replaced(open.iter().filter_map(|index| {
+                Some((*logs.get(*index)?, keys.get(*index)?.as_ref().ok()?.as_str()))
+            }));
+        }
         let bar = Bar::new(self.each.run.verbosity(), "working", "logs", open.len() as u64);
         let failures = Mutex::new(Vec::new());
         let next = AtomicUsize::new(0);
@@ -81,6 +86,27 @@ impl Work<'_> {
         let results = kept.map(|(_, log)| Ok(Kept::read(&self.place(log))?.result()));
         let results = results.collect::<anyhow::Result<_>>()?;
         Ok(Done { results, failures: failures.into_iter().map(|(_, text)| text).collect() })
+    }
+
+    /// Says that results of the same options are replaced, since the bytes under the name of their log or of
+    /// a file in the options are others now.
+    fn note_replaced<'k>(&self, open: impl Iterator<Item = (&'k PathBuf, &'k str)>) {
+        let settings = self.settings();
+        let is_other = |(log, key): &(&PathBuf, &str)| {
+            Kept::read(&self.place(log)).is_ok_and(|kept| kept.has(&settings) && kept.key != *key)
+        };
+        let replaced: Vec<&PathBuf> = open.filter(is_other).map(|(log, _)| log).collect();
+        let Some(first) = replaced.first() else { return };
+        let (first, count) = (first.display(), replaced.len());
+        let results = if count == 1 { "result is" } else { "results are" };
+        message(
+            "note",
+            &format!(
+                "{count} {results} replaced: {first}, or a file that is given beside it, has changed \
+                 since; or it is another log of that name, and for its result to stand beside the other's \
+                 their paths must differ as they are given"
+            ),
+        );
     }
 
     /// Refuses a folder with results of another command, which would be replaced.

@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::signal::Signal;
-use super::words::{INPUT_WORDS, OTHER_WORDS, OUTPUT_WORDS, rank, words};
+use super::words::{INPUT_WORDS, OTHER_WORDS, OUTPUT_WORDS, WANTED_WORDS, rank, words};
 use crate::experiment::table::{Head, Header};
 use crate::experiment::unit;
 
@@ -32,7 +32,8 @@ impl Columns<'_> {
         if !native.is_empty() {
             return native;
         }
-        let outputs = self.named(&OUTPUT_WORDS);
+        let mut outputs = self.named(&OUTPUT_WORDS);
+        outputs.retain(|column| rank(&self.words(*column), &WANTED_WORDS).is_none());
         let mut inputs = self.named(&INPUT_WORDS);
         inputs.retain(|column| !outputs.contains(column));
         let mut joints = self.by_names(&inputs, &outputs);
@@ -48,6 +49,25 @@ impl Columns<'_> {
         }
         joints.retain(|joint| !self.is_doubtful(joint));
         if joints.is_empty() { self.by_data(&outputs).into_iter().collect() } else { joints }
+    }
+
+    /// For each of `joints` the columns that are named like what drives it, too, and are no joint's.
+    pub(super) fn further_inputs(&self, joints: &[FoundJoint]) -> Vec<(String, usize)> {
+        let taken: HashSet<usize> =
+            joints.iter().flat_map(|joint| [joint.input, joint.output]).collect();
+        let mut inputs = self.named(&INPUT_WORDS);
+        inputs.retain(|column| {
+            !taken.contains(column) && self.rank(*column, &OUTPUT_WORDS).is_none()
+        });
+        inputs.sort_unstable();
+        let of_joint = |column: usize| {
+            let words = self.own_words(column);
+            let shares = |joint: &&FoundJoint| {
+                self.own_words(joint.output).iter().any(|word| words.contains(word))
+            };
+            joints.iter().find(shares).map(|joint| (joint.name.clone(), column))
+        };
+        inputs.into_iter().filter_map(of_joint).collect()
     }
 
     /// Joints whose columns have native names.

@@ -33,6 +33,8 @@ pub struct Survey {
     pub is_sure: bool,
     /// What could not be found out.
     pub open: Vec<String>,
+    /// Joints, and columns that are named like what drives them, too.
+    pub further_inputs: Vec<(String, String)>,
 }
 
 /// A column and what it is taken for.
@@ -151,7 +153,10 @@ impl Columns<'_> {
             ..ColumnMap::default()
         };
         let is_sure = joints.iter().all(|joint| joint.is_sure);
-        Survey { path: self.head.path.clone(), columns, map, is_sure, open }
+        let further_inputs = self.further_inputs(joints).into_iter();
+        let further_inputs = further_inputs.map(|(joint, column)| (joint, name(column))).collect();
+        let path = self.head.path.clone();
+        Survey { path, columns, map, is_sure, open, further_inputs }
     }
 
     fn column(
@@ -224,6 +229,22 @@ mod tests {
             assert_eq!(survey.map.time.as_deref(), Some(names[0]));
             assert!(survey.open.is_empty());
             assert_eq!(survey.is_sure, name != "b", "data alone leave a doubt");
+        }
+    }
+
+    #[test]
+    fn what_is_wanted_is_no_output_and_a_second_coil_is_named() {
+        for (header, further) in [
+            ("t_ms,boom_pos_cmd,boom_pos,boom_pos_valid", None),
+            ("t_ms,boom_cmd,boom_angle,boom_angle_limit", None),
+            ("t_ms,boom_valve_extend,boom_angle,boom_valve_retract", Some("boom_valve_retract")),
+        ] {
+            let survey = survey(header);
+            let names: Vec<&str> = header.split(',').collect();
+            assert_eq!(survey.map.joints, [JointColumns::new("boom", names[1], names[2])]);
+            let found: Vec<&str> =
+                survey.further_inputs.iter().map(|(_, column)| column.as_str()).collect();
+            assert_eq!(found, further.into_iter().collect::<Vec<_>>(), "{header}");
         }
     }
 

@@ -55,7 +55,7 @@ pub(super) const OUTPUT_WORDS: [&str; 22] = [
     "meas",
 ];
 /// Words of neither, whatever else the name says.
-pub(super) const OTHER_WORDS: [&str; 16] = [
+pub(super) const OTHER_WORDS: [&str; 31] = [
     "ref",
     "reference",
     "setpoint",
@@ -72,7 +72,24 @@ pub(super) const OTHER_WORDS: [&str; 16] = [
     "torque",
     "force",
     "acc",
+    "valid",
+    "enable",
+    "enabled",
+    "flag",
+    "status",
+    "state",
+    "limit",
+    "min",
+    "max",
+    "std",
+    "var",
+    "seq",
+    "count",
+    "counter",
+    "fault",
 ];
+/// Words of what is wanted: a position that a name with one of them has is commanded, and not measured.
+pub(super) const WANTED_WORDS: [&str; 4] = ["cmd", "command", "demand", "des"];
 
 /// The words of a name in lower case: of `uBoom_duty (pct)` they are `u`, `boom`, `duty`, `pct`.
 pub(super) fn words(name: &str) -> Vec<String> {
