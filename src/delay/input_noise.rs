@@ -73,12 +73,15 @@ fn without_dropouts(input: &[f64], period_s: f64) -> Option<Vec<f64>> {
     /// Samples of other holds, but for one in ten: a value may be dropped beside an edge.
     const LONG: usize = 10;
     const SHORT: usize = 10;
-    let without = mended(input, alone(input).filter(|_| period_s <= BRIEF_S))?;
+    let dropped = alone(input).count();
+    // Of more there are fewer holds so long than of them: they are noise or dither.
+    if period_s > BRIEF_S || dropped * (LONG - 1) > input.len() {
+        return None;
+    }
+    let without = mended(input, alone(input))?;
     let holds = holds(&without);
     let short = holds.iter().filter(|hold| **hold < LONG).count();
-    // What comes more often is noise or dither.
-    let are_few = alone(input).count() <= holds.len();
-    (are_few && SHORT * short <= holds.len()).then_some(without)
+    (dropped <= holds.len() && SHORT * short <= holds.len()).then_some(without)
 }
 
 /// An input measured with noise without single samples that are off those before and behind them by more

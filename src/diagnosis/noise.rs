@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::experiment::Trial;
 use crate::model::{Arrivals, Simulated};
-use crate::numerics::median;
+use crate::numerics::{least_change, median};
 
 /// Seconds after a change of the input in which a joint may still settle.
 const SETTLING_S: f64 = 0.3;
@@ -60,14 +60,13 @@ pub fn sensor_noise(trials: &[Trial]) -> Option<f64> {
 fn rounding(trials: &[Trial]) -> f64 {
     /// Part of a step by which a change may miss a multiple of it.
     const OFF: f64 = 0.02;
-    let changes = || {
-        let outputs = trials.iter().map(Trial::output);
-        let changes = outputs.flat_map(|y| y.iter().zip(y.iter().skip(1)).map(|(a, b)| b - a));
-        changes.map(f64::abs).filter(|change| *change > 0.0)
+    let pairs = || trials.iter().flat_map(|trial| trial.output().windows(2));
+    let Some(least) = least_change(pairs()) else { return 0.0 };
+    let is_multiple = |pair: &[f64]| {
+        let steps = (pair[1] - pair[0]) / least;
+        (steps - steps.round()).abs() < OFF
     };
-    let least = changes().fold(f64::INFINITY, f64::min);
-    let is_multiple = |change: f64| (change / least - (change / least).round()).abs() < OFF;
-    let is_step = least.is_finite() && changes().all(is_multiple);
+    let is_step = pairs().all(is_multiple);
     // Rounding is even over ±q/2: q²/12.
     if is_step { least / 12.0_f64.sqrt() } else { 0.0 }
 }

@@ -303,17 +303,17 @@ impl Findings<'_> {
 
     fn on_gaps(&self) -> Option<String> {
         // Other uneven samples are interpolated anyhow.
-        let is_told = |trial: &usize| {
+        let is_reported = |trial: &usize| {
             let even = self.clocks.get(*trial).map(|clock| clock.evenness != Evenness::Uneven);
             even == Some(true) || self.is_only_cut(*trial)
         };
-        let told = (0..self.clocks.len()).filter(is_told);
-        let told = told.filter_map(|trial| Some((trial, self.clocks.get(trial)?.gaps?)));
-        let told: Vec<(usize, (usize, usize, usize))> = told.collect();
-        let (trial, (_, _, row)) = *told.first()?;
+        let reported = (0..self.clocks.len()).filter(is_reported);
+        let reported = reported.filter_map(|trial| Some((trial, self.clocks.get(trial)?.gaps?)));
+        let reported: Vec<(usize, (usize, usize, usize))> = reported.collect();
+        let (trial, (_, _, row)) = *reported.first()?;
         let row = (self.number)(trial, row);
-        let many: usize = told.iter().map(|(_, (many, ..))| many).sum();
-        let longest = told.iter().map(|(_, (_, periods, _))| *periods).max()?;
+        let many: usize = reported.iter().map(|(_, (many, ..))| many).sum();
+        let longest = reported.iter().map(|(_, (_, periods, _))| *periods).max()?;
         let gaps = if many == 1 { "gap" } else { "gaps" };
         Some(format!(
             "rows are lost in {many} {gaps} of up to {longest} periods (first before row {row}): \

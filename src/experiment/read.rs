@@ -371,8 +371,8 @@ pub(super) fn laid_out_by_names(
     let further = survey.further_inputs.iter().filter(|_| survey.is_sure);
     found.notes.extend(further.map(|(joint, column)| {
         format!(
-            "joint `{joint}`: `{column}` is named like what drives it, too, and is not read: where it does, as \
-             the second coil of a valve, the input is one column of both, and `--joint` names it"
+            "joint `{joint}`: `{column}` looks like an input of it, too, and is not used; of a valve with two \
+             coils, log the difference of both as one column and name it with `--joint`"
         )
     }));
     Ok((layout, found))

@@ -1,7 +1,7 @@
 //! Sensors and converters whose range ends before the motion does.
 
 use super::joint::Trial;
-use crate::numerics::robust_scale;
+use crate::numerics::{least_change, robust_scale};
 
 /// Samples in a row at the end of a range that are no chance.
 const IN_A_ROW: usize = 5;
@@ -47,8 +47,7 @@ pub(crate) fn saturations(trials: &[Trial]) -> Vec<Saturation> {
     let pairs = || trials.iter().flat_map(|trial| trial.output().windows(2));
     let others = || pairs().filter(|pair| !(is_at(low, pair[1]) || is_at(high, pair[1])));
     let still = others().filter(|pair| is_at(pair[0], pair[1])).count() as f64;
-    let changes = others().map(|pair| (pair[1] - pair[0]).abs());
-    let count = changes.filter(|change| *change > 0.0).fold(f64::MAX, f64::min);
+    let count = least_change(others()).unwrap_or(f64::MAX);
     let has_noise = high > low
         && still <= STILL * others().count() as f64
         && noise(trials, |value| is_at(low, value) || is_at(high, value)) >= COUNTS * count;

@@ -67,6 +67,11 @@ impl Kept {
         write_file(path, |file| Ok(serde_json::to_writer(file, self)?))
     }
 
+    /// What it is of: documents of many logs are large.
+    pub(super) fn without_document(self) -> Self {
+        Self { document: Value::Null, ..self }
+    }
+
     /// The result, for the tables.
     pub(crate) fn result(self) -> LogResult {
         LogResult { file: self.file, document: self.document }

@@ -36,17 +36,28 @@ pub(crate) struct Done {
 impl Work<'_> {
     /// Works on each log that has no result yet.
     pub(crate) fn run(&self, logs: &[&PathBuf]) -> anyhow::Result<Done> {
-        self.check_command(logs)?;
+        let earlier =
+            |log: &&PathBuf| Kept::read(&self.place(log)).ok().map(Kept::without_document);
+        let earlier: Vec<Option<Kept>> = logs.iter().map(earlier).collect();
+        self.check_command(&earlier)?;
         let keys = logs.iter().map(|log| self.key(log)).collect::<Vec<_>>();
-        let open: Vec<usize> =
-            (0..logs.len()).filter(|index| !self.is_done(logs, &keys, *index)).collect();
+        let is_open = |index: &usize| {
+            let (Some(log), Some(Ok(key))) = (logs.get(*index), keys.get(*index)) else {
+                return true;
+            };
+            let known = earlier.get(*index).and_then(Option::as_ref);
+            !known.is_some_and(|known| self.is_done(log, key, known))
+        };
+        let open: Vec<usize> = (0..logs.len()).filter(is_open).collect();
         let (left, all) = (open.len(), logs.len());
         if left < all && self.each.run.verbosity() == Verbosity::Normal {
             message("note", &format!("{} of {all} logs are done already", all - left));
         }
         if self.each.run.verbosity() == Verbosity::Normal {
             self.note_replaced(open.iter().filter_map(|index| {
-                Some((*logs.get(*index)?, keys.get(*index)?.as_ref().ok()?.as_str()))
+                let (key, known) =
+                    (keys.get(*index)?.as_ref().ok()?, earlier.get(*index)?.as_ref()?);
+                (known.key != *key).then_some((*logs.get(*index)?, known))
             }));
         }
         let bar = Bar::new(self.each.run.verbosity(), "working", "logs", open.len() as u64);
@@ -90,12 +101,10 @@ impl Work<'_> {
 
     /// Says that results of the same options are replaced, since the bytes under the name of their log or of
     /// a file in the options are others now.
-    fn note_replaced<'k>(&self, open: impl Iterator<Item = (&'k PathBuf, &'k str)>) {
+    fn note_replaced<'k>(&self, others: impl Iterator<Item = (&'k PathBuf, &'k Kept)>) {
         let settings = self.settings();
-        let is_other = |(log, key): &(&PathBuf, &str)| {
-            Kept::read(&self.place(log)).is_ok_and(|kept| kept.has(&settings) && kept.key != *key)
-        };
-        let replaced: Vec<&PathBuf> = open.filter(is_other).map(|(log, _)| log).collect();
+        let of_these_options = others.filter(|(_, known)| known.has(&settings));
+        let replaced: Vec<&PathBuf> = of_these_options.map(|(log, _)| log).collect();
         let Some(first) = replaced.first() else { return };
         let (first, count) = (first.display(), replaced.len());
         let results = if count == 1 { "result is" } else { "results are" };
@@ -103,16 +112,15 @@ impl Work<'_> {
             "note",
             &format!(
                 "{count} {results} replaced: {first}, or a file that is given beside it, has changed \
-                 since; or it is another log of that name, and for its result to stand beside the other's \
-                 their paths must differ as they are given"
+                 since; results are known by the paths of their logs as typed, so that logs of one name in \
+                 two folders need the folders in their paths"
             ),
         );
     }
 
     /// Refuses a folder with results of another command, which would be replaced.
-    fn check_command(&self, logs: &[&PathBuf]) -> anyhow::Result<()> {
-        let kept = logs.iter().filter_map(|log| Kept::read(&self.place(log)).ok());
-        match { kept }.find(|kept| kept.command != self.each.command) {
+    fn check_command(&self, earlier: &[Option<Kept>]) -> anyhow::Result<()> {
+        match earlier.iter().flatten().find(|kept| kept.command != self.each.command) {
             Some(kept) => bail!(
                 "{}: has results of `{}`; give the results of `{}` another folder",
                 self.results.display(),
@@ -128,12 +136,10 @@ impl Work<'_> {
         self.results.join(format!("{}.json", name_of(log)))
     }
 
-    fn is_done(&self, logs: &[&PathBuf], keys: &[anyhow::Result<String>], index: usize) -> bool {
-        let (Some(log), Some(Ok(key))) = (logs.get(index), keys.get(index)) else { return false };
-        let kept = Kept::read(&self.place(log));
+    /// Whether what is `known` of a log is its result.
+    fn is_done(&self, log: &Path, key: &str, known: &Kept) -> bool {
         let has_model = self.model_of(log).is_none_or(|model| model.is_file());
-        has_model
-            && kept.is_ok_and(|kept| kept.key == *key && kept.file == text_of(log.as_os_str()))
+        has_model && known.key == key && known.file == text_of(log.as_os_str())
     }
 
     /// Where the model of a log is written, where the command makes one.

@@ -179,8 +179,8 @@ fn as_long_as_allowed(joint: &Joint, estimate: &JointEstimate) -> Option<String>
     let bounded = delays.iter().filter(|delay| **delay > longest - near).count();
     (bounded > 0 && bounded as f64 >= PART * delays.len() as f64).then(|| {
         format!(
-            "joint `{}`: {bounded} of {} delays are as long as `--max-delay` allows: the reaction may be \
-             later; look further",
+            "joint `{}`: {bounded} of {} delays are as long as `--max-delay` allows: reactions may \
+             come later; raise it",
             joint.name,
             delays.len()
         )

@@ -1,11 +1,11 @@
-//! What is said of the sensor that measured a joint.
+//! What is said of the sensors and the logger that measured a joint.
 
 use crate::experiment::{Joint, Trial, coarse_resolution, saturations, spike_count};
 use crate::numerics::{quantile, to_digits};
 use crate::study::JointEstimate;
 use crate::wording::percent;
 
-/// A line on each limit of its sensor that shows in the delays of a joint.
+/// A line on each limit of its sensors, and of its logger, that shows in the delays of a joint.
 pub(super) fn notes_on_sensor(joint: &Joint, estimate: &JointEstimate) -> Vec<String> {
     let far = [("input", Trial::input as fn(&Trial) -> &[f64]), ("output", Trial::output)];
     let far = far.into_iter().filter_map(|(what, of)| far_off(joint, what, of));
@@ -30,12 +30,11 @@ fn far_off(joint: &Joint, what: &str, of: fn(&Trial) -> &[f64]) -> Option<String
     let share = far.len() as f64 / count as f64;
     (high > low && !far.is_empty() && share <= SELDOM).then(|| {
         format!(
-            "joint `{}`: the {what} is as far off as {} in {} of {} samples, and between {} and {} in most: \
-             where that stands for no value, leave the cells empty",
+            "joint `{}`: the {what} goes to {} in {} of {count} samples, far beyond its usual range of {} to \
+             {}: if such a number marks missing values, leave these cells empty",
             joint.name,
             to_digits(far[0], 4),
             far.len(),
-            count,
             to_digits(low, 3),
             to_digits(high, 3)
         )
@@ -81,9 +80,9 @@ fn coarse(joint: &Joint) -> Option<String> {
     let found = coarse_resolution(&joint.trials)?;
     let unit = joint.output_unit.as_deref().map_or_else(String::new, |unit| format!(" {unit}"));
     Some(format!(
-        "joint `{}`: the output comes in counts of {}{unit}, one each {} s at its usual speed: a reaction \
-         shows by up to so much later than it begins, and delays are known no better; a finer sensor, or \
-         larger steps of the input, show it earlier",
+        "joint `{}`: the resolution of the output is {}{unit}, a count every {} s at its usual speed: a \
+         reaction is seen up to that much late, and delays are no more accurate than that; a finer sensor, \
+         or larger steps of the input, resolve them better",
         joint.name,
         to_digits(found.count, 4),
         to_digits(found.between_s, 2)

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use crate::units::ceil_to_index;
+
 /// Part of the input's power beyond one sine below which it is one: noise of 1 % of its amplitude, or a
 /// third harmonic of as much.
 const ONE_SINE: f64 = 1e-3;
@@ -24,7 +26,7 @@ pub(super) fn one_frequency(inputs: &[Vec<f64>]) -> Option<f64> {
         inputs.iter().map(|input| input.iter().map(|value| value - mean).collect()).collect();
     let longest = centred.iter().map(Vec::len).max()? / 4;
     let quarter = (1..longest).find(|lag| product(&centred, *lag) <= 0.0)?;
-    let lag = crate::units::ceil_to_index((OF_QUARTER * quarter as f64).round().max(1.0));
+    let lag = ceil_to_index((OF_QUARTER * quarter as f64).round().max(1.0));
     let rows = centred.iter().flat_map(|input| input.windows(2 * lag + 1));
     let rows: Vec<[f64; 2]> = rows.map(|row| [row[lag], row[0] + row[2 * lag]]).collect();
     let [mean_middle, mean_ends] =

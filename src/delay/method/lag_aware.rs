@@ -21,7 +21,7 @@ use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
 use crate::delay::settings::{CONFIDENCE, Settings};
 use crate::delay::spec::{Method, MethodSpec, Scope};
-use crate::numerics::{Line, NoiseModel, student_quantile};
+use crate::numerics::{Line, NoiseModel, least_change, student_quantile};
 use crate::units::ceil_to_index;
 
 static SPEC: MethodSpec = MethodSpec {
@@ -126,18 +126,11 @@ fn lag_of(trials: &[Prepared<'_>], settings: &Settings) -> Lag {
         return Lag::undetermined();
     }
     let outputs = trials.iter().flat_map(|trial| trial.raw.windows(2));
-    if found.model.order() > 0 && !found.is_seen_by(quantum(outputs)) {
+    if found.model.order() > 0 && !found.is_seen_by(least_change(outputs).unwrap_or(0.0)) {
         return Lag::undetermined();
     }
     let lag = Lag::new(period, found.model, found.covariance());
     if found.model.order() > 0 && !is_known(&lag) { Lag::undetermined() } else { lag }
-}
-
-/// The step of the sensor: the smallest change of the output from one sample to the next.
-fn quantum<'a>(pairs: impl Iterator<Item = &'a [f64]>) -> f64 {
-    let steps = pairs.map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
-    let least = steps.fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least } else { 0.0 }
 }
 
 /// Whether the lag is more than its own uncertainty: two standard errors.

@@ -96,12 +96,13 @@ impl Continuous {
         let (row, by) = (number(*row), to_digits(*by, 3));
         let more = match self.shifted.len() {
             1 => String::new(),
+            2 => ", and once more".to_owned(),
             count => format!(", and {} times more", count - 1),
         };
         Some(format!(
-            "joint `{name}`: the output jumps by {by}{unit} at row {row}{more}, from one row to the next and \
-             much farther than it ever moves: its zero was set anew there, and what follows is taken back \
-             by as much"
+            "joint `{name}`: the output jumps by {by}{unit} at row {row}{more}, much farther than it moves \
+             between any other rows: taken for a sensor that was re-zeroed, and later samples are shifted \
+             back by as much"
         ))
     }
 }

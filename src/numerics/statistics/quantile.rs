@@ -99,6 +99,13 @@ pub(crate) fn robust_scale(values: &[f64]) -> f64 {
     scale_of_distances(values.iter().map(|value| value.abs()).collect())
 }
 
+/// The least change from one value to the next of `pairs` that is one: of a sensor with counts, a count.
+/// None where nothing changes.
+pub(crate) fn least_change<'a>(pairs: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
+    let changes = pairs.map(|pair| (pair[1] - pair[0]).abs()).filter(|change| *change > 0.0);
+    changes.min_by(f64::total_cmp).filter(|least| least.is_finite())
+}
+
 /// [`robust_scale`] of values whose distances from zero are given.
 fn scale_of_distances(mut distances: Vec<f64>) -> f64 {
     let middle = distances.len() / 2;
