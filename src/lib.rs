@@ -2,7 +2,7 @@
 //!
 //! ## Where things are
 //!
-//! Each module uses only those above it; `tests/layering.rs` checks it.
+//! Each module uses only those above it; `tests/house/layering.rs` checks it.
 //!
 //! - [`units`]: scalars that are valid once they exist
 //! - [`numerics`]: statistics, filters, projections, noise models
@@ -28,9 +28,9 @@
 //!
 //! | what | one file | one line, beside its `mod` |
 //! |---|---|---|
-//! | an effect | `src/effect/` | `src/effect/registry.rs`; its independent twin for tests: where it acts in `src/synthetic/effects/` (its struct, `mod.rs`, `groups.rs`, `names.rs`) and `src/synthetic/motion.rs` or `effects/opening.rs`, how large it is drawn in `src/synthetic/scenario/recipe.rs`; a row in `docs/simulating.md`; `tests/hidden_effects.rs`, `tests/export_models.rs` and `tests/documents.rs` name what is missing |
+//! | an effect | `src/effect/` | `src/effect/registry.rs`; its independent twin for tests: where it acts in `src/synthetic/effects/` (its struct, `mod.rs`, `groups.rs`, `names.rs`) and `src/synthetic/motion.rs` or `effects/opening.rs`, how large it is drawn in `src/synthetic/scenario/recipe.rs`; a row in `docs/simulating.md`; `tests/models/hidden_effects.rs`, `tests/models/export_models.rs` and `tests/commands/documents.rs` name what is missing |
 //! | a method that finds delays | `src/delay/method/` | `src/delay/method/registry.rs`; a row in `docs/methods.md` |
-//! | a format of logs | `src/experiment/format/` | `src/experiment/format/registry.rs`; where it needs a library, a feature in `Cargo.toml`; a section in `docs/formats.md`; a target in `fuzz/targets/` (its name in `fuzz/Cargo.toml`, `fuzz/run`, `tests/replay.rs`) |
+//! | a format of logs | `src/experiment/format/` | `src/experiment/format/registry.rs`; where it needs a library, a feature in `Cargo.toml`; a section in `docs/formats.md`; a target in `fuzz/targets/` (its name in `fuzz/Cargo.toml`, `fuzz/run`, `tests/reading/replay.rs`) |
 //! | a field of a command's JSON | `src/report/json/`, a file per command; what models have in all of them in `joint.rs` | |
 //! | a mark in a view of a recording | `src/recording/segment_view.rs` and its neighbours draw; what is shared with the report in `src/figure/` | its path in `src/recording/paths.rs`; a new pane in `src/recording/views/` |
 //! | a language for exported models | `src/export/`, with its template | `src/export/registry.rs` |

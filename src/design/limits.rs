@@ -16,7 +16,7 @@ pub struct Limits {
 }
 
 /// Of the failures that the power allows, the part that is not granted to rehearsals: a model
-/// is not the joint. Chosen; `examples/design_power.rs` shows what designed inputs do then.
+/// is not the joint. Chosen; `examples/statistics/design_power.rs` shows what designed inputs do then.
 const RESERVE: f64 = 0.5;
 
 impl Limits {

@@ -26,7 +26,7 @@ pub(super) enum Scope {
 }
 
 /// Effects that are fitted, of those that were surveyed: at most, and at least. Chosen: each
-/// more costs a fit; `tests/hidden_effects.rs` finds what it hides with so many.
+/// more costs a fit; `tests/models/hidden_effects.rs` finds what it hides with so many.
 const FINALISTS: (usize, usize) = (6, 3);
 
 /// What the cost of a finalist may be after the survey, in parts of the least. Chosen: a rough

@@ -394,7 +394,7 @@ fn richest<'a, 'b>(all: &'b [LagSearch<'a>]) -> Option<&'b LagSearch<'a>> {
 }
 
 /// How often Schwarz's penalty for one parameter counts; chosen, and fixed by
-/// `tests/delay_methods.rs` (a joint without a lag has none, one with a lag or ringing has that). A lag shorter than a sample is at
+/// `tests/delays/delay_methods.rs` (a joint without a lag has none, one with a lag or ringing has that). A lag shorter than a sample is at
 /// the border of all lags, and a pair that hardly decays looks for one period among many:
 /// there noise explains more than its number of parameters.
 fn penalty(poles: Poles) -> f64 {

@@ -8,7 +8,7 @@ use crate::delay::broken_line;
 use crate::delay::lag::{Basis, FINE, FitWindow, LagModel, Linearised};
 use crate::numerics::NoiseModel;
 
-/// Times that all onsets are fitted where holds are short; chosen (`tests/delay_methods.rs`, holds shorter than delay and lag).
+/// Times that all onsets are fitted where holds are short; chosen (`tests/delays/delay_methods.rs`, holds shorter than delay and lag).
 const PASSES: usize = 3;
 
 /// Samples by which an onset that only bounds its neighbours may still move.

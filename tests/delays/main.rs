@@ -1,0 +1,23 @@
+//! Delays: Algorithm 1 to the letter, the other methods against known delays, tables and sweeps of them.
+
+mod conditions;
+mod continuous_input;
+mod delay_against_state;
+mod delay_methods;
+mod delay_table;
+mod export;
+mod lengths;
+mod low_pass_equals_scipy;
+mod manipulator;
+mod measured_logs;
+mod rank_equals_scipy;
+#[path = "../support/real.rs"]
+mod real;
+#[path = "../support/sample.rs"]
+mod sample;
+mod settling;
+mod strokes;
+mod sweep;
+mod tracking;
+mod two_lines_brute_force;
+mod worked_example;

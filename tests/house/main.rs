@@ -1,0 +1,5 @@
+//! The project itself: which module may use which, and what the dependencies may be.
+
+mod dependencies;
+mod layering;
+mod programs;

@@ -1,0 +1,24 @@
+//! What a reviewer sees: recordings read back, the report, pictures in the viewer.
+
+mod decisions;
+mod delay;
+#[path = "../support/desk.rs"]
+#[cfg_attr(
+    feature = "rrd",
+    expect(dead_code, reason = "recordings of models are read otherwise here")
+)]
+mod desk;
+mod differences;
+mod live;
+mod models;
+mod pictures;
+mod preview;
+#[cfg(feature = "rrd")]
+#[path = "../support/read_back.rs"]
+mod read_back;
+#[cfg(feature = "rrd")]
+#[path = "../support/recorded.rs"]
+mod recorded;
+mod report;
+mod reviewing;
+mod sweep;
