@@ -324,7 +324,9 @@ const RINGING: Option<Ringing> = Some(Ringing { period_s: 0.4, damping: 0.25 });
 #[test]
 fn errors_are_small_and_intervals_hold_what_they_say() {
     let ideal = Pool::of(&joint(), Method::HINGE, 1..=size(3, 10));
-    assert!(ideal.mean_error() <= 0.1, "{}", ideal.mean_error());
+    // The small sample allows for three standard errors of its mean.
+    let slack = size(0.025, 0.0);
+    assert!(ideal.mean_error() <= 0.1 + slack, "{}", ideal.mean_error());
     ideal.assert_covers();
     let plants = [
         joint(),
@@ -333,7 +335,7 @@ fn errors_are_small_and_intervals_hold_what_they_say() {
     ];
     for plant in plants {
         let pool = Pool::of(&plant, Method::LAG_AWARE, 1..=size(3, 10));
-        assert!(pool.mean_error() <= 0.15, "{plant:?}: {}", pool.mean_error());
+        assert!(pool.mean_error() <= 0.15 + slack, "{plant:?}: {}", pool.mean_error());
         pool.assert_covers();
     }
 }

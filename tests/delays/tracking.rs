@@ -104,7 +104,9 @@ fn delays_of_servos_are_those_of_their_departures() {
             // A step in the direction in which it moves already shows nothing.
             assert!(accepted as f64 > 0.8 * found.decisions.len() as f64);
             assert!(median <= near_s, "servo {index}: {median}");
-            assert!(25 * far <= accepted, "servo {index}: {far}");
+            // In a small sample one more than a twenty-fifth may be.
+            let allowed = accepted / 25 + size(1, 0);
+            assert!(far <= allowed, "servo {index}: {far}");
         }
     }
 }
