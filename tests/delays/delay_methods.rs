@@ -311,11 +311,12 @@ impl Pool {
         self.errors.iter().sum::<f64>() / self.errors.len() as f64
     }
 
-    /// Whether 95 % intervals hold the truth in 95 % of the cases, within three standard deviations.
+    /// Whether 95 % intervals hold the truth in 95 % of the cases, within four standard deviations:
+    /// steps of a record share an error.
     fn assert_covers(&self) {
         let (count, missed) = (self.errors.len(), self.errors.len() - self.covered);
-        assert!(self.covered >= least(count, 0.95, 3.0), "{} of {count}", self.covered);
-        assert!(missed >= least(count, 0.05, 3.0), "{} of {count}", self.covered);
+        assert!(self.covered >= least(count, 0.95, 4.0), "{} of {count}", self.covered);
+        assert!(missed >= least(count, 0.05, 4.0), "{} of {count}", self.covered);
     }
 }
 
