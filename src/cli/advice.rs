@@ -3,6 +3,7 @@
 
 use std::error::Error;
 
+use super::typed::mapping_options;
 use crate::delay::{EstimateError, Growing, Method, Scope};
 use crate::design::{NotKept, PlanError, SuspectsError, rounded};
 use crate::experiment::ReadError;
@@ -41,6 +42,13 @@ pub(crate) fn advice(error: &(dyn Error + 'static)) -> String {
 
 fn on_reading(error: &ReadError) -> String {
     let text = match error {
+        ReadError::NoJoints { likely, .. } if !likely.1.is_empty() => {
+            let (time, joints) = likely.as_ref();
+            return format!(
+                "; what the columns hold suggests `{}`, and `tauscope columns` says why",
+                mapping_options([time.as_deref(), None], joints)
+            );
+        }
         ReadError::NoJoints { .. } => {
             "; `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN` says which are those of a joint, and \
              `tauscope columns` which they may be"

@@ -8,6 +8,7 @@
 //! - `viewer`: recordings shown while they are made
 //! - `output`: files, tables and recordings
 //! - `failure`, `advice`: what is said of errors, and the option to use
+//! - `typed`: command lines that are suggested or reported
 //! - `console`: messages, results and progress on the terminal
 
 mod advice;
@@ -20,6 +21,7 @@ mod failure;
 mod output;
 mod program;
 mod run;
+mod typed;
 mod viewer;
 
 pub use console::Hosting;

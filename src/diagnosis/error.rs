@@ -1,6 +1,6 @@
 //! How large the error of a model is.
 
-use crate::fit::{Evaluation, FitRecord, Part, Window};
+use crate::fit::{Evaluation, FitRecord, Part, Window, is_rounding};
 
 /// The error of a model on one part of a record, without isolated spikes of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,9 +53,12 @@ impl ErrorFigures {
             let mean = measured.iter().sum::<f64>() / measured.len() as f64;
             spread += measured.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>();
         }
-        let fit_percent = match spread {
-            moves if moves > 0.0 => 100.0 * (1.0 - (squares / moves).sqrt()),
-            _ => f64::NEG_INFINITY,
+        // Of an output that stands still nothing but rounding is left behind its mean.
+        let stands_still = is_rounding(record.joint(), (spread / samples.max(1) as f64).sqrt());
+        let fit_percent = if stands_still {
+            f64::NEG_INFINITY
+        } else {
+            100.0 * (1.0 - (squares / spread).sqrt())
         };
         (samples > 0).then(|| Self { rmse: (squares / samples as f64).sqrt(), fit_percent, max })
     }

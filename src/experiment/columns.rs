@@ -112,6 +112,13 @@ impl JointColumns {
 }
 
 impl ColumnMap {
+    /// The name, the input and the output of each joint.
+    pub(crate) fn named_joints(&self) -> Vec<[String; 3]> {
+        let joint =
+            |joint: &JointColumns| [&joint.name, &joint.input, &joint.output].map(Clone::clone);
+        self.joints.iter().map(joint).collect()
+    }
+
     /// Reads a mapping from a TOML file.
     ///
     /// ```toml

@@ -298,6 +298,9 @@ pub enum ReadError {
         row: u64,
         /// The names that are there.
         available: String,
+        /// What names and data suggest, though not for sure: the column of the time, and the name, the
+        /// input and the output of each joint.
+        likely: Box<(Option<String>, Vec<[String; 3]>)>,
     },
     /// A joint that was asked for is not in the log.
     #[error(
@@ -485,6 +488,24 @@ pub enum ReadError {
         column: String,
         /// The period in that unit, in seconds.
         period: f64,
+    },
+    /// Times that are in one unit, and from a row on in another.
+    #[error(
+        "{}, row {row}, column `{column}`: from here on the times are in another unit: `{time}` behind \
+         `{before}`, and the steps between them are as many times as large; write all times in one unit",
+        path.display()
+    )]
+    TimeUnitChanges {
+        /// The log.
+        path: PathBuf,
+        /// Line of the first row in the other unit.
+        row: u64,
+        /// The column.
+        column: String,
+        /// The time in the row before.
+        before: f64,
+        /// The time in this row.
+        time: f64,
     },
     /// Times that are so near to one another that they are of no clock.
     #[error(

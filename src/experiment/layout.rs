@@ -249,7 +249,8 @@ impl Layout {
         }
         if names.is_empty() {
             let (path, row) = (head.path.clone(), head.header_row);
-            return Err(ReadError::NoJoints { path, row, available: head.names() });
+            let available = head.names();
+            return Err(ReadError::NoJoints { path, row, available, likely: Box::default() });
         }
         for name in names {
             let covariates = covariates.get(name).map_or(&[][..], Vec::as_slice);

@@ -13,13 +13,21 @@ pub(crate) fn is_control(letter: char) -> bool {
 
 /// A name without blanks around it and without what would break the lines of a table, move a
 /// terminal's cursor or turn the direction of writing: breaks of lines become blanks, as in a
-/// heading `angle (deg)` of a spreadsheet on two lines, and other control characters `U+FFFD`.
+/// heading `angle (deg)` of a spreadsheet on two lines, and other control characters are written as
+/// `\u{1b}`, so that names which differ by them stay different.
 pub(super) fn on_one_line(text: &str) -> Cow<'_, str> {
     let text = text.trim();
     if !text.contains(is_control) {
         return Cow::Borrowed(text);
     }
-    let text = text.replace(|c: char| is_control(c) && !c.is_whitespace(), "\u{fffd}");
+    let text = text.chars().fold(String::new(), |mut text, letter| {
+        if is_control(letter) && !letter.is_whitespace() {
+            text.extend(letter.escape_unicode());
+        } else {
+            text.push(letter);
+        }
+        text
+    });
     Cow::Owned(text.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
@@ -78,6 +86,6 @@ mod tests {
     fn a_name_is_one_line_that_no_terminal_obeys() {
         assert_eq!(on_one_line(" boom  angle "), "boom  angle");
         assert_eq!(on_one_line("angle\r\n\t(deg)"), "angle (deg)");
-        assert_eq!(on_one_line("a\u{1b}[31mb\u{202e}c\u{2028}d"), "a\u{fffd}[31mb\u{fffd}c d");
+        assert_eq!(on_one_line("a\u{1b}[31mb\u{202e}c\u{2028}d"), r"a\u{1b}[31mb\u{202e}c d");
     }
 }

@@ -328,7 +328,8 @@ pub(super) fn laid_out(
             time.name
         ));
     }
-    let note = layout.time.column().and_then(|column| note_on_times(head, column));
+    let signals = layout.numeric_columns();
+    let note = layout.time.column().and_then(|column| note_on_times(head, column, &signals));
     let are_native = options.columns.joints.is_empty() && options.joints.is_empty();
     let further = if are_native { note_on_further_joint(head, &layout) } else { None };
     let notes = note.into_iter().chain(further);
@@ -358,7 +359,14 @@ pub(super) fn laid_out_by_names(
     if survey.is_sure {
         options.columns.joints.clone_from(&survey.map.joints);
     }
-    let (layout, mut found) = laid_out(head, &options)?;
+    let suggested = |error| match error {
+        ReadError::NoJoints { path, row, available, .. } => {
+            let likely = Box::new((survey.map.time.clone(), survey.map.named_joints()));
+            ReadError::NoJoints { path, row, available, likely }
+        }
+        error => error,
+    };
+    let (layout, mut found) = laid_out(head, &options).map_err(suggested)?;
     let joint = |joint: &JointColumns| {
         format!("{} (input `{}`, output `{}`)", joint.name, joint.input, joint.output)
     };

@@ -151,9 +151,9 @@ pub(super) fn rest_of_times(head: &Head, column: usize) -> Option<(usize, f64)> 
     })
 }
 
-/// What a reader should know of a log whose times are those of `column`: that others are not used, and
-/// that what may be a temperature is taken for a time.
-pub(super) fn note_on_times(head: &Head, column: usize) -> Option<String> {
+/// What a reader should know of a log whose times are those of `column`: that others, which no joint
+/// `uses` as a signal, are not used, and that what may be a temperature is taken for a time.
+pub(super) fn note_on_times(head: &Head, column: usize, uses: &[usize]) -> Option<String> {
     /// Columns that are named.
     const MOST: usize = 3;
     let text = &head.headers.get(column)?.text;
@@ -162,6 +162,7 @@ pub(super) fn note_on_times(head: &Head, column: usize) -> Option<String> {
         let is_within = *other > 0 && other + 1 < head.headers.len();
         // Those of its name say the same.
         header.text != *text
+            && !uses.contains(other)
             && rest != Some(*other)
             && (is_like_a_time(header)
                 || is_time_of_another(head, header)
@@ -253,7 +254,7 @@ mod tests {
         let headers = names.iter().map(|name| Header::parse(name)).collect();
         let head =
             Head { path: PathBuf::from("log.csv"), headers, header_row: 1, unread: Vec::new() };
-        note_on_times(&head, find_time_column(&head)?)
+        note_on_times(&head, find_time_column(&head)?, &[])
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub enum ReviewError {
     Cell {
         /// The file.
         path: PathBuf,
-        /// Line of the file, from 1.
+        /// Row of the table, from 1 with the header.
         line: u64,
         /// The column.
         column: &'static str,
@@ -54,13 +54,14 @@ pub struct Review {
     rows: Vec<Reviewed>,
 }
 
-/// A verdict on one step, and what the reviewer was shown of it.
+/// A verdict or a delay of one step, and what the reviewer was shown of it.
 #[derive(Clone, Debug, PartialEq)]
 struct Reviewed {
     joint: String,
     trial: String,
     i: usize,
-    accepted: bool,
+    /// `None` where a delay is given without a verdict.
+    accepted: Option<bool>,
     delay_s: Option<f64>,
     note: String,
     reviewer: String,
@@ -99,7 +100,8 @@ struct Row {
 impl Review {
     /// Reads a review: a table with the columns `joint,trial,i,verdict,delay_s,note,reviewer`,
     /// and those further ones that a review sheet has, also as a spreadsheet program saves it again: in
-    /// its encoding, with its delimiter and its decimal mark. Rows without a verdict say nothing yet.
+    /// its encoding, with its delimiter and its decimal mark. Rows with neither a
+    /// verdict nor a delay say nothing yet.
     ///
     /// # Errors
     /// [`ReviewError::Table`] for a file that is none or cannot be opened,
@@ -125,9 +127,8 @@ impl Review {
             return Err(ReviewError::Column { path: path.to_owned(), column, found });
         }
         let mut rows = Vec::new();
-        for record in reader.records() {
+        for (record, line) in reader.records().zip(2..) {
             let record = record.map_err(table)?;
-            let line = record.position().map_or(0, csv::Position::line);
             let row: Row = record.deserialize(Some(&found)).map_err(table)?;
             rows.extend(row.parsed(path, line)?);
         }
@@ -149,6 +150,10 @@ impl Review {
         let mut notes = Vec::new();
         let mut seen: BTreeMap<(&str, &str, usize), &Reviewed> = BTreeMap::new();
         for row in &self.rows {
+            if row.accepted.is_none() {
+                notes.extend(row.delay_s.map(|delay_s| row.note(Why::NoVerdict { delay_s })));
+                continue;
+            }
             let key = (row.joint.as_str(), row.trial.as_str(), row.i);
             let before = seen.insert(key, row);
             let differs = |before: &&Reviewed| before.accepted != row.accepted;
@@ -184,9 +189,10 @@ impl Row {
             _ => Err(wrong(column, text, "a number from 1 up")),
         };
         let accepted = match self.verdict.to_lowercase().as_str() {
-            "" => return Ok(None),
-            "accepted" => true,
-            "rejected" => false,
+            "" if self.delay_s.is_empty() => return Ok(None),
+            "" => None,
+            "accepted" => Some(true),
+            "rejected" => Some(false),
             _ => return Err(wrong("verdict", &self.verdict, "`accepted`, `rejected` or nothing")),
         };
         let shown = Shown {
@@ -225,6 +231,7 @@ impl Reviewed {
             Some((_, Err(_))) => return None,
             None => return Some(self.note(Why::NoJoint)),
         };
+        let accepted = self.accepted?;
         let between = estimate.settings.interpolation;
         let trials = joint.trials.iter().zip(&mut estimate.trials);
         let mut trials = trials.filter_map(|(trial, found)| Some((trial, found.as_mut().ok()?)));
@@ -245,7 +252,7 @@ impl Reviewed {
         }
         let changed = self.changed(decision, trial);
         let verdict = ReviewerVerdict {
-            accepted: self.accepted,
+            accepted,
             delay: self.delay_s.map(|delay_s| delay_s / trial.period().seconds()),
             note: self.note.clone(),
             reviewer: self.reviewer.clone(),
@@ -320,6 +327,11 @@ pub enum Why {
     },
     /// Two verdicts differ: the later one counts.
     Twice,
+    /// A delay stands there without a verdict: it is not applied.
+    NoVerdict {
+        /// The reviewer's delay, seconds.
+        delay_s: f64,
+    },
 }
 
 impl fmt::Display for ReviewNote {
@@ -353,6 +365,11 @@ impl fmt::Display for ReviewNote {
                     "the program's delay was {was:.4} s and is {is} now; the review still applies"
                 )
             }
+            Why::NoVerdict { delay_s } => write!(
+                f,
+                "a delay of {delay_s} s without a verdict: it is ignored; write `accepted` or \
+                 `rejected` beside it"
+            ),
             Why::Twice => write!(f, "there are two reviews that differ; the later one applies"),
         }
     }
@@ -451,6 +468,8 @@ mod tests {
         assert_eq!(why("arm,1,1,rejected,,,Ann,,,"), (Some(Why::NoJoint), 0));
         assert_eq!(why("boom,2,1,rejected,,,Ann,,,"), (Some(Why::NoTrial), 0));
         assert_eq!(why("boom,1,9,rejected,,,Ann,,,"), (Some(Why::NoStep(3)), 0));
+        let alone = Why::NoVerdict { delay_s: 0.3 };
+        assert_eq!(why("boom,1,1,,0.3,,Ann,101,,"), (Some(alone), 0));
         let twice = format!("{wide}\nboom,1,1,rejected,,,A,,,\nboom,1,1,accepted,,,B,,,");
         let (decisions, notes, _) = reviewed(&twice);
         assert_eq!(notes[0].why, Why::Twice);

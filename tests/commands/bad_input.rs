@@ -1,5 +1,4 @@
 //! Bad input: what the program says, how it exits and what it leaves behind.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 mod beside_good;
 mod content;

@@ -1,5 +1,4 @@
 //! One log gives equal results on any number of threads, in any order of joints.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,5 +1,4 @@
 //! What the documents say is true: commands run as printed and print what is printed.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fs;
 use std::path::Path;

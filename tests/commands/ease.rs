@@ -1,6 +1,5 @@
 //! What makes the program easy to use: completions, manual pages, `doctor`, colours, names
 //! that were mistyped.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::io::Write as _;
 use std::process::{Command, Output, Stdio};

@@ -1,5 +1,4 @@
 //! Numbers and texts that no joint has: refused or written harmlessly, never half believed.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fs;
 use std::path::Path;

@@ -3,7 +3,6 @@
 //! become, and nothing else is there that the next run does not remove.
 //!
 //! `TAUSCOPE_KILLS` says how often each command is ended, 2 unless given.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 #![cfg(unix)]
 
 use std::collections::BTreeMap;

@@ -1,5 +1,4 @@
 //! Many logs, each by itself: one table of all, whatever way they were worked on.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fs;
 use std::path::PathBuf;

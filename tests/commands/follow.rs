@@ -1,6 +1,5 @@
 //! `estimate --follow` on a log that grows: each decision as its step completes, and in the
 //! end what the whole log gives.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead as _, BufReader, Lines, Write as _};

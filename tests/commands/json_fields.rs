@@ -1,5 +1,4 @@
 //! Each field that `compare`, `explain`, `add` and `improve` print for programs is in the documents.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::collections::BTreeSet;
 use std::path::Path;

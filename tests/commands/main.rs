@@ -1,4 +1,5 @@
 //! The command line: exit status, messages, outputs, folders, and that the documents say what is so.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 mod bad_input;
 #[path = "../support/desk.rs"]

@@ -1,5 +1,4 @@
 //! `tauscope simulate` with and without a plant file, as a user runs it.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fs;
 use std::path::Path;

@@ -1,5 +1,4 @@
 //! Commands that a program runs inside itself give what the program prints.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::ffi::OsString;
 use std::io;

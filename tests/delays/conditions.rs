@@ -1,5 +1,4 @@
 //! What differs between trials and is in no signal, but in their labels: the load.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fmt::Write as _;
 use std::path::Path;

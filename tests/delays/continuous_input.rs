@@ -1,5 +1,4 @@
 //! A joint driven by a joystick: one dead time over the record, and no step.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fmt::Write as _;
 use std::path::Path;

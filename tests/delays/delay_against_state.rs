@@ -1,5 +1,4 @@
 //! What the delay depends on: planted laws are found, and nothing else.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use tauscope::batch::Threads;
 use tauscope::delay::{AgainstState, Settings};

@@ -1,5 +1,4 @@
 //! Delays between samples with their intervals: the broken line, and the lag behind it.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::path::Path;
 use std::process::{Command, Output};

@@ -1,5 +1,4 @@
 //! The delay table: rows by kind of step and level, the same in every form.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::path::Path;
 use std::process::Command;

@@ -1,5 +1,4 @@
 //! `estimate --export`: the lookup is compiled and run, and gives what the table says.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fmt::Write as _;
 use std::fs;

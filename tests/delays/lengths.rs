@@ -1,5 +1,4 @@
 //! Lengths of time in samples or in seconds, for all joints and for one.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fmt::Write as _;
 use std::fs;

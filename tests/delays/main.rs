@@ -1,4 +1,5 @@
 //! Delays: Algorithm 1 to the letter, the other methods against known delays, tables and sweeps of them.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 mod conditions;
 mod continuous_input;

@@ -1,5 +1,4 @@
 //! The demonstration log against the true delay of every step.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

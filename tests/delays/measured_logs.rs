@@ -1,6 +1,5 @@
 //! Measured logs of real machines, read with options alone. They are not part of this
 //! project: the folder that holds them is `TAUSCOPE_REAL_LOGS`, or `../shared/data`.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::collections::BTreeMap;
 use std::path::Path;

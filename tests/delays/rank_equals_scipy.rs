@@ -1,6 +1,5 @@
 //! Rank statistics against SciPy's numbers, and what must hold for any values;
 //! `golden/rank.py` made the numbers.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use proptest::prelude::*;
 use tauscope::numerics::{mann_whitney, spearman};

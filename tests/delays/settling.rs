@@ -1,6 +1,5 @@
 //! Outputs that settle: a speed, a pressure, a servo's position. The truth is simulated here, with
 //! exact exponentials between samples.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::sample::{least, size};
 use tauscope::delay::{

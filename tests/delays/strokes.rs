@@ -1,5 +1,4 @@
 //! Strokes from rest into a stop: right delays without a setting.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::real;
 use crate::sample::{least, size};

@@ -1,5 +1,4 @@
 //! Every delay with many settings: what it depends on, and which settings agree.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::path::Path;
 use std::process::{Command, Output};

@@ -1,6 +1,5 @@
 //! Servos whose rate is limited: the output goes where the input says, stays there, and its
 //! arrival is no reaction to a step.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::sample::size;
 use tauscope::Trial;

@@ -1,6 +1,5 @@
 //! The fast search against a two-line fit written straight from the equations: for each
 //! candidate both lines are solved anew by a singular value decomposition.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;

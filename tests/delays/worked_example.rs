@@ -1,5 +1,4 @@
 //! The paper's worked example: steps at samples 89 and 116, α = 10.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::path::PathBuf;
 

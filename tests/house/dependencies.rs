@@ -1,5 +1,4 @@
 //! What the dependencies may be, as `deny.toml` says, and that each is built once.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -1,6 +1,5 @@
 //! Modules import downward only, no files import in a circle, and each library stays in its
 //! place: the order is part of the design.
-#![expect(clippy::unwrap_used, clippy::panic, reason = "a test may fail loudly")]
 
 mod imports;
 

@@ -1,5 +1,4 @@
 //! Tests are few programs, and each of their files is part of one.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

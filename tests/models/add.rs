@@ -1,5 +1,4 @@
 //! `tauscope add` as a user sees it: the error before and after, and the model file.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::desk::{Desk, assert_fields, banded, fields, joint, number};
 use serde_json::json;

@@ -1,6 +1,5 @@
 //! `tauscope compare` as a user sees it, on joints of the synthetic plant, which shares no
 //! equation with the models.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fmt::Write as _;
 use std::process::{Command, Output};

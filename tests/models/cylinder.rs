@@ -1,5 +1,4 @@
 //! Logs of a joint that a hydraulic cylinder moves.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use tauscope::synthetic::{
     CylinderSpec, DelayLaw, InputSpec, JointSpec, Part, PlantError, PlantSpec, Spikes, Synthetic,

@@ -1,5 +1,4 @@
 //! The next experiment, as a user asks for it, and what the plant does with it.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fmt::Write as _;
 

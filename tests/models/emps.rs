@@ -1,7 +1,6 @@
 //! A measured servo drive, from its force to its position: published parameters are found
 //! again. The data are not part of this project: the folder that holds them is
 //! `TAUSCOPE_REAL_LOGS`, or `../shared/data`.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::real;
 use tauscope::effect::find;

@@ -1,5 +1,4 @@
 //! `tauscope explain` as a user sees it.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::desk::{Desk, assert_fields, banded, fields, joint, number};
 use serde_json::json;

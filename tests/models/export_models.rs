@@ -1,6 +1,5 @@
 //! `tauscope export`: models in other languages are compiled and run, and move as those of the
 //! library do.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fs;
 use std::io::Write as _;

@@ -1,5 +1,4 @@
 //! Where a model fails: planted failures are found, and nothing is found where there is none.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use proptest::prelude::*;
 use rand::SeedableRng as _;

@@ -4,7 +4,6 @@
 //! Every effect of the catalogue, on bases of none to four effects, on synthetic logs and on
 //! measured ones, which are not part of this project: the folder that holds them is
 //! `TAUSCOPE_REAL_LOGS`, or `../shared/data`.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::real;
 use crate::sample::size;

@@ -1,5 +1,4 @@
 //! Fitted parameters: what is found, what is not, and what is said about it.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use nalgebra::{DMatrix, DVector};
 use tauscope::effect::find;

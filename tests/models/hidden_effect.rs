@@ -1,5 +1,4 @@
 //! The log of the tutorial: its recipe makes it, and what it hides is found.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fs;
 use std::process::Command;

@@ -2,7 +2,6 @@
 //!
 //! The joint has a gain of 10 deg/s/V and a delay of 0.1 s. Tolerances allow for what the
 //! plant rounds: corners of 0.4 % of the largest level, edges of a time step (0.5 ms).
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,5 +1,4 @@
 //! `tauscope improve` as a user sees it: the ladder of errors, and the model file.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fmt::Write as _;
 

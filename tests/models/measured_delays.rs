@@ -1,5 +1,4 @@
 //! Delays that follow no law are taken from the record, and do not hide what else is missing.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use tauscope::batch::Threads;
 use tauscope::delay::{EstimateError, Settings};

@@ -1,7 +1,6 @@
 //! Models of measured joints: effects that are known to be there are found. The data are not
 //! part of this project: the folder that holds them is `TAUSCOPE_REAL_LOGS`, or
 //! `../shared/data`.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::process::Command;
 

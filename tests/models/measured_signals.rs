@@ -1,5 +1,4 @@
 //! What a further column of the log has to do with the gain: the pressure of the supply, a force.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fmt::Write as _;
 use std::process::Command;

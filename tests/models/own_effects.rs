@@ -1,6 +1,5 @@
 //! Effects that a user writes into the model file: they act like those of the catalogue,
 //! are fitted like them, and say clearly what is wrong with them.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::error::Error as _;
 use std::path::Path;

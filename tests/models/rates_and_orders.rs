@@ -1,6 +1,5 @@
 //! What is named of a joint does not depend on the rate of its log, the order of its trials or which of
 //! them are held back.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fmt::Write as _;
 use std::process::Command;

@@ -1,5 +1,4 @@
 //! Revisions of a model file: what a user wrote stays, and what is written reads the same.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::path::Path;
 

@@ -1,6 +1,5 @@
 //! What is hidden is as strong as it is said to be, by another measure than that which
 //! sized it.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::sample::size;
 use tauscope::diagnosis::compare;

@@ -1,6 +1,5 @@
 //! Two effects that look alike in a record, and the experiment that is proposed to tell them
 //! apart: with it in the record, the race does.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use tauscope::batch::Threads;
 use tauscope::delay::Settings;

@@ -3,7 +3,6 @@
 //! Nothing of the library's arithmetic is used here: levels are looked up by their times,
 //! every effect is written anew, and what moves is integrated by trapezia, Verlet's rule or
 //! in small steps.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use tauscope::effect::find;
 use tauscope::model::{

@@ -102,6 +102,13 @@ pub(crate) mod mat {
         element(14, &parts.concat())
     }
 
+    /// An object of a class, whose numbers stand elsewhere in the file.
+    pub(crate) fn object(name: &str, class: &str) -> Vec<u8> {
+        let flags = [&17_u32.to_le_bytes(), &0_u32.to_le_bytes()[..]].concat();
+        let texts = [name, "MCOS", class].map(|text| element(1, text.as_bytes()));
+        element(14, &[element(6, &flags), texts.concat(), array("", 1, &[7])].concat())
+    }
+
     /// `array` as a compressed element.
     pub(crate) fn packed(array: &[u8]) -> Vec<u8> {
         let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());

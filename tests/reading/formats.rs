@@ -1,6 +1,5 @@
 //! Logs that other programs wrote read as the CSV of the same data does; damaged ones are
 //! refused with what to do. The files are made by `tests/golden/formats.py`.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::path::{Path, PathBuf};
 
@@ -243,6 +242,24 @@ mod mat {
     /// The joints of the fixtures: a structure, and a vector with a column of a matrix.
     fn both() -> ReadOptions {
         mapped(&[("boom", "boom.input", "boom.output"), ("arm", "u", "y(2)")])
+    }
+
+    #[test]
+    fn an_object_is_named_with_what_to_save_instead() {
+        use crate::bytes::mat::{array, file, object};
+
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.mat");
+        for (class, remedy) in [("timeseries", "`.Time` and `.Data`"), ("mine", "its parts")] {
+            // A gain beside it is no log.
+            let variables = [array("gain", 1, &[3]), object("out", class)].concat();
+            std::fs::write(&path, file(&variables)).unwrap();
+            let found = Experiment::read(std::slice::from_ref(&path), &ReadOptions::default());
+            let message = found.failures[0].error.to_string();
+            for part in ["`out`", &format!("`{class}`"), remedy] {
+                assert!(message.contains(part), "{message}");
+            }
+        }
     }
 
     #[test]

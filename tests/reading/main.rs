@@ -1,4 +1,5 @@
 //! Logs as machines, programs and people write them: what is read, what is refused, and with what words.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 #[expect(unreachable_pub, reason = "the fuzzer's targets are crates of their own")]
 mod attempts;

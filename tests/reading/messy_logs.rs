@@ -1,6 +1,5 @@
 //! Logs as machines and people write them: each is read as the clean one, or refused with the
 //! place and the remedy. All of them are made here, from one joint.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 mod clocks;
 mod columns;

@@ -1,6 +1,5 @@
 //! Files with a few bytes changed: whatever they say, they are read or refused, soon and without
 //! a panic. `TAUSCOPE_MUTATIONS` says how many of each file are tried, 20 to 300 unless given.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::attempts;
 #[cfg(any(feature = "mat", feature = "mcap"))]

@@ -1,6 +1,5 @@
 //! What the fuzzer begins from, and what it found, on any compiler: all of it is read or
 //! refused. How they came about is said in `fuzz/README.md`.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::attempts;
 use std::fs;

@@ -1,5 +1,4 @@
 //! Every way in which a log may be written, and what is read from it.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 mod files;
 mod gaps;
@@ -281,6 +280,14 @@ fn trial_test_and_run_part_a_log() {
         assert_eq!(periods(&joint), ["1 s", "0.5 s", "0.1 s"]);
         assert_eq!(starts(&joint), ["0.000000", "0.000000", "9.000000"]);
     }
+}
+
+#[test]
+fn labels_that_differ_by_a_control_character_are_two_trials() {
+    let half = |label: &str| stepping(label, 100, 1.0);
+    let text = format!("time_s,trial,boom.input,boom.output\n{}{}", half("x\u{1}"), half("x\u{2}"));
+    let joint = Reading::of(text).the_joint();
+    assert_eq!(labels(&joint), [r"x\u{1}", r"x\u{2}"]);
 }
 
 #[test]

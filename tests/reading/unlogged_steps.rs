@@ -1,5 +1,4 @@
 //! Logs that are started by the step that they are to record, or paused while the valve is switched.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fmt::Write as _;
 use std::process::Command;

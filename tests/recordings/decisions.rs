@@ -1,6 +1,5 @@
 //! A recording read back holds the numbers of the log and of `--decisions`, exactly.
 #![cfg(feature = "rrd")]
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;

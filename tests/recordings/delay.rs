@@ -1,6 +1,5 @@
 //! The page on what the delay depends on answers as the report does.
 #![cfg(feature = "rrd")]
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::read_back::{places, whole};
 use crate::recorded::{Recorded, samples};

@@ -1,6 +1,5 @@
 //! Two results beside each other: settings, logs, methods, models; and many joints in files of a
 //! few each.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::desk::{Desk, banded, joint};
 use serde_json::Value;

@@ -1,4 +1,5 @@
 //! What a reviewer sees: recordings read back, the report, pictures in the viewer.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 mod decisions;
 mod delay;

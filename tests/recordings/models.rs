@@ -1,6 +1,5 @@
 //! A recording of models holds what their comparison says, revision by revision.
 #![cfg(feature = "rrd")]
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::read_back::{ReadBack, whole};
 use crate::recorded::Recorded;

@@ -3,7 +3,6 @@
 //! Asked are the viewers that `RERUN_VIEWERS` names, paths separated by `:`, or the `rerun` on the
 //! path; where there is none that makes pictures, it is said.
 #![cfg(feature = "rrd")]
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::io::{BufRead as _, BufReader, Cursor, Write as _};
 use std::ops::Range;

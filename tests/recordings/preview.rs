@@ -1,6 +1,5 @@
 //! A preview holds what is to be played and what is expected of it, exactly.
 #![cfg(feature = "rrd")]
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use crate::desk::{Desk, banded, number};
 use crate::read_back::{ReadBack, whole};

@@ -1,5 +1,4 @@
 //! `tauscope report` as a user sees it: a page, and Markdown with its drawings.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

@@ -1,6 +1,5 @@
 //! A person's word on the decisions: the sheet, its way back through `--review`, and the page on
 //! which it is said.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::collections::BTreeMap;
 use std::io::Write as _;

@@ -1,7 +1,6 @@
 //! A recording of a sweep holds the delays of the sweep, exactly, and shows which of them
 //! move.
 #![cfg(feature = "rrd")]
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::process::Command;
 

@@ -11,7 +11,6 @@ mod own_settings;
 mod protocol;
 mod results;
 mod review;
-mod typed;
 
 pub(crate) use against::AgainstArgs;
 pub(crate) use algorithm::AlgorithmArgs;
@@ -25,4 +24,3 @@ pub(crate) use own_settings::OwnSettings;
 pub(crate) use protocol::ProtocolArgs;
 pub(crate) use results::{Format, ResultArgs, RunArgs};
 pub(crate) use review::ReviewArgs;
-pub(crate) use typed::quoted;

@@ -6,9 +6,10 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{MemoryArgs, RunArgs, quoted};
+use crate::cli::args::{MemoryArgs, RunArgs};
 use crate::cli::exit::Completion;
 use crate::cli::output::{check_outputs, write_file};
+use crate::cli::typed::mapping_options;
 use crate::experiment::{ColumnMap, Survey};
 use crate::report::{ColumnsJson, columns_table};
 
@@ -48,7 +49,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         }
         write_file(path, |file| Ok(file.write_all(mapping.as_bytes())?))?;
     }
-    let options = options(&survey);
+    let map = &survey.map;
+    let options = mapping_options([map.time.as_deref(), map.trial.as_deref()], &map.named_joints());
     let text = || {
         let joints = if survey.map.joints.is_empty() { "" } else { options.as_str() };
         columns_table(&survey, joints)
@@ -56,16 +58,4 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     args.run.print(text, || ColumnsJson::new(&survey, &options))?;
     let told = !survey.map.joints.is_empty();
     Ok(if told { Completion::Whole } else { Completion::Partial })
-}
-
-/// The mapping as it is typed.
-fn options(survey: &Survey) -> String {
-    let map = &survey.map;
-    let named = [("--time", &map.time), ("--trial", &map.trial)];
-    let named =
-        named.into_iter().filter_map(|(name, column)| Some([name.to_owned(), column.clone()?]));
-    let joints = map.joints.iter().map(|joint| {
-        ["--joint".to_owned(), format!("{}={}:{}", joint.name, joint.input, joint.output)]
-    });
-    quoted(&named.chain(joints).flatten().collect::<Vec<_>>())
 }

@@ -21,7 +21,7 @@ use clap::Args as ClapArgs;
 
 use crate::cli::args::{
     AgainstArgs, AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, ReviewArgs, RunArgs, name_of,
-    note_missing, quoted, read_model,
+    note_missing, read_model,
 };
 use crate::cli::console::{Bar, Verbosity, message};
 use crate::cli::exit::Completion;
@@ -31,6 +31,7 @@ use crate::cli::run::{
     self, Progress, Session, Study, StudyContext, add_arguments, compared, estimate_at, estimated,
     improved, others, revised,
 };
+use crate::cli::typed::quoted;
 use crate::cli::viewer::StreamArgs;
 
 /// Bytes of a recording up to which it is put into the page.

@@ -1,6 +1,7 @@
 //! The command that adds an effect to a model, to be suggested.
 
-use crate::cli::args::{DataArgs, ProtocolArgs, quoted};
+use crate::cli::args::{DataArgs, ProtocolArgs};
+use crate::cli::typed::quoted;
 use crate::experiment::Joint;
 
 /// What follows the effect in the command that adds it to the model of a joint, for each of

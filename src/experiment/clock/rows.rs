@@ -92,7 +92,8 @@ impl Found {
     }
 
     /// `rows` without those that are there twice: a row at the time of the one before it,
-    /// between steps as usual, and not made good by those behind it, as a rounded stamp is.
+    /// between steps as usual, and not made good by those behind it, as a rounded stamp is: the last
+    /// row, behind which there is none, only where it has the same stamp.
     /// Of two with one stamp the later stays: where they differ, it says what holds from then on.
     pub(super) fn once(
         &mut self,
@@ -109,8 +110,9 @@ impl Found {
             let Some(before) = index.checked_sub(1) else { return false };
             let later =
                 (1..=LOOK_AHEAD + 1).map_while(|k| Some(step(before, before + k)? - k as f64));
+            let own = if time(index + 1).is_some() { OWN } else { f64::MIN_POSITIVE };
             typical.grain_s <= 0.0
-                && step(before, index).is_some_and(|step| step < OWN)
+                && step(before, index).is_some_and(|step| step < own)
                 && is_usual(before.checked_sub(1).and_then(|first| step(first, before)))
                 && is_usual(step(index, index + 1))
                 && later.fold(f64::NEG_INFINITY, f64::max) < -0.5

@@ -26,6 +26,7 @@ impl ReadError {
             | Self::Missing { row, .. }
             | Self::TimeNotIncreasing { row, .. }
             | Self::NotUniform { row, .. }
+            | Self::TimeUnitChanges { row, .. }
             | Self::FewTimes { row, .. }
             | Self::NoPeriod { row, .. }
             | Self::CoarseTimes { row, .. }
@@ -45,6 +46,7 @@ impl ReadError {
             | Self::DuplicateColumn { column, .. }
             | Self::TimeUnit { column, .. }
             | Self::WrongTimeUnit { column, .. }
+            | Self::TimeUnitChanges { column, .. }
             | Self::NoPeriod { column, .. }
             | Self::MissingColumn { column, .. }
             | Self::NotANumber { column, .. }

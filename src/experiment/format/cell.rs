@@ -109,8 +109,8 @@ pub(super) fn parse_time(cell: &[u8], delimiter: u8) -> Result<Time, BadCell> {
 /// Which marks stand between whole and decimal digits in the cells so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DecimalMarks {
-    point: bool,
-    comma: bool,
+    /// The mark of the first cell that has one, which is that of all others.
+    first: Option<u8>,
     /// Whether a mark stands where none stands between thousands.
     is_decimal: bool,
     /// What parts the cells: where commas do, no point stands between thousands.
@@ -147,12 +147,11 @@ impl DecimalMarks {
         if parsed.is_err() || cell.contains(&b':') {
             return parsed;
         }
-        let (has_point, has_comma) = (cell.contains(&b'.'), cell.contains(&b','));
-        self.point |= has_point;
-        self.comma |= has_comma;
-        if self.point && self.comma && cell.iter().any(|byte| b".,".contains(byte)) {
+        let mark = cell.iter().copied().find(|byte| b".,".contains(byte));
+        if mark.is_some_and(|mark| *self.first.get_or_insert(mark) != mark) {
             return Err(BadCell::DecimalMark(String::from_utf8_lossy(cell).into_owned()));
         }
+        let (has_point, has_comma) = (mark == Some(b'.'), mark == Some(b','));
         // Once one is seen, all are.
         let Some(column) = self.columns.get_mut(column).filter(|_| !self.is_decimal) else {
             return parsed;

@@ -5,5 +5,6 @@ mod continuous;
 mod joints;
 mod repeated;
 mod times;
+mod unit_change;
 
 pub(super) use cells::Log;

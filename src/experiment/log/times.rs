@@ -1,6 +1,7 @@
 //! The times of a log: how its clock counts, its grids, and what is odd about them.
 
 use super::cells::Log;
+use super::unit_change::unit_change;
 use crate::experiment::error::ReadError;
 use crate::experiment::even;
 use crate::experiment::format::date_of_seconds;
@@ -211,6 +212,7 @@ impl Log<'_> {
             TimeSource::Rows(period) => return Ok(Clock::Rows(period)),
         };
         let values = self.column(column).map_or(&[][..], |column| &column.values);
+        self.check_one_unit(column, values)?;
         let counting = self.counting(column, scale);
         let mut times: Vec<f64> = values.iter().map(|value| counting.seconds_of(*value)).collect();
         self.check_times(column, &times)?;
@@ -240,6 +242,20 @@ impl Log<'_> {
                 path: self.head.path.clone(),
                 row: self.head.header_row,
                 column: self.header(*column),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses times whose unit changes: what is behind the change would be another experiment.
+    fn check_one_unit(&self, column: usize, values: &[f64]) -> Result<(), ReadError> {
+        match unit_change(values) {
+            Some(index) => Err(ReadError::TimeUnitChanges {
+                path: self.head.path.clone(),
+                row: self.row(index),
+                column: self.header(column),
+                before: values.get(index - 1).copied().unwrap_or(f64::NAN),
+                time: values.get(index).copied().unwrap_or(f64::NAN),
             }),
             None => Ok(()),
         }

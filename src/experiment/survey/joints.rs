@@ -22,6 +22,21 @@ pub(super) struct Columns<'a> {
     pub(super) head: &'a Head,
     /// The numbers of each column; none of the time, and of what holds no numbers.
     pub(super) signals: &'a [Option<Signal>],
+    /// Words that every column of numbers has, as the name of the machine before each: they say of
+    /// no joint which it is.
+    common: Vec<String>,
+}
+
+impl<'a> Columns<'a> {
+    pub(super) fn of(head: &'a Head, signals: &'a [Option<Signal>]) -> Self {
+        let columns = head.headers.iter().zip(signals).filter(|(_, signal)| signal.is_some());
+        let mut columns = columns.map(|(header, _)| words(&header.name));
+        let mut common = columns.next().unwrap_or_default();
+        for words in columns {
+            common.retain(|word| words.contains(word));
+        }
+        Self { head, signals, common }
+    }
 }
 
 impl Columns<'_> {
@@ -93,7 +108,7 @@ impl Columns<'_> {
         pairs.sort_by_key(|(shared, ..)| std::cmp::Reverse(shared.len()));
         let (mut joints, mut columns, mut names) = (Vec::new(), HashSet::new(), HashSet::new());
         for (shared, input, output) in pairs {
-            let name = shared.join("_");
+            let name = self.distinguishing(shared).join("_");
             let is_taken =
                 columns.contains(&input) || columns.contains(&output) || names.contains(&name);
             if !is_taken {
@@ -182,7 +197,8 @@ impl Columns<'_> {
             found.map_or_else(String::new, |word| format!("`{word}` in its name; "))
         };
         let says = |column: usize| self.signal(column).map_or_else(String::new, Signal::says);
-        let own = self.own_words(output).into_iter().chain(self.own_words(input)).next();
+        let own = self.own_words(output).into_iter().chain(self.own_words(input)).collect();
+        let own = self.distinguishing(own).into_iter().next();
         let mut why = [
             format!("{}{}", word(input, &INPUT_WORDS), says(input)),
             format!("{}{}", word(output, &OUTPUT_WORDS), says(output)),
@@ -212,6 +228,13 @@ impl Columns<'_> {
         };
         words.retain(|word| !is_kind(word));
         words
+    }
+
+    /// Those of a joint's `words` that say which it is; all of them where none does.
+    fn distinguishing(&self, words: Vec<String>) -> Vec<String> {
+        let rest: Vec<_> =
+            words.iter().filter(|word| !self.common.contains(word)).cloned().collect();
+        if rest.is_empty() { words } else { rest }
     }
 
     fn signal(&self, column: usize) -> Option<&Signal> {

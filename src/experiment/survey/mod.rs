@@ -100,7 +100,7 @@ impl Survey {
                 *slot = Signal::of(column);
             }
         }
-        let columns = Columns { head, signals: &signals };
+        let columns = Columns::of(head, &signals);
         let joints = columns.joints();
         columns.survey(time, trial, &joints)
     }
@@ -113,7 +113,7 @@ pub(super) fn further_joint<'h>(head: &'h Head, taken: &HashSet<usize>) -> Optio
         let header = head.headers.get(column);
         !taken.contains(&column) && header.is_some_and(|header| !header.name.contains('.'))
     };
-    let (input, output) = Columns { head, signals: &[] }.first_by_names(is_free)?;
+    let (input, output) = Columns::of(head, &[]).first_by_names(is_free)?;
     Some([head.headers.get(input)?.text.as_str(), head.headers.get(output)?.text.as_str()])
 }
 
@@ -261,10 +261,11 @@ mod tests {
         std::fs::write(&path, text).unwrap();
         let survey = Survey::of(&path, MemoryLimit::default()).unwrap();
         let joint = |name: &str| {
-            let column = |what: &str| format!("{name}_{what}");
+            let column = |what: &str| format!("left_{name}_{what}");
             JointColumns::new(name, &column("cmd"), &column("angle"))
         };
-        assert_eq!(survey.map.joints, ["left_arm", "left_boom"].map(joint));
+        // What all columns have says of none which it is.
+        assert_eq!(survey.map.joints, ["arm", "boom"].map(joint));
         assert!(survey.is_sure);
     }
 

@@ -66,7 +66,7 @@ fn a_log_without_time_is_refused_with_both_remedies() {
 #[test]
 fn a_log_without_joints_is_refused_with_its_columns() {
     let log = boom().renamed("boom.input", "left").renamed("boom.output", "right");
-    let says = ["log.csv", "row 1", "no joint", "time_s, left, right", "`--joint NAME="];
+    let says = ["log.csv", "row 1", "no joint", "time_s, left, right", "--joint "];
     Workspace::new().with_log(&log).estimate("log.csv").is_refused().says(&says);
 }
 

@@ -121,6 +121,13 @@ pub(crate) fn jumps() -> Vec<Messy> {
 }
 
 /// Times that stand in several rows.
+/// Seconds, and from row 702 on milliseconds.
+fn unit_changes() -> Messy {
+    let time = |k: usize| (100.0 + PERIOD * k as f64) * if k < 700 { 1.0 } else { 1e3 };
+    let refused = Expected::Refused(&["row 702", "`time_s`", "in another unit"]);
+    messy("unit_changes.csv", plain(&timed(time)), refused)
+}
+
 pub(crate) fn repeated_times() -> Vec<Messy> {
     let mut twice = clean();
     twice.insert(700, twice[699]);
@@ -134,6 +141,7 @@ pub(crate) fn repeated_times() -> Vec<Messy> {
         clean().into_iter().flat_map(|row| [row, other(row)]).collect()
     };
     vec![
+        unit_changes(),
         messy("row_twice.csv", plain(&twice), read(1e-3, "1 row is at the time of the row before")),
         messy(
             "copies.csv",

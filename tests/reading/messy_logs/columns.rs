@@ -65,6 +65,24 @@ pub(crate) fn names_alone() -> Vec<Messy> {
             Expected::Refused(&["row 2", "`y_boom`", "9,993.91"]),
         ),
         messy(
+            "more_names_than_columns.csv",
+            format!("# t_s,u_boom,y_boom,error\n{}", foreign("").trim_start()),
+            Expected::Refused(&["row 2", "3 cells", "the header has 4"]),
+        ),
+        messy(
+            "one_decimal_comma.csv",
+            cell(&plain(&clean()), 452, 2, "\"1,5\""),
+            Expected::Refused(&["row 452", "`boom.output`", "other decimal mark"]),
+        ),
+        Messy {
+            columns: ColumnMap {
+                time: Some("Time".to_owned()),
+                joints: vec![JointColumns::new("heater", "Q1", "T1")],
+                ..ColumnMap::default()
+            },
+            ..messy("an_output_is_called_like_a_time.csv", foreign("Time,Q1,T1"), SAME)
+        },
+        messy(
             "names_say_nothing.csv",
             foreign("t_s,a,b"),
             Expected::Refused(&["no joint found", "the columns are: t_s, a, b"]),

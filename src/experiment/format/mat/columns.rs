@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::variable::{Content, Numbers, Variable};
+use super::variable::{Content, Numbers, Variable, as_arrays};
 use super::{v5, v73};
 use crate::experiment::error::ReadError;
 use crate::experiment::format::first_bytes::{is_matlab_73, start_of};
@@ -41,9 +41,29 @@ pub(in crate::experiment::format) fn open(
             places.push(Place { variable: index, column, rows });
         }
     }
+    if places.iter().all(|place| place.rows == 0) {
+        check_objects(path, &variables)?;
+    }
     let rows = Box::new(Unread { variables, places, budget });
     let head = Head { path: path.to_owned(), headers, header_row: 0, unread: Vec::new() };
     Ok(OpenTable { head, rows })
+}
+
+/// Refuses a file in which nothing has rows, and some are objects.
+fn check_objects(path: &Path, variables: &[Variable]) -> Result<(), ReadError> {
+    let class = |variable: &Variable| match &variable.content {
+        Content::Object(class) => Some((variable.name.clone(), class.clone())),
+        _ => None,
+    };
+    let Some((name, class)) = variables.iter().find_map(class) else { return Ok(()) };
+    Err(ReadError::Format {
+        path: path.to_owned(),
+        format: "MATLAB",
+        reason: format!(
+            "`{name}` is an object of the class `{class}`, which MATLAB alone can read"
+        ),
+        remedy: as_arrays(&class),
+    })
 }
 
 impl Rows for Unread {
@@ -73,7 +93,8 @@ impl Unread {
         for index in wanted.numeric.iter().chain(&wanted.label).copied() {
             let Some((variable, place)) = self.place(index) else { continue };
             // What is no column spoils its own joint.
-            if matches!(variable.content, Content::Other(_)) || place.rows == 0 {
+            if matches!(variable.content, Content::Object(_) | Content::Other(_)) || place.rows == 0
+            {
                 continue;
             }
             let (other, expected) = *first.get_or_insert((index, place.rows));
@@ -111,6 +132,10 @@ impl Unread {
                 Column::of(v73::column(dataset, place.column, path, &self.budget)?)
             }
             Content::Texts(_) => Column::not_numbers("text"),
+            Content::Object(class) => Column::not_numbers(&format!(
+                "an object of the class `{class}` of MATLAB ({})",
+                as_arrays(class)
+            )),
             Content::Other(kind) => Column::not_numbers(kind),
         })
     }
@@ -124,6 +149,9 @@ impl Unread {
         };
         match self.place(header) {
             Some((Variable { content: Content::Texts(texts), .. }, _)) => return Ok(texts.clone()),
+            Some((Variable { content: Content::Object(class), .. }, _)) => {
+                return refused(&format!("an object of the class `{class}`"));
+            }
             Some((Variable { content: Content::Other(kind), .. }, _)) => return refused(kind),
             Some((_, Place { rows: 0, .. })) => {
                 return refused("an array that has no row per sample");

@@ -243,6 +243,8 @@ enum Value {
     Cells(Vec<Array>),
     /// Each element's fields.
     Structures(Vec<Vec<(String, Array)>>),
+    /// Of this class.
+    Object(String),
     Other(&'static str),
 }
 
@@ -283,7 +285,9 @@ impl Array {
     fn opaque(mut data: Bytes<'_>) -> Result<Self, Fault> {
         let (_, name) = data.element()?;
         let name = name_of(name)?;
-        Ok(Self { name, dims: Vec::new(), value: Value::Other(OBJECT) })
+        let (_, _system) = data.element()?;
+        let (_, class) = data.element()?;
+        Ok(Self { name, dims: Vec::new(), value: Value::Object(name_of(class)?) })
     }
 
     /// Adds this array, and what lies in it, under `name`.
@@ -300,6 +304,7 @@ impl Array {
                 [rows, _] if *rows > 1 => Content::Texts(rows_of(&text, *rows)),
                 _ => Content::Other("text"),
             },
+            Value::Object(class) => Content::Object(class),
             Value::Other(kind) => Content::Other(kind),
             Value::Cells(cells) => texts(cells),
             Value::Structures(elements) => {
@@ -335,7 +340,8 @@ fn name_of(bytes: &[u8]) -> Result<String, Fault> {
     Ok(String::from_utf8_lossy(bytes).into_owned())
 }
 
-const OBJECT: &str = "an object of MATLAB (a timeseries or a table; save its parts as arrays)";
+/// The class of objects from before MATLAB 7.6, whose name is not looked for.
+const OBJECT: &str = "an object of MATLAB; save its parts as arrays";
 
 impl Value {
     fn read(mut data: Bytes<'_>, flags: u32, size: usize, depth: usize) -> Result<Self, Fault> {

@@ -229,6 +229,7 @@ fn content(class: &str, dataset: Dataset) -> Content {
         ),
         "double" | "single" | "logical" | "int8" | "int16" | "int32" | "int64" | "uint8"
         | "uint16" | "uint32" | "uint64" | "" => Content::Numbers(Numbers::Stored(dataset)),
-        _ => Content::Other("an object of MATLAB, or nothing"),
+        NOTHING => Content::Other("nothing"),
+        class => Content::Object(class.to_owned()),
     }
 }

@@ -17,8 +17,25 @@ pub(super) enum Content {
     Numbers(Numbers),
     /// One text per row.
     Texts(Vec<String>),
-    /// What is neither.
+    /// An object of this class of MATLAB, whose bytes say nothing without it.
+    Object(String),
+    /// What is none of these.
     Other(&'static str),
+}
+
+/// How the numbers in an object of a `class` are saved so that they can be read.
+pub(super) fn as_arrays(class: &str) -> &'static str {
+    match class {
+        "timeseries" => "save its `.Time` and `.Data` as arrays",
+        "Simulink.SimulationOutput" | "Simulink.SimulationData.Dataset" => {
+            "save the `.Time` and `.Data` of each signal in it as arrays"
+        }
+        "timetable" | "table" => {
+            "save its row times or its column of times, and each of its variables, as arrays"
+        }
+        "iddata" => "save its `.SamplingInstants`, `.InputData` and `.OutputData` as arrays",
+        _ => "save its parts as arrays",
+    }
 }
 
 /// Numbers, column after column.
@@ -34,7 +51,7 @@ impl Variable {
         const MOST_COLUMNS: usize = 1000;
         match (&self.content, self.dims.as_slice()) {
             (Content::Texts(texts), _) => (texts.len(), 1),
-            (Content::Other(_), _) => (0, 1),
+            (Content::Object(_) | Content::Other(_), _) => (0, 1),
             (_, [1, 1] | []) => (0, 0),
             (_, [1, length] | [length, 1] | [length]) => (*length, 1),
             (_, [rows, columns]) if *columns <= MOST_COLUMNS => (*rows, *columns),

@@ -79,7 +79,7 @@ fn damaged(path: &Path, error: &ParquetError) -> ReadError {
     }
 }
 
-/// A time without a unit in its name is in the unit of its type.
+/// A time or a duration is in the unit of its type, whatever its name says.
 fn header(column: &ColumnDescriptor, durations: &[(String, &'static str)]) -> Header {
     let mut header = Header::parse(&column.path().string());
     let name = column.path().string();
@@ -92,7 +92,7 @@ fn header(column: &ColumnDescriptor, durations: &[(String, &'static str)]) -> He
         },
         _ => of_duration(),
     };
-    header.unit = header.unit.or(of_type.map(str::to_owned));
+    header.unit = of_type.map(str::to_owned).or(header.unit);
     header
 }
 

@@ -41,7 +41,7 @@ impl Spelling {
     }
 
     /// The header in the last comment above the table, where that begins with numbers, as NumPy writes it:
-    /// `# time,u,y`.
+    /// `# time,u,y`. Whether each column has one name is asked of it as of any other header.
     fn at_marked_header(self, start: &[u8]) -> Self {
         const MARK: &[u8] = b"#";
         let found = || {
@@ -58,7 +58,6 @@ impl Spelling {
             // The mark may be the name of a column of numbers of rows.
             let mut names_of = cells.iter().enumerate();
             let is_header = cells.len() > 1
-                && cells.len() == row.len()
                 && names_of.all(|(column, cell)| is_name(cell) || column == 0 && cell.is_empty());
             let before = line_ends(&[above.get(..above.len() - comment.len())?]);
             let preamble = (above.len() - names.len(), before);
