@@ -370,10 +370,10 @@ fn holds_may_be_shorter_than_delay_and_lag() {
         delay: DelayLaw::Uniform { min: 0.05, max: 0.3 },
         ..joint()
     };
-    for plant in
-        [JointSpec { lag_s: Some(0.06), ..short.clone() }, JointSpec { ringing: RINGING, ..short }]
-    {
-        let pool = Pool::of(&plant, Method::LAG_AWARE, 1..=1);
+    let plants =
+        [JointSpec { lag_s: Some(0.06), ..short.clone() }, JointSpec { ringing: RINGING, ..short }];
+    for plant in &plants[..size(1, 2)] {
+        let pool = Pool::of(plant, Method::LAG_AWARE, 1..=1);
         assert!(pool.mean_error() <= 1.5, "{plant:?}: {}", pool.mean_error());
         assert!(pool.errors.len() > 250, "{plant:?}: {}", pool.errors.len());
     }

@@ -1,7 +1,6 @@
 //! Delays: Algorithm 1 to the letter, the other methods against known delays, tables and sweeps of them.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
-mod conditions;
 mod continuous_input;
 mod delay_against_state;
 mod delay_methods;
@@ -17,6 +16,8 @@ mod real;
 #[path = "../support/sample.rs"]
 mod sample;
 mod settling;
+#[path = "../support/stroke.rs"]
+mod stroke;
 mod strokes;
 mod sweep;
 mod tracking;

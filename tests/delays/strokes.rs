@@ -2,67 +2,11 @@
 
 use crate::real;
 use crate::sample::{least, size};
-use tauscope::batch::Threads;
+use crate::stroke::{first_motion, stroke, strokes};
 use tauscope::delay::{
     Condition, FirstLast, Method, Settings, TrialEstimate, Verdict, estimate_joint,
 };
-use tauscope::experiment::{Joint, Trial};
-use tauscope::explain::{Change, Options, improve};
-use tauscope::fit::{FitRecord, Horizon, Split, fit};
-use tauscope::model::integrators;
-use tauscope::synthetic::{CylinderSpec, DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
-
-const PERIOD_S: f64 = 0.01;
-
-const NOISE: f64 = 0.01;
-
-/// Samples before the step.
-fn rest(seed: u32) -> usize {
-    110 + (seed as usize * 37) % 80
-}
-
-/// A cylinder that rests, is driven by `level` into its stop after `delay_s`, and is let go.
-fn stroke(seed: u32, level: f64, delay_s: f64) -> Trial {
-    let steps = vec![(rest(seed), level), (rest(seed) + 1200, 0.0)];
-    simulated(seed, level, steps, delay_s, NOISE)
-}
-
-/// Samples from the step until the output, without noise, is off that of a trial without the step
-/// by a tenth of the noise.
-fn first_motion(seed: u32, level: f64, delay_s: f64) -> f64 {
-    let clean = |steps| simulated(seed, level, steps, delay_s, 0.0);
-    let (moves, rests) = (clean(vec![(rest(seed), level)]), clean(vec![]));
-    let pairs = moves.output().iter().zip(rests.output());
-    let apart: Vec<f64> = pairs.map(|(y, still)| (y - still).abs() - 0.1 * NOISE).collect();
-    let after = apart.iter().position(|apart| *apart > 0.0).unwrap();
-    let part = apart[after - 1] / (apart[after - 1] - apart[after]);
-    (after - 1 - rest(seed)) as f64 + part
-}
-
-/// A cylinder that starts near the end from which `level` drives it away.
-fn simulated(seed: u32, level: f64, steps: Vec<(usize, f64)>, delay_s: f64, noise: f64) -> Trial {
-    let input = InputSpec::Steps { steps, initial: 0.0 };
-    let cylinder = CylinderSpec::default();
-    let [low, high] = cylinder.angle_limits_deg;
-    let start = if level > 0.0 { low + 1.0 } else { high - 1.0 };
-    let delay = DelayLaw::Constant { seconds: delay_s };
-    let cylinder = Some(cylinder);
-    let joint = JointSpec { start, noise, cylinder, ..JointSpec::new("boom", input, delay) };
-    let made = simulate(&PlantSpec::new(seed.into(), 16.0, vec![joint])).unwrap();
-    let trial = &made.joints[0].trials[0];
-    let (input, output) = (trial.input().to_vec(), trial.output().to_vec());
-    Trial::new(seed.to_string(), 0.0, trial.period(), input, output).unwrap()
-}
-
-/// Eight strokes both ways and their delays, samples.
-fn strokes() -> (Vec<Trial>, Vec<f64>) {
-    let one = |seed: u32| {
-        let level = [4.0, -4.0, 6.0, -6.0][seed as usize % 4];
-        let delay_s = 0.06 + 0.03 * f64::from(seed);
-        (stroke(seed, level, delay_s), delay_s / PERIOD_S)
-    };
-    (0..8).map(one).unzip()
-}
+use tauscope::experiment::Trial;
 
 fn estimated(trials: &[Trial], settings: &Settings) -> Vec<TrialEstimate> {
     estimate_joint(trials, settings).into_iter().map(Result::unwrap).collect()
@@ -130,43 +74,6 @@ fn a_stroke_that_starts_at_a_limit_of_the_output_is_not_rejected_for_it() {
     let settings = Settings { output_limits: limits, ..Settings::of(Method::HINGE) };
     let found = estimated(&trials[..1], &settings);
     assert_eq!(found[0].decisions[0].verdict(), Verdict::Accepted);
-}
-
-#[test]
-fn a_model_of_strokes_has_the_measured_delay_and_gets_the_usual_effects_first() {
-    let (trials, _) = strokes();
-    let found = estimated(&trials, &Settings::default());
-    let finer = estimated(&trials, &Settings::of(Method::HINGE));
-    let mut delays: Vec<f64> =
-        finer.iter().filter_map(|found| found.decisions[0].accepted_delay()).collect();
-    delays.sort_by(f64::total_cmp);
-    let between = delays[3] * PERIOD_S..=delays[4] * PERIOD_S;
-    let joint = Joint::new("boom", trials).with_units("V", "deg");
-    let [start] = &integrators(&joint, &found.iter().collect::<Vec<_>>())[..] else {
-        panic!("a measured delay is one start")
-    };
-    assert!(start.delay.fixed && between.contains(&start.delay.value), "{:?}", start.delay);
-
-    let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
-    let levels = record.input_levels();
-    let base = fit(&record, start, &record.range(&levels, 20.0)).unwrap();
-    let options = Options::default();
-    let improvement = improve(&record, base, &options, &Threads, |_| true);
-    let added = improvement.revisions.iter().filter_map(|revision| match revision.change {
-        Change::Added(id) => Some(id),
-        _ => None,
-    });
-    let usual = ["dead_band", "input_saturation", "direction_gain", "end_stop", "position_gain"];
-    assert_eq!(added.take(5).collect::<Vec<_>>(), usual);
-    // The cylinder runs into its ends, and what is not there carries nothing.
-    let error = |index: usize| improvement.revisions[index].comparison.judged().unwrap().rmse;
-    let last = improvement.revisions.len() - 1;
-    assert!(error(last) < 0.2 * error(0), "{} {}", error(0), error(last));
-    let model = &improvement.revisions[last].comparison.fit.model;
-    assert!(start.delay.value.to_bits() == model.delay.value.to_bits());
-    let carried = improvement.attribution.found;
-    assert!(carried.iter().any(|one| one.effect == "end_stop"), "{carried:?}");
-    assert!(carried.iter().all(|one| one.error_share >= 0.01), "{carried:?}");
 }
 
 /// Trials of a measured excavator: rest, one step of the duty, a stroke to the stop, a step back.

@@ -3,6 +3,7 @@
 
 mod add;
 mod compare;
+mod conditions;
 mod custom_effect;
 mod cylinder;
 mod design;
@@ -32,3 +33,7 @@ mod sample;
 mod scenarios;
 mod separation;
 mod simulation;
+#[path = "../support/stroke.rs"]
+#[expect(dead_code, reason = "other stories look at delays alone")]
+mod stroke;
+mod strokes;
