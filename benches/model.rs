@@ -95,8 +95,7 @@ fn growth(criterion: &mut Criterion) {
     for samples in [10_000, 100_000, 1_000_000] {
         let joint = joint(samples);
         let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::FreeRun);
-        let levels = record.input_levels();
-        let range = record.range(&levels, 10.0);
+        let range = record.range(10.0);
         group.throughput(Throughput::Elements(samples as u64));
         group.bench_function(BenchmarkId::from_parameter(samples), |bencher| {
             bencher.iter(|| fit(black_box(&record), &model, &range));

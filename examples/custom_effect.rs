@@ -77,8 +77,7 @@ struct Fitted {
 /// `start`, fitted to the first 70 % of the record.
 fn fitted(joint: &Joint, start: &JointModel) -> anyhow::Result<Fitted> {
     let record = FitRecord::new(joint, Split::Time(0.7), Horizon::FreeRun);
-    let levels = record.input_levels();
-    let fit = fit(&record, start, &record.range(&levels, 30.0))?;
+    let fit = fit(&record, start, &record.range(30.0))?;
     let error = ErrorFigures::of(&record, &fit.evaluation, Part::Validation);
     Ok(Fitted { rmse: error.context("a record has a part for validation")?.rmse, fit })
 }

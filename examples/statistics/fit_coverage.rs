@@ -181,9 +181,8 @@ fn neutral(effect: &'static dyn Effect, truth: &[f64]) -> anyhow::Result<Compone
 fn fitted(made: &Made, start: &JointModel) -> anyhow::Result<Fit> {
     let record = FitRecord::new(&made.joint, Split::Time(1.0), Horizon::FreeRun);
     let record = record.with_others(made.others.clone());
-    let levels = record.input_levels();
-    let top = levels.last().copied().unwrap_or(1.0);
-    Ok(fit(&record, start, &record.range(&levels, GAIN * top))?)
+    let top = record.input_levels().last().copied().unwrap_or(1.0);
+    Ok(fit(&record, start, &record.range(GAIN * top))?)
 }
 
 /// Gravity with the signs of `kappa` and `creep` turned, and `y0` half a turn on, is the

@@ -8,7 +8,7 @@ use anyhow::Context as _;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use tauscope::delay::{Method, Settings, estimate_joint};
-use tauscope::experiment::Trial;
+use tauscope::experiment::{Record, Trial};
 use tauscope::synthetic::{CylinderSpec, DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
 
 /// Trials where no number is given.
@@ -69,6 +69,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let made: Vec<(Trial, f64)> =
         (first..first + trials).map(stroke).collect::<anyhow::Result<_>>()?;
     let (strokes, delays): (Vec<Trial>, Vec<f64>) = made.into_iter().unzip();
+    let strokes = Record::from(strokes);
     println!("method      accepted   held at 95 %   median error   median width");
     for method in Method::all().filter(|method| method.spec().has_intervals) {
         let found = estimate_joint(&strokes, &Settings::of(method));

@@ -47,7 +47,7 @@ use super::method::decide_by_broken_lines;
 use super::prepared::Prepared;
 use super::settings::{FirstLast, Settings};
 use super::spec::Method;
-use crate::experiment::Trial;
+use crate::experiment::{Record, Trial};
 use crate::numerics::LowPass;
 use crate::numerics::NoiseModel;
 use crate::numerics::RunningLine;
@@ -114,9 +114,9 @@ pub struct Chosen {
 /// assert!((chosen.statistics.noise.unwrap_or(0.0) - 0.4).abs() < 0.02);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn choose(trials: &[Trial], settings: &Settings, automatic: Automatic) -> (Settings, Chosen) {
+pub fn choose(trials: &Record, settings: &Settings, automatic: Automatic) -> (Settings, Chosen) {
     let mut chosen = settings.clone();
-    let record = Record::of(trials, settings);
+    let record = Observed::of(trials, settings);
     let statistics = record.statistics();
     if let Some(delay) = statistics.short_delay.filter(|_| automatic.alpha) {
         chosen = chosen.with_alpha(ceil_to_index(delay).max(1).into());
@@ -134,7 +134,7 @@ pub fn choose(trials: &[Trial], settings: &Settings, automatic: Automatic) -> (S
 }
 
 /// What broken lines show of a joint.
-struct Record<'a> {
+struct Observed<'a> {
     /// Trials of the first one's sample period.
     outputs: Vec<&'a [f64]>,
     period_s: f64,
@@ -152,8 +152,8 @@ struct Record<'a> {
 /// Parameters of a line.
 const LINE: usize = 2;
 
-impl<'a> Record<'a> {
-    fn of(trials: &'a [Trial], settings: &Settings) -> Self {
+impl<'a> Observed<'a> {
+    fn of(trials: &'a Record, settings: &Settings) -> Self {
         let hinge = Settings {
             max_delay: settings.max_delay,
             in_seconds: InSeconds {
@@ -445,7 +445,7 @@ mod tests {
     #[test]
     fn more_noise_takes_a_lower_passband() {
         let cutoff = |noise| {
-            let (settings, chosen) = choose(&[trial(noise)], &Settings::default(), ALL);
+            let (settings, chosen) = choose(&vec![trial(noise)].into(), &Settings::default(), ALL);
             assert!((12..=14).contains(&settings.alpha), "{chosen:?}");
             assert_eq!(settings.beta, 1);
             let found = chosen.statistics.noise.unwrap();
@@ -460,7 +460,7 @@ mod tests {
 
     #[test]
     fn without_noise_nothing_is_smoothed() {
-        let (settings, chosen) = choose(&[trial(0.0)], &Settings::default(), ALL);
+        let (settings, chosen) = choose(&vec![trial(0.0)].into(), &Settings::default(), ALL);
         assert_eq!(settings.low_pass, None, "{chosen:?}");
         assert_eq!(settings.beta, 1);
     }
@@ -468,10 +468,10 @@ mod tests {
     #[test]
     fn what_is_not_automatic_stays() {
         let given = Settings { alpha: 3, beta: 7, ..Settings::default() };
-        let (settings, _) = choose(&[trial(0.4)], &given, Automatic::default());
+        let (settings, _) = choose(&vec![trial(0.4)].into(), &given, Automatic::default());
         assert_eq!(settings, given);
         let alone = Automatic { alpha: true, ..Automatic::default() };
-        let (settings, _) = choose(&[trial(0.4)], &given, alone);
+        let (settings, _) = choose(&vec![trial(0.4)].into(), &given, alone);
         assert_eq!(settings, Settings { alpha: 14, ..given });
     }
 
@@ -486,10 +486,10 @@ mod tests {
         ];
         for (input, output) in odd {
             let trial = Trial::new("1", 0.0, period, input, output).unwrap();
-            let (settings, _) = choose(&[trial], &Settings::default(), ALL);
+            let (settings, _) = choose(&vec![trial].into(), &Settings::default(), ALL);
             assert!(settings.check().is_ok() && settings.alpha >= 1);
         }
-        let (settings, chosen) = choose(&[], &Settings::default(), ALL);
+        let (settings, chosen) = choose(&Record::default(), &Settings::default(), ALL);
         assert_eq!((settings.alpha, settings.low_pass), (10, Settings::default().low_pass));
         assert_eq!(chosen.statistics, RecordStatistics::default());
     }

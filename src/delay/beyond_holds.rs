@@ -13,7 +13,7 @@
 
 use super::input_motion::InputMotion;
 use super::strokes::are_strokes;
-use crate::experiment::Trial;
+use crate::experiment::{Record, Trial};
 use crate::numerics::{Regression, median};
 
 /// Blocks in a hold.
@@ -35,10 +35,10 @@ const SHORT: f64 = 0.5;
 const EXPLAINED: f64 = 0.2;
 const UNEXPLAINED: f64 = 0.5;
 
-/// The delay over the record of `trials` in seconds, where it is longer than most holds of the input
-/// and not to be mistaken for a short one; none elsewhere. `motion` is that of their input.
-pub(crate) fn delay_beyond_holds(trials: &[Trial], motion: &InputMotion) -> Option<f64> {
-    if motion.is_continuous() || are_strokes(trials) {
+/// The delay over a record in seconds, where it is longer than most holds of the input
+/// and not to be mistaken for a short one; none elsewhere.
+pub(crate) fn delay_beyond_holds(trials: &Record) -> Option<f64> {
+    if InputMotion::of(trials).is_continuous() || are_strokes(trials) {
         return None;
     }
     let hold = median(&trials.iter().flat_map(holds).collect::<Vec<f64>>())?;
@@ -143,7 +143,7 @@ mod tests {
 
     fn found(trial: Trial) -> Option<f64> {
         let trials = [trial];
-        delay_beyond_holds(&trials, &InputMotion::of(&trials))
+        delay_beyond_holds(&trials.into())
     }
 
     #[test]

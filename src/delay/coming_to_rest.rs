@@ -7,7 +7,7 @@ use super::settling::Settling;
 use super::steps::joint_steps;
 use super::stops::Stops;
 use super::tracking::Tracking;
-use crate::experiment::Trial;
+use crate::experiment::Record;
 
 /// How the output of a joint comes to rest; the first of these that its record shows.
 pub(super) enum ComingToRest {
@@ -24,7 +24,7 @@ pub(super) enum ComingToRest {
 
 impl ComingToRest {
     /// What the `trials` of a joint show.
-    pub(super) fn of(trials: &[Trial], settings: &Settings) -> Self {
+    pub(super) fn of(trials: &Record, settings: &Settings) -> Self {
         if settings.paper || settings.grows || settings.input == InputKind::Continuous {
             return Self::NotShown;
         }
@@ -55,7 +55,7 @@ impl ComingToRest {
     }
 }
 
-fn settling(trials: &[Trial], settings: &Settings) -> Option<Settling> {
+fn settling(trials: &Record, settings: &Settings) -> Option<Settling> {
     // Most outputs do not settle, which is seen before anything is prepared.
     let bare: Vec<_> = trials.iter().map(|trial| Prepared::bare(trial, settings)).collect();
     let start = Settling::start(trials, &bare, settings)?;

@@ -11,7 +11,7 @@ use super::profile::DelayProfile;
 use super::settings::Settings;
 use super::spec::Scope;
 use super::trial_estimate::{EstimateError, TrialEstimate};
-use crate::experiment::Trial;
+use crate::experiment::{Record, Trial};
 
 /// Estimates the delay of every input step of `trial` by the method of `settings`.
 ///
@@ -23,12 +23,12 @@ use crate::experiment::Trial;
 /// trial. An input without a step is no error: there are no decisions then; nor is a
 /// trial too short for two lines, whose decisions say so.
 pub fn estimate(trial: &Trial, settings: &Settings) -> Result<TrialEstimate, EstimateError> {
-    Estimator::of(std::slice::from_ref(trial), settings)?.estimate(trial)
+    Estimator::of(&[trial.clone()].into(), settings)?.estimate(trial)
 }
 
 /// Estimates all trials of a joint, which share what its lag looks like.
 pub fn estimate_joint(
-    trials: &[Trial],
+    trials: &Record,
     settings: &Settings,
 ) -> Vec<Result<TrialEstimate, EstimateError>> {
     match Estimator::of(trials, settings) {
@@ -52,7 +52,7 @@ impl Estimator {
     ///
     /// # Errors
     /// [`EstimateError::Settings`] when the settings make no sense.
-    pub(crate) fn of(trials: &[Trial], settings: &Settings) -> Result<Self, EstimateError> {
+    pub(crate) fn of(trials: &Record, settings: &Settings) -> Result<Self, EstimateError> {
         settings.check()?;
         let motion = InputMotion::of(trials);
         let mut settings = settings.with_input(&motion);

@@ -6,28 +6,28 @@ use super::input_motion::InputMotion;
 use super::input_noise::Levels;
 use super::settings::Settings;
 use super::steps::{hold_ranges, trial_steps};
-use crate::experiment::Trial;
+use crate::experiment::{Record, Trial};
 use crate::numerics::median;
 
-/// The inputs of `trials` without the noise that they were measured with: from each step to the next the
+/// The inputs of the trials of `record` without the noise that they were measured with: from each step to the next the
 /// median of the samples, levels that noise tells apart taken as one; exact ones without the glitches of
 /// a logger. None where they have neither, or where an input moves all the time.
-pub(crate) fn held_inputs(trials: &[Trial]) -> Option<Vec<Vec<f64>>> {
+pub(crate) fn held_inputs(record: &Record) -> Option<Vec<Vec<f64>>> {
     /// Parts of the largest change that is noise within which levels are one: its standard deviation.
     const ALIKE: f64 = 1.0 / 7.0;
     let levels = |trial| Levels::of(Trial::input(trial), Trial::period(trial).seconds());
-    let levels: Vec<Levels<'_>> = trials.iter().map(levels).collect();
+    let levels: Vec<Levels<'_>> = record.iter().map(levels).collect();
     let tolerance = levels.iter().map(|levels| levels.tolerance).fold(0.0, f64::max);
     let is_as_measured = |levels: &Levels<'_>| matches!(levels.values, Cow::Borrowed(_));
     let is_exact = tolerance <= 0.0;
-    if is_exact && levels.iter().all(is_as_measured) || InputMotion::of(trials).is_continuous() {
+    if is_exact && levels.iter().all(is_as_measured) || InputMotion::of(record).is_continuous() {
         return None;
     }
     if is_exact {
         return Some(levels.into_iter().map(|levels| levels.values.into_owned()).collect());
     }
     let settings = Settings::default();
-    let holds = trials.iter().map(|trial| {
+    let holds = record.iter().map(|trial| {
         let steps = trial_steps(trial, &settings);
         let first = steps.first().map_or(trial.len(), |step| step.sample - 1);
         let ranges = std::iter::once(0..first).chain(hold_ranges(&steps, trial.len()));
@@ -73,11 +73,11 @@ mod tests {
     fn levels_are_found_in_noise() {
         let level = |k: usize| [0.0, 1.0, -1.0, 0.5, 0.0, -0.5][k / 150 % 6];
         let exact: Vec<f64> = (0..6000).map(level).collect();
-        assert_eq!(held_inputs(&[trial(exact.clone())]), None);
+        assert_eq!(held_inputs(&Record::from([trial(exact.clone())])), None);
         for deviation in [2e-4, 5e-3, 0.04] {
             let noise = noise(3, 0.0, 6000);
             let input = exact.iter().zip(noise).map(|(level, noise)| level + deviation * noise);
-            let held = held_inputs(&[trial(input.collect())]).unwrap().remove(0);
+            let held = held_inputs(&Record::from([trial(input.collect())])).unwrap().remove(0);
             let off = |k: &usize| (held[*k] - exact[*k]).abs() > 0.5 * deviation;
             assert!((0..6000).filter(off).count() < 40, "{deviation}: edges off by a sample");
             let mut levels = held;
@@ -92,6 +92,6 @@ mod tests {
         let noise = noise(5, 0.0, 6000);
         let moves = noise.iter().enumerate();
         let moves = moves.map(|(k, noise)| (k as f64 / 40.0).sin() + 0.01 * noise);
-        assert_eq!(held_inputs(&[trial(moves.collect())]), None);
+        assert_eq!(held_inputs(&Record::from([trial(moves.collect())])), None);
     }
 }

@@ -1,7 +1,7 @@
 //! How long the input of a joint holds which level, and how far the output goes meanwhile.
 
 use super::steps::input_steps;
-use crate::experiment::Trial;
+use crate::experiment::{Property, Record, Trial};
 use crate::numerics::{median, noise_of_differences, quantile_of};
 
 /// Part of the input's range within which two levels are one: chosen; converters and
@@ -38,14 +38,22 @@ pub(super) struct Hold {
 ///
 /// Noise is measured by the differences of neighbouring samples; a commanded input holds its
 /// levels exactly, so that most of them are zero.
-pub(crate) fn level_tolerance(trials: &[Trial]) -> f64 {
-    /// Parts of the samples beyond which a level is a glitch.
-    const GLITCHES: f64 = 1e-3;
-    let inputs = trials.iter().flat_map(Trial::input).copied();
-    let ends = quantile_of(&inputs, GLITCHES).zip(quantile_of(&inputs, 1.0 - GLITCHES));
-    let range = ends.map_or(0.0, |(low, high)| high - low);
-    let noise = noise_of_differences(trials.iter().map(Trial::input));
-    (SAME_LEVEL * range).max((REACH * noise).min(MOST_NOISE * range))
+pub(crate) fn level_tolerance(record: &Record) -> f64 {
+    record.property::<LevelTolerance>().0
+}
+
+struct LevelTolerance(f64);
+
+impl Property for LevelTolerance {
+    fn find(record: &Record) -> Self {
+        /// Parts of the samples beyond which a level is a glitch.
+        const GLITCHES: f64 = 1e-3;
+        let inputs = record.iter().flat_map(Trial::input).copied();
+        let ends = quantile_of(&inputs, GLITCHES).zip(quantile_of(&inputs, 1.0 - GLITCHES));
+        let range = ends.map_or(0.0, |(low, high)| high - low);
+        let noise = noise_of_differences(record.iter().map(Trial::input));
+        Self((SAME_LEVEL * range).max((REACH * noise).min(MOST_NOISE * range)))
+    }
 }
 
 /// The holds of a trial in their order: from each change of more than `tolerance` to the next.
@@ -87,7 +95,7 @@ mod tests {
     #[test]
     fn a_hold_has_its_level_and_how_far_the_output_went() {
         let trial = trial([vec![0.0; 10], vec![2.0; 20]].concat());
-        let tolerance = level_tolerance(std::slice::from_ref(&trial));
+        let tolerance = level_tolerance(&Record::from([trial.clone()]));
         assert!((tolerance - 0.02).abs() < 1e-12);
         let found = holds(&trial, tolerance);
         let last = Hold {
@@ -107,7 +115,7 @@ mod tests {
         let noise = |k: i32| 0.03 * f64::from((k * 7919) % 101 - 50) / 50.0;
         let level = |k: i32| f64::from(k / 100 % 2);
         let trial = trial((0..600).map(|k| level(k) + noise(k)).collect());
-        let tolerance = level_tolerance(std::slice::from_ref(&trial));
+        let tolerance = level_tolerance(&Record::from([trial.clone()]));
         assert!((0.03..=0.0531).contains(&tolerance), "{tolerance}");
         let noisy = holds(&trial, 2.0 * tolerance);
         assert_eq!(noisy.len(), 6);

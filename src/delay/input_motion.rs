@@ -24,7 +24,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 
 use super::input_noise::{Levels, in_samples, range};
-use crate::experiment::Trial;
+use crate::experiment::{Property, Record, Trial};
 
 /// How an input is to be taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,10 +77,9 @@ pub(super) fn edge_samples(period_s: f64) -> usize {
     in_samples(EDGE_S, period_s).max(EDGE_SAMPLES)
 }
 
-impl InputMotion {
-    /// Of the input of all `trials` of a joint.
-    pub fn of(trials: &[Trial]) -> Self {
-        let found: Vec<Moved> = trials.iter().map(Moved::of).collect();
+impl Property for InputMotion {
+    fn find(record: &Record) -> Self {
+        let found: Vec<Moved> = record.iter().map(Moved::of).collect();
         let sum = |part: fn(&Moved) -> f64| found.iter().map(part).fold(0.0, |sum, one| sum + one);
         let (samples, travel) = (sum(|one| one.samples).max(1.0), sum(|one| one.travel));
         let in_steps = sum(|one| one.in_steps);
@@ -91,6 +90,13 @@ impl InputMotion {
             travel_in_steps: moves.then(|| (in_steps / travel).min(1.0)),
         }
     }
+}
+
+impl InputMotion {
+    /// Of the input of all trials of a joint.
+    pub fn of(record: &Record) -> Self {
+        *record.property()
+    }
 
     /// Whether it moves all the time, so that its changes are no steps.
     pub fn is_continuous(&self) -> bool {
@@ -99,10 +105,10 @@ impl InputMotion {
 }
 
 impl InputKind {
-    /// Whether the input of `trials` is taken as moving all the time.
-    pub fn is_continuous(self, trials: &[Trial]) -> bool {
+    /// Whether the input of a joint is taken as moving all the time.
+    pub fn is_continuous(self, record: &Record) -> bool {
         match self {
-            Self::Auto => InputMotion::of(trials).is_continuous(),
+            Self::Auto => InputMotion::of(record).is_continuous(),
             Self::Steps => false,
             Self::Continuous => true,
         }
@@ -275,7 +281,7 @@ mod tests {
         let input: Vec<f64> =
             (0..ceil_to_index(40.0 / period_s)).map(|k| input(k as f64 * period_s)).collect();
         let (period, output) = (SamplePeriod::from_seconds(period_s).unwrap(), input.clone());
-        InputMotion::of(&[Trial::new("1", 0.0, period, input, output).unwrap()])
+        InputMotion::of(&Record::from([Trial::new("1", 0.0, period, input, output).unwrap()]))
     }
 
     fn steps(time_s: f64) -> f64 {
@@ -358,7 +364,7 @@ mod tests {
             }
             let period = SamplePeriod::from_seconds(0.001).unwrap();
             let trial = Trial::new("1", 0.0, period, input.clone(), input).unwrap();
-            let found = InputMotion::of(&[trial]);
+            let found = InputMotion::of(&Record::from([trial]));
             assert!(!found.is_continuous(), "{shortest} {found:?}");
         }
     }
@@ -390,7 +396,7 @@ mod tests {
                 let period = SamplePeriod::from_seconds(0.01).unwrap();
                 Trial::new(number.to_string(), 0.0, period, input.clone(), input).unwrap()
             };
-            let found = InputMotion::of(&(0..30).map(trial).collect::<Vec<_>>());
+            let found = InputMotion::of(&Record::from((0..30).map(trial).collect::<Vec<_>>()));
             assert_eq!(found.travel_in_steps, Some(1.0), "{before}");
         }
     }
@@ -399,7 +405,10 @@ mod tests {
     fn an_input_that_never_moves_is_no_joystick() {
         let found = motion(0.01, |_| 7.5);
         assert!(!found.is_continuous() && found.travel_in_steps.is_none());
-        assert!(InputKind::Continuous.is_continuous(&[]) && !InputKind::Auto.is_continuous(&[]));
+        assert!(
+            InputKind::Continuous.is_continuous(&Record::from([]))
+                && !InputKind::Auto.is_continuous(&Record::from([]))
+        );
     }
 
     #[test]

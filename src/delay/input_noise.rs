@@ -199,7 +199,7 @@ mod tests {
     use crate::delay::input_motion::InputMotion;
     use crate::delay::settings::Settings;
     use crate::delay::steps::trial_steps;
-    use crate::experiment::Trial;
+    use crate::experiment::{Record, Trial};
     use crate::units::SamplePeriod;
 
     const PERIOD_S: f64 = 0.01;
@@ -227,7 +227,10 @@ mod tests {
         let clean = trial_steps(&trial(stairs, 0.0), &Settings::default());
         for deviation in [0.01, 0.03, 0.05] {
             let noisy = trial(stairs, deviation);
-            assert!(!InputMotion::of(std::slice::from_ref(&noisy)).is_continuous(), "{deviation}");
+            assert!(
+                !InputMotion::of(&Record::from([noisy.clone()])).is_continuous(),
+                "{deviation}"
+            );
             let found = trial_steps(&noisy, &Settings::default());
             assert_eq!(found.len(), clean.len(), "{deviation}");
             for (found, clean) in found.iter().zip(&clean) {
@@ -247,7 +250,7 @@ mod tests {
         input[3000] = 50.0;
         let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
         let marred = Trial::new("1", 0.0, period, input.clone(), input).unwrap();
-        assert!(!InputMotion::of(std::slice::from_ref(&marred)).is_continuous());
+        assert!(!InputMotion::of(&Record::from([marred.clone()])).is_continuous());
         let steps = |trial: &Trial| trial_steps(trial, &Settings::default());
         assert_eq!(steps(&marred), steps(&clean));
     }
@@ -261,7 +264,7 @@ mod tests {
             input[5555] = -height;
             let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
             let marred = Trial::new("1", 0.0, period, input.clone(), input).unwrap();
-            assert!(!InputMotion::of(std::slice::from_ref(&marred)).is_continuous(), "{height}");
+            assert!(!InputMotion::of(&Record::from([marred.clone()])).is_continuous(), "{height}");
             let samples = |trial: &Trial| -> Vec<usize> {
                 let steps = trial_steps(trial, &Settings::default());
                 steps.iter().map(|step| step.sample).collect()
@@ -306,7 +309,7 @@ mod tests {
         for frequency in [0.1, 0.4, 1.5] {
             for deviation in [0.01, 0.03, 0.05] {
                 let moving = trial(|t| (std::f64::consts::TAU * frequency * t).sin(), deviation);
-                let found = InputMotion::of(std::slice::from_ref(&moving));
+                let found = InputMotion::of(&Record::from([moving.clone()]));
                 assert!(found.is_continuous(), "{frequency} {deviation} {found:?}");
             }
         }

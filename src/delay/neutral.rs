@@ -6,7 +6,7 @@
 use std::cmp::Ordering;
 
 use super::hold::{Hold, holds, level_tolerance};
-use crate::experiment::Trial;
+use crate::experiment::{Property, Record};
 
 /// Where the input of a joint is neutral: at a level, and within a dead band about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +17,17 @@ pub struct Neutral {
     pub low: f64,
     /// The greatest input that counts as neutral.
     pub high: f64,
+}
+
+impl Property for Option<Neutral> {
+    fn find(record: &Record) -> Self {
+        let tolerance = level_tolerance(record);
+        let held: Vec<Vec<Hold>> = record.iter().map(|trial| holds(trial, tolerance)).collect();
+        let levels = Level::all(&held.concat(), tolerance);
+        let level = neutral_level(&levels, tolerance)?;
+        let (low, high) = dead_band(&held, level, tolerance);
+        Some(Neutral { level, low: low - tolerance, high: high + tolerance })
+    }
 }
 
 impl Neutral {
@@ -37,17 +48,8 @@ impl Neutral {
     ///
     /// The band reaches to those held levels that do not move the joint from rest, and beyond
     /// them by the tolerance of levels: a part of the input's range, or what its noise takes.
-    pub fn of(trials: &[Trial]) -> Option<Self> {
-        Self::within(trials, level_tolerance(trials))
-    }
-
-    /// The neutral input of `trials`, whose levels have a known tolerance.
-    pub(super) fn within(trials: &[Trial], tolerance: f64) -> Option<Self> {
-        let held: Vec<Vec<Hold>> = trials.iter().map(|trial| holds(trial, tolerance)).collect();
-        let levels = Level::all(&held.concat(), tolerance);
-        let level = neutral_level(&levels, tolerance)?;
-        let (low, high) = dead_band(&held, level, tolerance);
-        Some(Self { level, low: low - tolerance, high: high + tolerance })
+    pub fn of(record: &Record) -> Option<Self> {
+        *record.property()
     }
 
     /// On which side of neutral an input is; equal within the band.
@@ -192,6 +194,7 @@ fn dead_band(held: &[Vec<Hold>], level: f64, tolerance: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::Trial;
     use crate::units::SamplePeriod;
     use proptest::prelude::*;
 
@@ -215,7 +218,7 @@ mod tests {
     const LEVELS: [f64; 12] = [0.0, 1.0, -1.0, 0.0, 2.0, 1.0, 0.0, -2.0, 0.0, -1.0, 2.0, 0.0];
 
     fn level(trials: &[Trial]) -> Option<f64> {
-        Neutral::of(trials).map(|neutral| neutral.level)
+        Neutral::of(&trials.to_vec().into()).map(|neutral| neutral.level)
     }
 
     #[test]
@@ -254,7 +257,7 @@ mod tests {
         let output = output.collect();
         let period = SamplePeriod::from_seconds(0.02).unwrap();
         let trial = Trial::new("1", 0.0, period, input, output).unwrap();
-        let neutral = Neutral::of(&[trial]).unwrap();
+        let neutral = Neutral::of(&Record::from([trial])).unwrap();
         assert_eq!(neutral.side(0.0), Ordering::Equal);
         assert_eq!(neutral.side(1.0), Ordering::Greater);
     }
@@ -262,7 +265,7 @@ mod tests {
     #[test]
     fn levels_that_do_not_move_the_joint_are_neutral() {
         let levels = [0.0, 0.3, 0.0, 2.0, 0.0, -0.3, 0.0, -2.0, 0.0, 0.6, 0.0, 1.0, 0.0, -1.0, 0.0];
-        let neutral = Neutral::of(&[joint(1.0, 0.7, &levels, 100, 1e9)]).unwrap();
+        let neutral = Neutral::of(&Record::from([joint(1.0, 0.7, &levels, 100, 1e9)])).unwrap();
         let sides = [0.4, 0.7, 1.0, 1.3, 1.6, 1.95].map(|u| neutral.side(u));
         let band = [Ordering::Equal; 4];
         assert_eq!(sides[1..5], band);
@@ -284,7 +287,7 @@ mod tests {
                 Trial::new("1", 0.0, trial.period(), input, trial.output().to_vec()).unwrap()
             };
             let trials = [shaken(joint(neutral, 0.0, &LEVELS, hold, 1e9))];
-            let found = Neutral::of(&trials).unwrap();
+            let found = Neutral::of(&Record::from(trials.clone())).unwrap();
             let expected = gain * neutral;
             prop_assert!((found.level - expected).abs() <= 0.05 * gain, "{found:?} {expected}");
             prop_assert_eq!(found.side(expected), Ordering::Equal);

@@ -3,7 +3,7 @@
 use super::in_seconds::InSeconds;
 use super::input_motion::{InputKind, InputMotion};
 use super::spec::Method;
-use crate::experiment::Trial;
+use crate::experiment::Record;
 use crate::numerics::LowPass;
 use crate::units::SamplePeriod;
 
@@ -196,7 +196,7 @@ impl Settings {
 
     /// Whether the input of these `trials` of a joint is taken as moving all the time. One whose
     /// smallest step is given has steps.
-    pub(crate) fn takes_as_continuous(&self, trials: &[Trial]) -> bool {
+    pub(crate) fn takes_as_continuous(&self, trials: &Record) -> bool {
         self.takes_as_continuous_if(|| InputMotion::of(trials).is_continuous())
     }
 

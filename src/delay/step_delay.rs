@@ -4,7 +4,7 @@ use super::estimate::estimate_joint;
 use super::settings::{FirstLast, Settings};
 use super::spec::Method;
 use super::trial_estimate::EstimateError;
-use crate::experiment::Trial;
+use crate::experiment::{Record, Trial};
 
 /// The dead time of one change of the input, seconds, with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,10 +34,10 @@ pub struct StepDelay {
 /// let output: Vec<f64> = (0..200).map(|k| 0.2 * f64::from((k - 112).max(0))).collect();
 /// let period = SamplePeriod::from_seconds(0.01).unwrap();
 /// let trial = Trial::new("swing", 0.0, period, input, output).unwrap();
-/// let delays = step_delays(&[trial]).unwrap();
+/// let delays = step_delays(&[trial].into()).unwrap();
 /// assert!((delays[0][0].unwrap().delay_s - 0.12).abs() < 1e-6);
 /// ```
-pub fn step_delays(trials: &[Trial]) -> Result<Vec<Vec<Option<StepDelay>>>, EstimateError> {
+pub fn step_delays(trials: &Record) -> Result<Vec<Vec<Option<StepDelay>>>, EstimateError> {
     // A line between the samples of a slow sensor looks like a lag: what is asked then is where the output
     // bends, without one.
     let is_interpolated = trials.iter().any(|trial| !trial.interpolated().is_empty());

@@ -10,7 +10,7 @@ use std::ops::Range;
 use super::input_motion::edge_samples;
 use super::input_noise::Levels;
 use super::settings::Settings;
-use crate::experiment::Trial;
+use crate::experiment::{Record, Trial};
 
 /// A change of the input: sample `p_i` and the levels on both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ pub(super) fn hold_ranges(
 
 /// The steps of each of the `trials` of a joint, as `settings` ask for: none of an input that
 /// moves all the time.
-pub(crate) fn joint_steps(trials: &[Trial], settings: &Settings) -> Vec<Vec<InputStep>> {
+pub(crate) fn joint_steps(trials: &Record, settings: &Settings) -> Vec<Vec<InputStep>> {
     if settings.takes_as_continuous(trials) {
         return trials.iter().map(|_| Vec::new()).collect();
     }

@@ -10,7 +10,7 @@ use super::motion::{StepMotion, arrival};
 use super::neutral::Neutral;
 use super::prepared::Prepared;
 use super::steps::{InputStep, hold_ranges};
-use crate::experiment::Trial;
+use crate::experiment::{Record, Trial};
 use crate::numerics::{median, noise_of_differences};
 
 /// Holds in which the joint comes to the same end of its range, which show a stop.
@@ -35,7 +35,7 @@ pub(super) struct Stops {
 
 impl Stops {
     /// The stops that `trials` with these `steps` show; `None` where there is none.
-    pub(super) fn of<'a>(trials: &'a [Trial], steps: &[Vec<InputStep>]) -> Option<Self> {
+    pub(super) fn of<'a>(trials: &'a Record, steps: &[Vec<InputStep>]) -> Option<Self> {
         let of_trial = |(trial, steps): (&'a Trial, &Vec<InputStep>)| -> Vec<(f64, &'a [f64])> {
             let output = trial.output();
             let holds = steps.iter().zip(hold_ranges(steps, output.len()));
@@ -45,7 +45,7 @@ impl Stops {
         holds.sort_by(|a, b| a.0.total_cmp(&b.0));
         let tolerance = level_tolerance(trials);
         // Between levels that drive it one way and the other a joint is left alone.
-        let neutral = Neutral::within(trials, tolerance).filter(|neutral| {
+        let neutral = Neutral::of(trials).filter(|neutral| {
             let is_on =
                 |side: Ordering| holds.iter().any(|(level, _)| neutral.side(*level) == side);
             is_on(Ordering::Less) && is_on(Ordering::Greater)
@@ -219,7 +219,7 @@ mod tests {
             let levels: Vec<f64> = (0..42).map(|k| speed * [1.0, -1.0, 0.0][k % 3]).collect();
             let trial = between_stops(&levels, hold);
             let steps = super::super::steps::input_steps(trial.input(), 0.0);
-            assert_eq!(Stops::of(std::slice::from_ref(&trial), &[steps]), None, "{speed}");
+            assert_eq!(Stops::of(&Record::from([trial.clone()]), &[steps]), None, "{speed}");
         }
     }
 
@@ -227,6 +227,6 @@ mod tests {
     fn a_joint_that_turns_before_its_stop_shows_none() {
         let trial = between_stops(&[0.0, 0.5, -0.5, -0.5, 0.5, 0.25, -0.25, 0.0], 100);
         let steps = super::super::steps::input_steps(trial.input(), 0.0);
-        assert_eq!(Stops::of(std::slice::from_ref(&trial), &[steps]), None);
+        assert_eq!(Stops::of(&Record::from([trial.clone()]), &[steps]), None);
     }
 }

@@ -143,7 +143,7 @@ impl DelayTable {
         estimates: impl IntoIterator<Item = Option<&'a TrialEstimate>>,
     ) -> Self {
         let tolerance = level_tolerance(&joint.trials);
-        let neutral = Neutral::within(&joint.trials, tolerance);
+        let neutral = Neutral::of(&joint.trials);
         let trials = joint.trials.iter().zip(estimates);
         let estimated = trials.filter_map(|(trial, estimate)| Some((trial, estimate?)));
         let decisions = estimated.flat_map(|(trial, estimate)| {

@@ -12,7 +12,7 @@ use super::motion::{StepMotion, arrival};
 use super::prepared::Prepared;
 use super::settings::Settings;
 use super::steps::{InputStep, hold_ranges, joint_steps};
-use crate::experiment::Trial;
+use crate::experiment::{Property, Record, Trial};
 use crate::numerics::noise_of_differences;
 
 /// Levels of the input, and holds at whose end the output rests, that show a relation.
@@ -35,10 +35,16 @@ pub struct Tracking {
     r_squared: f64,
 }
 
-/// Where the outputs of `trials` come to rest, where their input says that.
-pub(crate) fn tracking(trials: &[Trial]) -> Option<Tracking> {
-    let settings = Settings::default().with_input(&InputMotion::of(trials));
-    Tracking::of(trials, &joint_steps(trials, &settings))
+/// Where the outputs of a joint come to rest, where its input says that.
+pub(crate) fn tracking(record: &Record) -> Option<Tracking> {
+    *record.property()
+}
+
+impl Property for Option<Tracking> {
+    fn find(record: &Record) -> Self {
+        let settings = Settings::default().with_input(&InputMotion::of(record));
+        Tracking::of(record, &joint_steps(record, &settings))
+    }
 }
 
 /// A hold of the input at whose end the output rests.

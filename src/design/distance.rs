@@ -24,9 +24,7 @@ pub(super) fn expected(
     let output = clean.iter().zip(&carrier).map(|(y, c)| y + c).collect();
     let joint = rig.log(schedule, output)?;
     let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
-    let levels = record.input_levels();
-    let top = levels.last().copied().unwrap_or(1.0);
-    let range = record.range(&levels, suspects.base.gain.value.abs() * top);
+    let range = record.range_for(&suspects.base);
     let neither = fit_to_compare(&record, &suspects.base, &range).ok()?;
     let distance = |fit: &Fit| distance(&record, fit, &carrier, suspects.noise);
     let fitted = |place: usize| best(&record, suspects, place, &neither.model, &range);

@@ -253,8 +253,7 @@ mod tests {
         let model = JointModel::integrator(10.0, 0.1).with(effect);
         let joint = rig.log(&schedule, rig.output(&model, &schedule)).unwrap();
         let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::Steps);
-        let levels = record.input_levels();
-        let fit = assess(&record, &model, &record.range(&levels, 20.0)).unwrap();
+        let fit = assess(&record, &model, &record.range(20.0)).unwrap();
         let known = Uncertain::of_fit(&record, &fit, 0.05, 0.1);
         // Steps of the search end a little before 1.0 V.
         let start = (known.model.values()[2].value, known.deviations[2]);

@@ -68,7 +68,7 @@ impl<'a> LeftOut<'a> {
     /// `None` where too little can be left out.
     pub(super) fn of(joint: &'a Joint, model: &JointModel) -> Option<Self> {
         let record = FitRecord::new(joint, Split::Time(1.0), Horizon::FreeRun);
-        let radians_per_output_unit = record.range(&[], 0.0).radians_per_output_unit;
+        let radians_per_output_unit = record.range(0.0).radians_per_output_unit;
         let around = Surroundings { radians_per_output_unit, ..Surroundings::default() };
         let stops = Stops::of(joint);
         let mut is_bounded = follows_input(joint).is_some();
@@ -164,9 +164,7 @@ fn refitted(joint: &Joint, model: &JointModel, part: usize) -> Option<(JointMode
     let trials: Vec<Trial> = pieces.flatten().collect();
     let rest = joint.of_trials(trials);
     let record = FitRecord::new(&rest, Split::Time(1.0), Horizon::Auto);
-    let levels = record.input_levels();
-    let top = levels.last().copied().unwrap_or(1.0);
-    let range = record.range(&levels, model.gain.value.abs() * top);
+    let range = record.range_for(model);
     let begin = |joint: &Joint| joint.trials.first().map(|trial| trial.time_s(1));
     let is_cut = joint.trials.len() < PARTS;
     let later_s = if is_cut { begin(&rest)? - begin(joint)? } else { 0.0 };

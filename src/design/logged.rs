@@ -3,7 +3,7 @@
 
 use crate::delay::FirstOrder;
 use crate::delay::{Neutral, level_tolerance};
-use crate::experiment::{Joint, Trial};
+use crate::experiment::{Joint, Record, Trial};
 use crate::numerics::{median, quantile};
 use crate::units::SamplePeriod;
 
@@ -108,7 +108,7 @@ impl Logged {
             let (start_s, output) = (trial.time_s(1), trial.output().to_vec());
             Trial::new(trial.label(), start_s, trial.period(), input, output).ok()
         };
-        let trials: Option<Vec<Trial>> = joint.trials.iter().map(centred).collect();
+        let trials: Option<Record> = joint.trials.iter().map(centred).collect();
         trials.map_or_else(|| joint.clone(), |trials| Joint { trials, ..joint.clone() })
     }
 
@@ -266,8 +266,9 @@ mod tests {
         let period = SamplePeriod::from_seconds(0.001).unwrap();
         let (input, output) = (slow.trials[0].input().to_vec(), slow.trials[0].output().to_vec());
         let trials = vec![Trial::new("1", 0.0, period, input, output).unwrap()];
-        let fast = Joint { trials, ..slow };
-        let thinned = Logged::of(&fast).thinned(&fast).trials.remove(0);
+        let fast = Joint { trials: trials.into(), ..slow };
+        let thinned = Logged::of(&fast).thinned(&fast);
+        let thinned = &thinned.trials[0];
         assert_eq!((thinned.len(), thinned.period().seconds()), (40, 0.01));
         assert_eq!(thinned.output()[1].to_bits(), fast.trials[0].output()[10].to_bits());
     }
@@ -283,7 +284,7 @@ mod tests {
         let period = SamplePeriod::from_seconds(0.02).unwrap();
         let output: Vec<f64> = output.collect();
         let trials = vec![Trial::new("1", 0.0, period, input, output).unwrap()];
-        let joint = Joint { trials, ..joint(vec![0.0; 10]) };
+        let joint = Joint { trials: trials.into(), ..joint(vec![0.0; 10]) };
         let logged = Logged::of(&joint).within((10.0, 32.0));
         assert!((logged.rest - 2.0).abs() < 1e-9, "{}", logged.rest);
         assert!((logged.settled().unwrap() - 25.0).abs() < 0.1);

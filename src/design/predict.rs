@@ -141,7 +141,7 @@ impl TestRig {
         let output_unit = self.output_unit.clone();
         let joint = Joint { output_unit, ..Joint::new("", Vec::new()) };
         let record = FitRecord::new(&joint, Split::Time(1.0), Horizon::FreeRun);
-        record.range(&[], 0.0).radians_per_output_unit
+        record.range(0.0).radians_per_output_unit
     }
 }
 

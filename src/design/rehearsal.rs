@@ -100,9 +100,7 @@ fn starting_model(record: &FitRecord<'_>, joint: &Joint, base: &JointModel) -> O
     } else {
         vec![base.clone()]
     };
-    let levels = record.input_levels();
-    let top = levels.last().copied().unwrap_or(1.0);
-    let range = record.range(&levels, starts.first()?.gain.value.abs() * top);
+    let range = record.range_for(starts.first()?);
     let fits = starts.iter().filter_map(|start| fit(record, start, &range).ok());
     fits.min_by(|a, b| a.cost.total_cmp(&b.cost))
 }

@@ -149,7 +149,7 @@ mod tests {
 
     fn joint(trials: Vec<Trial>) -> Joint {
         let (name, covariates) = ("boom".to_owned(), Vec::new());
-        Joint { name, input_unit: None, output_unit: None, covariates, trials }
+        Joint { name, input_unit: None, output_unit: None, covariates, trials: trials.into() }
     }
 
     #[test]

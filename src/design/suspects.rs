@@ -111,9 +111,7 @@ fn behind(fit: &Fit) -> f64 {
 }
 
 fn fitted(record: &FitRecord<'_>, model: &JointModel) -> Result<Fit, FitError> {
-    let levels = record.input_levels();
-    let top = levels.last().copied().unwrap_or(1.0);
-    fit(record, model, &record.range(&levels, model.gain.value.abs() * top))
+    fit(record, model, &record.range_for(model))
 }
 
 /// `output` with white noise.

@@ -179,7 +179,7 @@ mod tests {
 
     fn joint(name: &str, trials: Vec<Trial>) -> Joint {
         let (input_unit, output_unit, covariates) = (None, None, Vec::new());
-        Joint { name: name.to_owned(), input_unit, output_unit, covariates, trials }
+        Joint { name: name.to_owned(), input_unit, output_unit, covariates, trials: trials.into() }
     }
 
     /// What the joints but the first do, with their delays.

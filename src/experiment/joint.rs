@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::record::Record;
 use crate::units::SamplePeriod;
 
 /// One joint: what drove it and what it did, in every trial.
@@ -16,12 +17,13 @@ pub struct Joint {
     /// Name and unit of further signals; each trial holds them in this order.
     pub covariates: Vec<Signal>,
     /// The uninterrupted runs, in the order of the log.
-    pub trials: Vec<Trial>,
+    pub trials: Record,
 }
 
 impl Joint {
     /// A joint without further signals, whose units are not known.
-    pub fn new(name: impl Into<String>, trials: Vec<Trial>) -> Self {
+    pub fn new(name: impl Into<String>, trials: impl Into<Record>) -> Self {
+        let trials = trials.into();
         let (input_unit, output_unit, covariates) = (None, None, Vec::new());
         Self { name: name.into(), input_unit, output_unit, covariates, trials }
     }
@@ -33,7 +35,7 @@ impl Joint {
     }
 
     /// Other `trials` of this joint, without its further signals.
-    pub(crate) fn of_trials(&self, trials: Vec<Trial>) -> Self {
+    pub(crate) fn of_trials(&self, trials: impl Into<Record>) -> Self {
         let (input_unit, output_unit) = (self.input_unit.clone(), self.output_unit.clone());
         Self { input_unit, output_unit, ..Self::new(self.name.clone(), trials) }
     }
@@ -151,16 +153,18 @@ impl Trial {
         Ok(self)
     }
 
-    /// Another input of the same length.
-    pub(crate) fn set_input(&mut self, input: Vec<f64>) {
+    /// This trial with another input of the same length.
+    #[must_use]
+    pub(crate) fn with_input(self, input: Vec<f64>) -> Self {
         debug_assert_eq!(input.len(), self.input.len(), "one value for each sample");
-        self.input = input;
+        Self { input, ..self }
     }
 
-    /// Another output of the same length.
-    pub(super) fn set_output(&mut self, output: Vec<f64>) {
+    /// This trial with another output of the same length.
+    #[must_use]
+    pub(super) fn with_output(self, output: Vec<f64>) -> Self {
         debug_assert_eq!(output.len(), self.output.len(), "one value for each sample");
-        self.output = output;
+        Self { output, ..self }
     }
 
     /// This trial with samples that were filled in while nothing was logged, in order.

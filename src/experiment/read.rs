@@ -146,7 +146,8 @@ fn merge(known: &mut Joint, joint: Joint, path: &Path) -> Result<(), ReadError> 
         later if later != 0.0 && origin_s != 0.0 => trial.counted_from(origin_s - later),
         _ => trial,
     };
-    known.trials.extend(joint.trials.into_iter().map(on_one_clock));
+    let later = joint.trials.into_iter().map(on_one_clock);
+    known.trials = std::mem::take(&mut known.trials).into_iter().chain(later).collect();
     Ok(())
 }
 

@@ -9,7 +9,8 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::joint::{Joint, Trial};
+use super::joint::Trial;
+use super::record::Record;
 use crate::numerics::{quantile, robust_scale};
 
 /// Samples on either side that a spike is held against.
@@ -50,18 +51,16 @@ impl Spikes {
         any.then(|| trials.iter().zip(&without).map(of).collect())
     }
 
-    /// `joint` with lines in the place of the spikes of its output, so that they are no part of its range
-    /// either; none where it has no spike.
-    pub(crate) fn taken_out(&self, joint: &Joint) -> Option<Joint> {
+    /// `record` with lines in the place of the spikes of its output, so that they are no part of its
+    /// range either; none where it has no spike.
+    pub(crate) fn taken_out(&self, record: &Record) -> Option<Record> {
         if self.0.iter().all(Vec::is_empty) {
             return None;
         }
-        let mut joint = joint.clone();
-        for (trial, spikes) in joint.trials.iter_mut().zip(&self.0) {
-            let mended = with_lines(trial.output(), spikes);
-            trial.set_output(mended);
-        }
-        Some(joint)
+        let mend = |(trial, spikes): (&Trial, &Vec<Range<usize>>)| {
+            trial.clone().with_output(with_lines(trial.output(), spikes))
+        };
+        Some(record.iter().zip(&self.0).map(mend).collect())
     }
 }
 

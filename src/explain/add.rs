@@ -2,7 +2,6 @@
 
 use super::attribution::Grown;
 use super::comparison::MUCH_LESS;
-use super::eligible::signal_range;
 use super::evidence::NoiseMemory;
 use super::misfit::Misfit;
 use super::options::Options;
@@ -26,8 +25,7 @@ pub fn add(
 ) -> Result<Addition, AddError> {
     check(&base.model, effect)?;
     let model = base.model.with(Component::neutral(effect));
-    let levels = record.input_levels();
-    let range = signal_range(record, &model, &levels);
+    let range = record.range_for(&model);
     let by_law = fit(record, &model, &range)?;
     let by_law = as_first_order(record, &base, &range, effect)
         .filter(|other| other.cost < by_law.cost)

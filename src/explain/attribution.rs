@@ -21,7 +21,6 @@
 use super::candidate::ALIKE;
 use super::contribution::{Attribution, Contribution};
 use super::determined::is_determined;
-use super::eligible::signal_range;
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
 use super::limiting_case::limiting_case;
@@ -175,8 +174,7 @@ impl Grown<'_, '_> {
         if ids(&model) == ids(&self.first.model) {
             return Some(self.first.clone());
         }
-        let levels = self.record.input_levels();
-        let range = signal_range(self.record, &model, &levels);
+        let range = self.record.range_for(&model);
         Some(FitOutcome::of(self.record, fit_to_compare(self.record, &model, &range).ok()?))
     }
 

@@ -2,7 +2,7 @@
 
 use super::options::Options;
 use crate::delay::InputMotion;
-use crate::effect::{Effect, RecordRange, Spec, WithinTrials};
+use crate::effect::{Effect, Spec, WithinTrials};
 use crate::experiment::are_opposites;
 use crate::fit::FitRecord;
 use crate::model::JointModel;
@@ -73,13 +73,4 @@ pub(super) fn is_due(model: &JointModel, effect: &Spec, options: &Options) -> bo
 
 fn has(model: &JointModel, is_it: impl Fn(&Spec) -> bool) -> bool {
     model.components().iter().any(|component| is_it(component.effect().spec()))
-}
-
-/// How large the signals of `record` are, for a model with about the gain of `model`.
-pub(crate) fn signal_range<'l>(
-    record: &'l FitRecord<'_>,
-    model: &JointModel,
-    levels: &'l [f64],
-) -> RecordRange<'l> {
-    record.range(levels, model.gain.value.abs() * levels.last().copied().unwrap_or(1.0))
 }

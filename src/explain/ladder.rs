@@ -11,7 +11,7 @@
 //! Merritt, H. E., 1967, Hydraulic Control Systems (valves and cylinders); Koivo, A. J., 1994,
 //! Journal of Aerospace Engineering 7 (linkages of excavators).
 
-use super::eligible::{could_be_missing, is_due, signal_range};
+use super::eligible::{could_be_missing, is_due};
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::revision::Change;
@@ -46,8 +46,7 @@ pub(super) fn climbed(
             continue;
         }
         let with = model.with(Component::neutral(effect));
-        let levels = record.input_levels();
-        let Ok(fit) = fit_to_compare(record, &with, &signal_range(record, &with, &levels)) else {
+        let Ok(fit) = fit_to_compare(record, &with, &record.range_for(&with)) else {
             continue;
         };
         let (own, with_effect) = (Errors::of(record, &step.fit), Errors::of(record, &fit));

@@ -106,7 +106,7 @@ mod tests {
             input_unit: None,
             output_unit: None,
             covariates: names.map(|name| Signal { name: name.to_owned(), unit: None }).to_vec(),
-            trials: vec![trial.with_covariates(all).unwrap()],
+            trials: [trial.with_covariates(all).unwrap()].into(),
         };
         assert_eq!(possible_causes(&joint), ["pressure"]);
     }

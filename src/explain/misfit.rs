@@ -121,16 +121,20 @@ mod tests {
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trials = vec![Trial::new("1", 0.0, period, input, output).unwrap()];
         let name = "boom".to_owned();
-        Joint { name, input_unit: None, output_unit: None, covariates: Vec::new(), trials }
+        Joint {
+            name,
+            input_unit: None,
+            output_unit: None,
+            covariates: Vec::new(),
+            trials: trials.into(),
+        }
     }
 
     #[test]
     fn what_is_off_on_the_unseen_part_by_more_than_the_first_model_does_not_generalize() {
         let joint = joint();
         let record = FitRecord::new(&joint, Split::Time(0.6), Horizon::Auto);
-        let levels = record.input_levels();
-        let exact =
-            fit(&record, &JointModel::integrator(1.0, 0.0), &record.range(&levels, 1.0)).unwrap();
+        let exact = fit(&record, &JointModel::integrator(1.0, 0.0), &record.range(1.0)).unwrap();
         // The unseen part is off by so much everywhere.
         let off_by = |error: f64| {
             let mut fit = exact.clone();

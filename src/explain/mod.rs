@@ -55,7 +55,6 @@ pub use add::add;
 pub use candidate::Candidate;
 pub(crate) use candidate::{ALIKE, BEYOND_DOUBT, BEYOND_DOUBT_PERCENT};
 pub use contribution::{Attribution, Contribution};
-pub(crate) use eligible::signal_range;
 pub use improve::improve;
 pub use judge::explain;
 pub(crate) use judge::named;

@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::comparison::{MUCH_LESS, compared};
-use super::eligible::{eligible, signal_range, steady_refinements};
+use super::eligible::{eligible, steady_refinements};
 use super::extension::Extension;
 use super::limiting_case::put_limiting_cases_first;
 use super::options::Options;
@@ -49,8 +49,7 @@ pub(super) fn rank(
     if record.is_exact(&base.evaluation) {
         return Vec::new();
     }
-    let levels = record.input_levels();
-    let range = signal_range(record, &base.model, &levels);
+    let range = record.range_for(&base.model);
     let effects = eligible(record, &base.model, options);
     let refinements = steady_refinements(record, &base.model, options);
     let search = Search {

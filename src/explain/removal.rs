@@ -2,7 +2,7 @@
 
 use super::candidate::ALIKE;
 use super::determined::is_determined;
-use super::eligible::{could_be_missing, is_due, signal_range};
+use super::eligible::{could_be_missing, is_due};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
 use super::likeness::{are_distinguished, looks_like};
@@ -217,8 +217,7 @@ fn fitted_after<K: Copy + PartialEq + Send + Sync>(
     if models.is_empty() {
         return Vec::new();
     }
-    let levels = record.input_levels();
-    let range = signal_range(record, &whole.model, &levels);
+    let range = record.range_for(&whole.model);
     let thinned = record.thinned();
     let Ok(of_whole) = survey(&thinned, &whole.model, &range) else { return Vec::new() };
     let kept = |costs: &[f64]| {

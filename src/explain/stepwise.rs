@@ -9,7 +9,6 @@
 use std::ops::ControlFlow;
 
 use super::candidate::Candidate;
-use super::eligible::signal_range;
 use super::extension::ids;
 use super::limiting_case::is_one_its_limiting_case;
 use super::misfit::{Errors, Misfit};
@@ -201,8 +200,7 @@ fn exchanged(
 /// The model with the first of two effects that took another's place: a step on the way.
 fn first_of_exchange(record: &FitRecord<'_>, exchange: Exchange, whole: &Fit) -> Option<Step> {
     let model = whole.model.without(exchange.then?);
-    let levels = record.input_levels();
-    let fit = fit_to_compare(record, &model, &signal_range(record, &model, &levels)).ok()?;
+    let fit = fit_to_compare(record, &model, &record.range_for(&model)).ok()?;
     Some(Step::new(record, exchange.change, fit))
 }
 
@@ -210,7 +208,6 @@ fn first_of_exchange(record: &FitRecord<'_>, exchange: Exchange, whole: &Fit) ->
 fn first_of_pair(record: &FitRecord<'_>, found: &Candidate) -> Option<Step> {
     let [first, second] = found.effects.as_slice() else { return None };
     let model = found.fit.model.without(second);
-    let levels = record.input_levels();
-    let fit = fit_to_compare(record, &model, &signal_range(record, &model, &levels)).ok()?;
+    let fit = fit_to_compare(record, &model, &record.range_for(&model)).ok()?;
     Some(Step::new(record, Change::Added(first), fit))
 }

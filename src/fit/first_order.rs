@@ -12,7 +12,7 @@
 
 use crate::delay::{FirstOrder, followed, tracking};
 use crate::effect::{Effect as _, Leakage, RateLimit};
-use crate::experiment::{Joint, Trial};
+use crate::experiment::{Joint, Property, Record, Trial};
 use crate::model::{Component, JointModel};
 use crate::numerics::quantile;
 
@@ -34,10 +34,25 @@ pub(crate) struct Follower {
     rate: Option<f64>,
 }
 
+impl Property for Option<Follower> {
+    fn find(record: &Record) -> Self {
+        Follower::shown(record).or_else(|| Follower::likely(record))
+    }
+}
+
 impl Follower {
-    /// How the output of `joint` follows its input; none where it does not.
-    pub(crate) fn of(joint: &Joint) -> Option<Self> {
-        let trials = &joint.trials;
+    /// How the output of a joint follows its input, or is likely to; none where it does not.
+    pub(crate) fn of(record: &Record) -> Option<Self> {
+        *record.property()
+    }
+
+    /// Where a fit of a first order may start, though no correlation alone shows one.
+    fn likely(record: &Record) -> Option<Self> {
+        Some(Self { first_order: FirstOrder::likely(record)?, rate: None })
+    }
+
+    /// As its correlation with the input shows, or where it comes to rest.
+    fn shown(trials: &Record) -> Option<Self> {
         if let Some(first_order) = FirstOrder::of(trials) {
             return Some(Self { first_order, rate: None });
         }
@@ -51,11 +66,6 @@ impl Follower {
             at_zero: tracking.offset(),
         };
         Some(Self { first_order, rate: usual_rate(trials) })
-    }
-
-    /// Where a fit of a first order may start, though no correlation alone shows one.
-    pub(crate) fn likely(joint: &Joint) -> Option<Self> {
-        Some(Self { first_order: FirstOrder::likely(&joint.trials)?, rate: None })
     }
 
     /// `model` as this first order, and the ids of the effects that make it one.
@@ -131,7 +141,7 @@ mod tests {
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trials = vec![Trial::new("1", 0.0, period, input, output).unwrap()];
         let (name, covariates) = ("motor".to_owned(), Vec::new());
-        Joint { name, input_unit: None, output_unit: None, covariates, trials }
+        Joint { name, input_unit: None, output_unit: None, covariates, trials: trials.into() }
     }
 
     const LEVELS: [f64; 8] = [0.0, 2.0, -1.0, 3.0, 1.0, -2.0, -3.0, 0.5];
@@ -156,7 +166,7 @@ mod tests {
         let late: Vec<f64> =
             [0.0; 8].into_iter().chain(trial.output().iter().copied()).take(trial.len()).collect();
         let input = trial.input().to_vec();
-        of.trials = vec![Trial::new("1", 0.0, trial.period(), input, late).unwrap()];
+        of.trials = [Trial::new("1", 0.0, trial.period(), input, late).unwrap()].into();
         let found = FirstOrder::of(&of.trials).unwrap();
         assert!((found.dead_time_s - 0.08).abs() < 0.015, "{found:?}");
         assert!((0.08..0.13).contains(&found.time_constant_s), "{found:?}");

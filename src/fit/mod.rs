@@ -12,6 +12,7 @@ mod covariance;
 mod descent;
 mod evaluation;
 mod excerpt;
+mod extent;
 mod first_order;
 mod least_squares;
 mod mended;
@@ -31,10 +32,12 @@ mod window;
 
 pub use evaluation::Evaluation;
 pub(crate) use excerpt::Excerpt;
+pub(crate) use extent::starts_s;
 pub(crate) use first_order::{follows_input, makes_first_order, time_constant_s};
 pub use least_squares::{assess, fit, fit_to_compare, fit_to_compare_beside, survey};
+pub(crate) use mended::Mended;
 pub use record::FitRecord;
-pub(crate) use record::{is_rounding, starts_s};
+pub(crate) use record::is_rounding;
 pub use result::{
     AssessedModel, Assessment, Fit, FitError, Parameter, Status, Survey, Termination,
 };

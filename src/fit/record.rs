@@ -6,8 +6,9 @@ use nalgebra::DVector;
 
 use super::evaluation::Evaluation;
 use super::excerpt::Excerpt;
+use super::extent::Extent;
 use super::first_order::Follower;
-use super::mended::mended;
+use super::mended::Mended;
 use super::run::{Run, best_starts, residuals_from, simulated_from};
 use super::speed;
 use super::thin::thinned;
@@ -15,8 +16,8 @@ use super::unlogged::commands;
 use super::window::{Horizon, Part, Split, Window, changes, cut, places, shorter};
 use crate::delay::{StepDelay, step_delays};
 use crate::effect::{RecordRange, SignalRange};
-use crate::experiment::{Joint, Spikes, Trial, has_word};
-use crate::model::{Arrivals, Commands, JointModel, Signals, Surroundings, coded_neutral};
+use crate::experiment::{Joint, Trial, has_word};
+use crate::model::{Arrivals, Commands, JointModel, Signals, Surroundings};
 use crate::units::{floor_to_index, radians_in};
 
 /// A joint's trials, cut into windows.
@@ -24,7 +25,7 @@ use crate::units::{floor_to_index, radians_in};
 pub struct FitRecord<'a> {
     measured: &'a Joint,
     /// The joint without spikes and without noise of its input, where it has any.
-    mended: Option<Arc<Joint>>,
+    mended: Option<Joint>,
     split: Split,
     horizon: Horizon,
     windows: Vec<Window>,
@@ -34,23 +35,15 @@ pub struct FitRecord<'a> {
     /// when a model first asks for it.
     delays: Arc<OnceLock<Delays>>,
     radians_per_output_unit: f64,
-    /// What the output follows, found when a fit first asks for it.
-    follower: Arc<OnceLock<Option<Follower>>>,
     /// Windows start at the measured speed.
     speeds_measured: bool,
-    /// Seconds from the start of the record to that of each trial.
-    starts_s: Vec<f64>,
     /// Changes of the input, per trial.
-    commands: Vec<Commands>,
-    /// Highest minus lowest output, per trial.
-    spans: Vec<f64>,
-    /// The neutral of a coded input, else zero.
-    neutral: f64,
+    commands: Arc<Vec<Commands>>,
+    extent: Arc<Extent>,
     /// Ranges of the further signals that were measured.
     signals: Arc<Vec<SignalRange<'a>>>,
-    /// Per trial and sample 0 for a spike of the sensor or what was not logged, and else 1; none
-    /// where all are 1.
-    weights: Option<Arc<Vec<Vec<f64>>>>,
+    /// Which samples count.
+    seen: Arc<Mended>,
 }
 
 /// Delay of each change of the input in seconds, per trial, where it is known.
@@ -72,17 +65,23 @@ impl<'a> FitRecord<'a> {
     /// measured one where noise leaves it well known (to 1 % of the speeds in the record);
     /// else the simulation goes on with its own, and is steady where a trial begins.
     pub fn new(joint: &'a Joint, split: Split, horizon: Horizon) -> Self {
-        let (measured, spikes) = (joint, Spikes::of(&joint.trials));
-        let mended = mended(joint, &spikes).map(Arc::new);
-        let joint = mended.as_deref().unwrap_or(measured);
+        let (measured, seen) = (joint, joint.trials.property::<Mended>());
+        let mended = seen.record.clone().map(|trials| Joint { trials, ..joint.clone() });
+        let joint = mended.as_ref().unwrap_or(measured);
+        let extent = joint.trials.property::<Extent>();
         let horizon = horizon.of(joint);
         let windows = windows(joint, split, horizon);
         let speeds_measured = speed::are_measured(&joint.trials, &windows);
         let others = Arc::new(vec![Vec::new(); joint.trials.len()]);
         let radians_per_output_unit = radians_in(joint.output_unit.as_deref());
-        let neutral = coded_neutral(&joint.trials).map_or(0.0, |neutral| neutral.level);
-        let (starts_s, commands) = (starts_s(&joint.trials), commands(&joint.trials, neutral));
-        let spans = joint.trials.iter().map(span).collect();
+        let commands = Arc::new(commands(&joint.trials, extent.neutral));
+        let ends = measured.covariates.iter().zip(&extent.covariates);
+        let signals = ends.map(|(signal, (min, max))| SignalRange {
+            name: &signal.name,
+            min: *min,
+            max: *max,
+        });
+        let signals = Arc::new(signals.filter(|range| range.min <= range.max).collect());
         Self {
             measured,
             mended,
@@ -92,14 +91,11 @@ impl<'a> FitRecord<'a> {
             others,
             delays: Arc::default(),
             radians_per_output_unit,
-            follower: Arc::default(),
             speeds_measured,
-            starts_s,
             commands,
-            spans,
-            neutral,
-            signals: Arc::new(signal_ranges(measured)),
-            weights: spikes.weights(&measured.trials).map(Arc::new),
+            extent,
+            signals,
+            seen,
         }
     }
 
@@ -179,7 +175,7 @@ impl<'a> FitRecord<'a> {
     /// The joint, with lines in the place of spikes of its output, and the levels that its input holds where
     /// that was measured with noise.
     pub fn joint(&self) -> &Joint {
-        self.mended.as_deref().unwrap_or(self.measured)
+        self.mended.as_ref().unwrap_or(self.measured)
     }
 
     /// All windows, in the order of the record.
@@ -301,7 +297,7 @@ impl<'a> FitRecord<'a> {
     /// were filled, which no error counts, and 1 for all others; `None` where all of the record are
     /// 1.
     pub fn weights_of(&self, trial: usize) -> Option<&[f64]> {
-        self.weights.as_ref()?.get(trial).map(Vec::as_slice)
+        self.seen.weights.as_ref()?.get(trial).map(Vec::as_slice)
     }
 
     /// The model on each trial.
@@ -333,7 +329,7 @@ impl<'a> FitRecord<'a> {
             surroundings,
             windows,
             weights: self.weights_of(index),
-            span: self.spans[index],
+            span: self.extent.spans[index],
             speeds_measured: self.speeds_measured && model.has_dynamics(),
             model,
         })
@@ -357,32 +353,31 @@ impl<'a> FitRecord<'a> {
 
     /// Seconds from the start of the record to that of `trial`.
     pub(crate) fn start_s(&self, trial: usize) -> f64 {
-        self.starts_s[trial]
+        self.extent.starts_s[trial]
     }
 
-    /// How large the signals are; `levels` are the input's magnitudes, see
-    /// [`input_levels`](Self::input_levels).
-    pub fn range<'l>(&'l self, levels: &'l [f64], speed_abs_max: f64) -> RecordRange<'l> {
-        let outputs =
-            || self.joint().trials.iter().flat_map(|trial| trial.output().iter().copied());
-        let inputs = || self.joint().trials.iter().flat_map(|trial| trial.input().iter().copied());
-        let lowest_input = inputs().fold(f64::INFINITY, f64::min);
-        let ends = self.joint().trials.iter().zip(&self.starts_s);
-        let ends = ends.map(|(trial, start_s)| start_s + length_s(trial));
-        let periods = self.joint().trials.iter().map(|trial| trial.period().seconds());
+    /// How large the signals are, for a joint whose largest speed is `speed_abs_max`.
+    pub fn range(&self, speed_abs_max: f64) -> RecordRange<'_> {
+        let extent = &*self.extent;
         RecordRange {
-            input_neutral: self.neutral,
-            input_abs_max: levels.last().copied().unwrap_or(1.0),
-            input_span: inputs().fold(f64::NEG_INFINITY, f64::max) - lowest_input,
-            input_levels: levels,
-            output_min: outputs().fold(f64::INFINITY, f64::min),
-            output_max: outputs().fold(f64::NEG_INFINITY, f64::max),
+            input_neutral: extent.neutral,
+            input_abs_max: extent.levels.last().copied().unwrap_or(1.0),
+            input_span: extent.input_span,
+            input_levels: &extent.levels,
+            output_min: extent.output.0,
+            output_max: extent.output.1,
             speed_abs_max,
-            duration_s: ends.fold(0.0, f64::max),
-            sample_period_s: periods.fold(f64::INFINITY, f64::min),
+            duration_s: extent.duration_s,
+            sample_period_s: extent.sample_period_s,
             radians_per_output_unit: self.radians_per_output_unit,
             signals: &self.signals,
         }
+    }
+
+    /// How large the signals are, for a joint with about the gain of `model`.
+    pub fn range_for(&self, model: &JointModel) -> RecordRange<'_> {
+        let largest = self.extent.levels.last().copied().unwrap_or(1.0);
+        self.range(model.gain.value.abs() * largest)
     }
 
     /// Whether the residuals of `evaluation` are no more than rounding: there is nothing to explain.
@@ -394,18 +389,12 @@ impl<'a> FitRecord<'a> {
 
     /// How the output follows the input, where it does or is likely to follow the input itself.
     pub(crate) fn follower(&self) -> Option<Follower> {
-        let of = || Follower::of(self.joint()).or_else(|| Follower::likely(self.joint()));
-        *self.follower.get_or_init(of)
+        Follower::of(&self.joint().trials)
     }
 
     /// The distinct magnitudes of the input, ascending; those from its neutral where it is coded.
-    pub fn input_levels(&self) -> Vec<f64> {
-        let inputs = self.joint().trials.iter().flat_map(Trial::input);
-        let mut levels: Vec<f64> = inputs.map(|input| (input - self.neutral).abs()).collect();
-        levels.sort_by(f64::total_cmp);
-        levels.dedup();
-        levels.shrink_to_fit();
-        levels
+    pub fn input_levels(&self) -> &[f64] {
+        &self.extent.levels
     }
 }
 
@@ -414,70 +403,4 @@ fn windows(joint: &Joint, split: Split, horizon: Horizon) -> Vec<Window> {
     let trials = joint.trials.iter().enumerate().zip(places(&joint.trials));
     let split = |place| split.of_trial(place);
     trials.flat_map(|((index, trial), place)| cut(trial, index, split(place), horizon)).collect()
-}
-
-/// Seconds from the start of the record to that of each of `trials`.
-///
-/// Where their times overlap, as when each counts from zero, they are taken to have followed
-/// one another without a pause: what warms in one trial is warm in the next.
-pub(crate) fn starts_s(trials: &[Trial]) -> Vec<f64> {
-    let times = || trials.iter().map(|trial| trial.time_s(1));
-    let ends = trials.iter().map(|trial| trial.time_s(1) + length_s(trial));
-    // Times are rounded: an end may seem to lie a little behind the next start.
-    let follow = ends
-        .zip(trials.iter().skip(1))
-        .all(|(end, next)| next.time_s(1) > end - 0.5 * next.period().seconds());
-    if follow {
-        let first = times().fold(f64::INFINITY, f64::min);
-        return times().map(|time| time - first).collect();
-    }
-    let mut sum = 0.0;
-    let before = |trial: &Trial| {
-        let before = sum;
-        sum += length_s(trial);
-        before
-    };
-    trials.iter().map(before).collect()
-}
-
-/// Highest minus lowest output.
-fn span(trial: &Trial) -> f64 {
-    let output = trial.output().iter().copied();
-    let (low, high) = output.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
-    high - low
-}
-
-/// Ranges of the further signals of `joint`, of the samples at which they were measured.
-fn signal_ranges(joint: &Joint) -> Vec<SignalRange<'_>> {
-    let ends = |index: usize| {
-        let values = joint.trials.iter().filter_map(|trial| trial.covariates().get(index));
-        let values = values.flatten().copied().filter(|value| value.is_finite());
-        values.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)))
-    };
-    let signals = joint.covariates.iter().enumerate().map(|(index, signal)| {
-        let (min, max) = ends(index);
-        SignalRange { name: &signal.name, min, max }
-    });
-    signals.filter(|range| range.min <= range.max).collect()
-}
-
-fn length_s(trial: &Trial) -> f64 {
-    trial.len() as f64 * trial.period().seconds()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::units::SamplePeriod;
-
-    fn trial(start_s: f64, samples: usize) -> Trial {
-        let period = SamplePeriod::from_seconds(0.5).unwrap();
-        Trial::new("a", start_s, period, vec![0.0; samples], vec![0.0; samples]).unwrap()
-    }
-
-    #[test]
-    fn trials_that_each_count_from_zero_follow_one_another() {
-        assert_eq!(starts_s(&[trial(7.0, 4), trial(20.0, 4)]), [0.0, 13.0]);
-        assert_eq!(starts_s(&[trial(0.0, 4), trial(0.0, 6), trial(0.0, 2)]), [0.0, 2.0, 5.0]);
-    }
 }

@@ -168,7 +168,7 @@ mod tests {
             input_unit: None,
             output_unit: None,
             covariates: Vec::new(),
-            trials: vec![Trial::new("1", 0.0, period, input, output).unwrap()],
+            trials: [Trial::new("1", 0.0, period, input, output).unwrap()].into(),
         }
     }
 
@@ -176,8 +176,7 @@ mod tests {
     fn what_is_there_scores_best() {
         let joint = joint();
         let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::Steps);
-        let levels = record.input_levels();
-        let range = record.range(&levels, 20.0);
+        let range = record.range(20.0);
         let base = fit(&record, &JointModel::integrator(8.0, 0.05), &range)
             .unwrap()
             .assessment

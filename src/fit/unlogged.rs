@@ -7,12 +7,12 @@
 //! rest within a hold of the input, the input is taken to have been at its neutral until then.
 
 use crate::delay::followed;
-use crate::experiment::Trial;
+use crate::experiment::{Record, Trial};
 use crate::model::Commands;
 
 /// The changes of the input of each of `trials`, with those from and to `neutral` that are in no log.
 /// Where the output follows the input itself, no level is one of rest.
-pub(super) fn commands(trials: &[Trial], neutral: f64) -> Vec<Commands> {
+pub(super) fn commands(trials: &Record, neutral: f64) -> Vec<Commands> {
     let has_rest = |trial: &Trial| {
         let gaps = trial.unlogged().iter().map(|gap| gap.end);
         gaps.chain([0]).any(|from| rests(trial, from, neutral))

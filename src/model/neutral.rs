@@ -6,7 +6,7 @@
 //! that begins there would first have to find the neutral among all effects.
 
 use crate::delay::{Neutral, followed};
-use crate::experiment::Trial;
+use crate::experiment::{Property, Record, Trial};
 use crate::numerics::NormalEquations;
 use crate::units::ceil_to_index;
 
@@ -27,7 +27,17 @@ pub(crate) struct CodedNeutral {
 
 /// The neutral of an input that is coded: of one sign, between its ends, and not zero. None where it
 /// is not so, where the output follows the input itself, or where the record does not show it.
-pub(crate) fn coded_neutral(trials: &[Trial]) -> Option<CodedNeutral> {
+pub(crate) fn coded_neutral(record: &Record) -> Option<CodedNeutral> {
+    *record.property()
+}
+
+impl Property for Option<CodedNeutral> {
+    fn find(record: &Record) -> Self {
+        find(record)
+    }
+}
+
+fn find(trials: &Record) -> Option<CodedNeutral> {
     let ends = (f64::INFINITY, f64::NEG_INFINITY);
     let inputs = trials.iter().flat_map(Trial::input);
     let (low, high) = inputs.fold(ends, |(low, high), u| (low.min(*u), high.max(*u)));
@@ -168,9 +178,11 @@ mod tests {
     #[test]
     fn a_stick_about_a_pulse_width_is_neutral_there() {
         let record = trial(1500.0, 0.0);
-        let [found, by_speed] =
-            [coded_neutral(&record).map(|neutral| neutral.level), balanced(&record)]
-                .map(Option::unwrap);
+        let [found, by_speed] = [
+            coded_neutral(&Record::from(record.clone())).map(|neutral| neutral.level),
+            balanced(&record),
+        ]
+        .map(Option::unwrap);
         // A slow turn of the stick is a level that is held; it is where a fit starts.
         assert!((found - 1500.0).abs() < 60.0, "{found}");
         assert!((by_speed - 1500.0).abs() < 5.0, "{by_speed}");
@@ -178,7 +190,7 @@ mod tests {
 
     #[test]
     fn zero_and_what_an_output_settles_at_are_no_coded_neutral() {
-        assert_eq!(coded_neutral(&trial(0.0, 0.0)), None);
-        assert_eq!(coded_neutral(&trial(1500.0, 0.02)), None);
+        assert_eq!(coded_neutral(&Record::from(trial(0.0, 0.0))), None);
+        assert_eq!(coded_neutral(&Record::from(trial(1500.0, 0.02))), None);
     }
 }

@@ -99,7 +99,7 @@ mod tests {
             input_unit: Some("V".to_owned()),
             output_unit: Some("deg".to_owned()),
             covariates: Vec::new(),
-            trials: vec![trial],
+            trials: [trial].into(),
         }
     }
 

@@ -84,8 +84,8 @@ mod tests {
             step_line(&joint(trials), &trial, &found.decisions[0])
         };
         let accepted = "swing, step 1 at 1 s, 0 to 1 V: delay 0.120 s (12 samples)";
-        assert_eq!(line(&kept, vec![trial.clone()]), accepted);
+        assert_eq!(line(&kept, [trial.clone()].into()), accepted);
         let rejected = "swing, trial 1, step 1 at 1 s, 0 to 1 V: rejected, first_or_last";
-        assert_eq!(line(&settings, vec![trial.clone(), trial.clone()]), rejected);
+        assert_eq!(line(&settings, [trial.clone(), trial.clone()].into()), rejected);
     }
 }

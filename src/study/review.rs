@@ -402,7 +402,7 @@ mod tests {
         let output = output.collect();
         let trial = Trial::new("1", 0.0, period, input.clone(), output).unwrap();
         let (name, covariates) = ("boom".to_owned(), Vec::new());
-        Joint { name, input_unit: None, output_unit: None, covariates, trials: vec![trial] }
+        Joint { name, input_unit: None, output_unit: None, covariates, trials: [trial].into() }
     }
 
     fn reviewed(rows: &str) -> (Vec<Decision>, Vec<ReviewNote>, Option<f64>) {

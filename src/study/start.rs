@@ -4,7 +4,6 @@ use super::estimate::JointEstimate;
 use super::protocol::Mode;
 use crate::delay::{Decision, EstimateError, TrialEstimate};
 use crate::experiment::Joint;
-use crate::explain::signal_range;
 use crate::fit::{Assessment, Fit, FitError, FitRecord, assess, fit};
 use crate::model::{JointModel, integrators};
 use crate::numerics::median;
@@ -48,8 +47,7 @@ pub(super) fn best_fit(
     record: &FitRecord<'_>,
     starts: &[JointModel],
 ) -> Option<Result<Fit, FitError>> {
-    let levels = record.input_levels();
-    let range = signal_range(record, starts.first()?, &levels);
+    let range = record.range_for(starts.first()?);
     let fits = starts.iter().map(|start| fit(record, start, &range));
     let cost = |result: &Result<Fit, FitError>| result.as_ref().map_or(f64::MAX, |fit| fit.cost);
     fits.min_by(|a, b| cost(a).total_cmp(&cost(b)))
@@ -60,6 +58,6 @@ pub(super) fn as_it_is(
     record: &FitRecord<'_>,
     models: &[JointModel],
 ) -> Option<Result<Assessment, FitError>> {
-    let (levels, model) = (record.input_levels(), models.first()?);
-    Some(assess(record, model, &signal_range(record, model, &levels)))
+    let model = models.first()?;
+    Some(assess(record, model, &record.range_for(model)))
 }

@@ -2,7 +2,7 @@
 
 use tauscope::batch::Threads;
 use tauscope::delay::{AgainstState, Settings};
-use tauscope::experiment::{Joint, Signal};
+use tauscope::experiment::{Joint, Signal, Trial};
 use tauscope::report::{EstimatedJoint, against_table};
 use tauscope::study::estimate_joints;
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
@@ -69,10 +69,10 @@ fn a_drawn_delay_depends_on_nothing() {
 fn a_further_signal_is_compared_where_it_was_measured() {
     let mut joint = joint(DelayLaw::Warming { first: 0.4, last: 0.1 }, 120.0);
     joint.covariates = vec![Signal { name: "oil".into(), unit: Some("degC".into()) }];
-    let trial = joint.trials.remove(0);
+    let trial = joint.trials[0].clone();
     let oil = |sample: usize| if sample < 3000 { f64::NAN } else { 20.0 + sample as f64 / 600.0 };
     let oil = (0..trial.len()).map(oil).collect();
-    joint.trials.push(trial.with_covariates(vec![oil]).unwrap());
+    joint.trials = [trial.with_covariates(vec![oil]).unwrap()].into();
     let found = found(&joint);
     let oil = found.correlations.last().unwrap();
     assert_eq!((oil.variable.as_str(), oil.unit.as_deref()), ("oil", Some("degC")));
@@ -84,10 +84,11 @@ fn a_further_signal_is_compared_where_it_was_measured() {
 fn variables_that_go_together_are_said_not_to_be_told_apart() {
     let mut joint = joint(DelayLaw::Warming { first: 0.4, last: 0.1 }, 120.0);
     joint.covariates = vec![Signal { name: "oil".to_owned(), unit: Some("degC".to_owned()) }];
-    for trial in &mut joint.trials {
+    let warming = |trial: Trial| {
         let oil = (0..trial.len()).map(|k| 20.0 + 0.001 * k as f64).collect();
-        *trial = trial.clone().with_covariates(vec![oil]).unwrap();
-    }
+        trial.with_covariates(vec![oil]).unwrap()
+    };
+    joint.trials = joint.trials.into_iter().map(warming).collect();
     let found = found(&joint);
     let pairs: Vec<_> = found.kinds.iter().flat_map(|kind| &kind.confounded).collect();
     assert!(!pairs.is_empty());

@@ -9,7 +9,7 @@ use tauscope::delay::{
     estimate_joint, step_delays,
 };
 use tauscope::effect::VariableDelay;
-use tauscope::experiment::Trial;
+use tauscope::experiment::{Record, Trial};
 use tauscope::fit::{FitRecord, Horizon, Split};
 use tauscope::model::{Component, JointModel};
 use tauscope::synthetic::{
@@ -191,7 +191,7 @@ fn stroke_under_load(number: u32) -> Trial {
 
 #[test]
 fn what_a_load_does_along_a_stroke_is_no_lag() {
-    let trials: Vec<Trial> = (0..24).map(stroke_under_load).collect();
+    let trials: Record = (0..24).map(stroke_under_load).collect();
     let found = estimate_joint(&trials, &Settings::of(Method::LAG_AWARE));
     for trial in found {
         let trial = trial.unwrap();
@@ -212,15 +212,15 @@ fn trials_share_their_lag() {
         let made = simulate(&PlantSpec::new(seed, 20.0, vec![spec.clone()])).unwrap();
         made.joints[0].trials[0].clone()
     };
-    let trials = [trial(5), trial(6)];
-    let lags = |trials: &[Trial]| -> Vec<_> {
+    let trials = Record::from([trial(5), trial(6)]);
+    let lags = |trials: &Record| -> Vec<_> {
         let found = estimate_joint(trials, &Settings::of(Method::LAG_AWARE)).into_iter();
         found.map(|trial| trial.unwrap().lag.unwrap().time_constant_s().unwrap()).collect()
     };
     let together = lags(&trials);
     assert_eq!(together[0], together[1]);
     for trial in &trials {
-        let alone = lags(std::slice::from_ref(trial));
+        let alone = lags(&Record::from([trial.clone()]));
         assert!(alone[0] != together[0], "each trial alone has another lag");
         assert!(together[0].std_error < 0.9 * alone[0].std_error, "two trials show it better");
     }

@@ -142,7 +142,7 @@ fn a_joint_that_moves_on_does_not_settle_and_the_paper_asks_nothing() {
     let angles = angles.collect();
     let joint = Trial::new("1", 0.0, trial.period(), trial.input().to_vec(), angles).unwrap();
     for method in Method::all() {
-        let found = estimate_joint(std::slice::from_ref(&joint), &settings(method)).remove(0);
+        let found = estimate_joint(&[joint.clone()].into(), &settings(method)).remove(0);
         assert_eq!(found.unwrap().settling, None, "{method}");
     }
 }
@@ -163,7 +163,7 @@ fn a_time_constant_shorter_than_two_samples_is_not_shown_by_them() {
     let period = SamplePeriod::from_seconds(period_s).unwrap();
     let trial = Trial::new("1", 0.0, period, input, output).unwrap();
     for method in Method::all() {
-        let found = estimate_joint(std::slice::from_ref(&trial), &settings(method)).remove(0);
+        let found = estimate_joint(&[trial.clone()].into(), &settings(method)).remove(0);
         assert_eq!(found.unwrap().settling, None, "{method}");
     }
 }

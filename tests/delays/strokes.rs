@@ -6,9 +6,9 @@ use crate::stroke::{first_motion, stroke, strokes};
 use tauscope::delay::{
     Condition, FirstLast, Method, Settings, TrialEstimate, Verdict, estimate_joint,
 };
-use tauscope::experiment::Trial;
+use tauscope::experiment::{Record, Trial};
 
-fn estimated(trials: &[Trial], settings: &Settings) -> Vec<TrialEstimate> {
+fn estimated(trials: &Record, settings: &Settings) -> Vec<TrialEstimate> {
     estimate_joint(trials, settings).into_iter().map(Result::unwrap).collect()
 }
 
@@ -24,6 +24,7 @@ fn intervals_hold_the_first_motion_as_often_as_they_say() {
         (stroke(seed, level, delay_s), first_motion(seed, level, delay_s))
     };
     let (trials, delays): (Vec<Trial>, Vec<f64>) = (300..300 + size(12, 40)).map(made).unzip();
+    let trials = Record::from(trials);
     for method in Method::all().filter(|method| method.spec().has_intervals) {
         let held = estimated(&trials, &Settings::of(method)).into_iter().zip(&delays);
         let held = held.filter(|(estimate, delay)| {
@@ -60,7 +61,7 @@ fn starts_are_found_and_rest_is_told_by_every_method() {
 fn the_paper_rejects_both_ends_of_a_stroke() {
     let (trials, _) = strokes();
     let paper = Settings { paper: true, first_last: FirstLast::Reject, ..Settings::default() };
-    for estimate in estimated(&trials[..2], &paper) {
+    for estimate in estimated(&trials[..2].to_vec().into(), &paper) {
         let rejected = Verdict::Rejected(Condition::FirstOrLast);
         assert!(estimate.decisions.iter().all(|decision| decision.verdict() == rejected));
     }
@@ -72,12 +73,12 @@ fn a_stroke_that_starts_at_a_limit_of_the_output_is_not_rejected_for_it() {
     let resting = trials[0].output()[..100].iter().copied().fold(f64::INFINITY, f64::min);
     let limits = Some((resting + 0.1, 1e3));
     let settings = Settings { output_limits: limits, ..Settings::of(Method::HINGE) };
-    let found = estimated(&trials[..1], &settings);
+    let found = estimated(&trials[..1].to_vec().into(), &settings);
     assert_eq!(found[0].decisions[0].verdict(), Verdict::Accepted);
 }
 
 /// Trials of a measured excavator: rest, one step of the duty, a stroke to the stop, a step back.
-fn measured(log: &str, columns: &str) -> Option<Vec<Trial>> {
+fn measured(log: &str, columns: &str) -> Option<Record> {
     let path = real::log(log)?;
     let joints = vec![columns.parse().unwrap()];
     let columns = tauscope::experiment::ColumnMap { joints, ..Default::default() };

@@ -39,8 +39,7 @@ fn start() -> JointModel {
 
 fn fitted(joint: &Joint, horizon: Horizon) -> Fit {
     let record = FitRecord::new(joint, Split::Time(1.0), horizon);
-    let levels = record.input_levels();
-    fit(&record, &start(), &record.range(&levels, 0.5)).unwrap()
+    fit(&record, &start(), &record.range(0.5)).unwrap()
 }
 
 /// Root mean square error over the whole record, metres.
@@ -145,8 +144,7 @@ fn coulomb_friction_is_named_first_and_the_force_error_falls_as_published() {
     let mut viscous = JointModel::integrator(0.005, 0.0);
     viscous.delay.fixed = true;
     let viscous = viscous.with(Component::neutral(find("actuator_lag").unwrap()));
-    let levels = record.input_levels();
-    let base = fit(&record, &viscous, &record.range(&levels, 0.5)).unwrap();
+    let base = fit(&record, &viscous, &record.range(0.5)).unwrap();
     let first = improve(&record, base, &Options::default(), &Sequential, |_| false);
     let [revision] = first.revisions.as_slice() else { panic!("more than was asked for") };
     let best = &revision.ranking[0];
@@ -177,8 +175,7 @@ fn friction_that_differs_by_direction_comes_after_coulomb_friction_and_explains_
     let published = force_error_by_direction_percent(&joint, inertia, friction);
     assert!((published - 3.11).abs() < 0.15, "{published} %");
     let record = FitRecord::new(&joint, Split::Time(0.7), SHORT);
-    let levels = record.input_levels();
-    let base = fit(&record, &start(), &record.range(&levels, 0.5)).unwrap();
+    let base = fit(&record, &start(), &record.range(0.5)).unwrap();
     let coulomb = force_error_percent(&joint, physical(&base));
     let options = Options { keeps_refinements: true, ..Options::default() };
     let improvement = improve(&record, base, &options, &Sequential, |revision| {

@@ -119,9 +119,7 @@ fn squares(record: &FitRecord<'_>, model: &JointModel) -> f64 {
 
 /// Fits `model`, and holds the error against that of the start and against what is reported.
 fn fitted(record: &FitRecord<'_>, model: &JointModel, what: &str) -> Fit {
-    let levels = record.input_levels();
-    let largest = levels.last().copied().unwrap_or(1.0);
-    let range = record.range(&levels, model.gain.value.abs() * largest);
+    let range = record.range_for(model);
     let fit = fit(record, model, &range).unwrap();
     let start = squares(record, model);
     assert!(fit.cost <= start * (1.0 + ROUNDING), "{what}: {} from {start}", fit.cost);

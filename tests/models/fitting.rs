@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use tauscope::effect::find;
-use tauscope::experiment::{Joint, Trial};
+use tauscope::experiment::{Joint, Record, Trial};
 use tauscope::fit::{Fit, FitError, FitRecord, Horizon, Parameter, Split, Status, fit};
 use tauscope::model::{Component, JointModel, Surroundings, Value, simulate_input};
 use tauscope::units::SamplePeriod;
@@ -65,7 +65,7 @@ fn joint(model: &JointModel, starts_s: &[f64], seed: u64) -> Joint {
         let output = simulated.output.iter().map(|y| y + NOISE * 3f64.sqrt() * random.next());
         Trial::new(format!("at {start_s}"), *start_s, period, input, output.collect()).unwrap()
     };
-    Joint::new("joint", starts_s.iter().map(trial).collect())
+    Joint::new("joint", starts_s.iter().map(trial).collect::<Record>())
 }
 
 fn record(joint: &Joint, horizon: Horizon) -> FitRecord<'_> {
@@ -74,8 +74,7 @@ fn record(joint: &Joint, horizon: Horizon) -> FitRecord<'_> {
 
 fn fitted(joint: &Joint, start: &JointModel, horizon: Horizon) -> Fit {
     let record = record(joint, horizon);
-    let levels = record.input_levels();
-    fit(&record, start, &record.range(&levels, 20.0)).unwrap()
+    fit(&record, start, &record.range(20.0)).unwrap()
 }
 
 fn parameter<'a>(fit: &'a Fit, name: &str) -> &'a Parameter {
@@ -127,7 +126,8 @@ fn outliers_hardly_move_what_is_found() {
     let wild = |(k, y): (usize, &f64)| if k % 50 == 7 { y + 30.0 } else { *y };
     let output = trial.output().iter().enumerate().map(wild).collect();
     let period = trial.period();
-    joint.trials[0] = Trial::new("", 0.0, period, trial.input().to_vec(), output).unwrap();
+    let wild = Trial::new("", 0.0, period, trial.input().to_vec(), output).unwrap();
+    joint.trials = [wild].into();
     let dirty = fitted(&joint, &plus(&start(), "dead_band"), Horizon::FreeRun);
     for (clean, dirty) in clean.parameters.iter().zip(&dirty.parameters) {
         let error = clean.std_error.unwrap();
@@ -209,10 +209,9 @@ fn horizons_find_the_same() {
 #[test]
 fn four_samples_are_too_few() {
     let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
-    let mut joint = joint(&with(&[]), &[0.0], 7);
-    joint.trials[0] = Trial::new("", 0.0, period, vec![1.0; 3], vec![0.0; 3]).unwrap();
+    let trial = Trial::new("", 0.0, period, vec![1.0; 3], vec![0.0; 3]).unwrap();
+    let joint = Joint::new("joint", [trial]);
     let record = record(&joint, Horizon::FreeRun);
-    let levels = record.input_levels();
-    let error = fit(&record, &start(), &record.range(&levels, 20.0)).unwrap_err();
+    let error = fit(&record, &start(), &record.range(20.0)).unwrap_err();
     assert_eq!(error, FitError::TooFewSamples { samples: 3, parameters: 2 });
 }

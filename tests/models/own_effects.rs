@@ -128,8 +128,7 @@ fn the_parameters_of_an_expression_are_fitted() {
     let start =
         "start = { value = 0.7, min = 0.0, max = 5.0 }, slope = { value = 1.0, neutral = 1.0 }";
     let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::FreeRun);
-    let levels = record.input_levels();
-    let range = record.range(&levels, 20.0);
+    let range = record.range(20.0);
     let fitted = |effects: &str| fit(&record, &model(effects), &range).unwrap();
     let (plain, knee) = (fitted(""), fitted(&own("knee", "input", KNEE, start)));
     assert!(knee.cost < 1e-3 * plain.cost);

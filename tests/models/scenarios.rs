@@ -16,10 +16,9 @@ const NOISE: f64 = 0.05;
 fn fitted_error(scenario: &Scenario) -> f64 {
     let made = simulate(&scenario.plant).unwrap();
     let record = FitRecord::new(&made.joints[0], Split::Time(1.0), Horizon::Steps);
-    let levels = record.input_levels();
     let gain = scenario.plant.joints[0].gain;
     let start = JointModel::integrator(gain, 0.15);
-    let fitted = fit(&record, &start, &record.range(&levels, gain * 2.5)).unwrap();
+    let fitted = fit(&record, &start, &record.range(gain * 2.5)).unwrap();
     compare(&record, fitted).training.unwrap().rmse / NOISE
 }
 

@@ -48,10 +48,12 @@ fn with_experiment(
     let steps: Vec<_> = changes.map(|k| (k * samples + 1, levels[k])).collect();
     let input = InputSpec::Steps { steps, initial: levels[0] };
     let seconds = levels.len() as f64 * proposal.hold_s;
-    let made = driven(effect, input, seconds, seed).trials.remove(0);
+    let made = driven(effect, input, seconds, seed).trials;
+    let made = &made[0];
     let (input, output) = (made.input().to_vec(), made.output().to_vec());
     let start_s = joint.trials[0].time_s(joint.trials[0].len() + 1);
-    joint.trials.push(Trial::new("2", start_s, made.period(), input, output).unwrap());
+    let further = Trial::new("2", start_s, made.period(), input, output).unwrap();
+    joint.trials = joint.trials.into_iter().chain([further]).collect();
     joint
 }
 

@@ -3,12 +3,12 @@
 use crate::stroke::{PERIOD_S, strokes};
 use tauscope::batch::Threads;
 use tauscope::delay::{Method, Settings, TrialEstimate, estimate_joint};
-use tauscope::experiment::{Joint, Trial};
+use tauscope::experiment::{Joint, Record};
 use tauscope::explain::{Change, Options, improve};
 use tauscope::fit::{FitRecord, Horizon, Split, fit};
 use tauscope::model::integrators;
 
-fn estimated(trials: &[Trial], settings: &Settings) -> Vec<TrialEstimate> {
+fn estimated(trials: &Record, settings: &Settings) -> Vec<TrialEstimate> {
     estimate_joint(trials, settings).into_iter().map(Result::unwrap).collect()
 }
 
@@ -28,8 +28,7 @@ fn a_model_of_strokes_has_the_measured_delay_and_gets_the_usual_effects_first() 
     assert!(start.delay.fixed && between.contains(&start.delay.value), "{:?}", start.delay);
 
     let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
-    let levels = record.input_levels();
-    let base = fit(&record, start, &record.range(&levels, 20.0)).unwrap();
+    let base = fit(&record, start, &record.range(20.0)).unwrap();
     let options = Options::default();
     let improvement = improve(&record, base, &options, &Threads, |_| true);
     let added = improvement.revisions.iter().filter_map(|revision| match revision.change {

@@ -1,6 +1,6 @@
 //! Strokes of a simulated cylinder from rest into its stop.
 
-use tauscope::experiment::Trial;
+use tauscope::experiment::{Record, Trial};
 use tauscope::synthetic::{CylinderSpec, DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
 
 pub(crate) const PERIOD_S: f64 = 0.01;
@@ -46,11 +46,12 @@ fn simulated(seed: u32, level: f64, steps: Vec<(usize, f64)>, delay_s: f64, nois
 }
 
 /// Eight strokes both ways and their delays, samples.
-pub(crate) fn strokes() -> (Vec<Trial>, Vec<f64>) {
+pub(crate) fn strokes() -> (Record, Vec<f64>) {
     let one = |seed: u32| {
         let level = [4.0, -4.0, 6.0, -6.0][seed as usize % 4];
         let delay_s = 0.06 + 0.03 * f64::from(seed);
         (stroke(seed, level, delay_s), delay_s / PERIOD_S)
     };
-    (0..8).map(one).unzip()
+    let (trials, delays): (Vec<Trial>, _) = (0..8).map(one).unzip();
+    (trials.into(), delays)
 }

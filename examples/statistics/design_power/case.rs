@@ -125,7 +125,8 @@ pub(crate) fn examine(case: &Case) -> anyhow::Result<Outcome> {
         explored_s.push(design.schedule.duration_s());
         // What is found out is known of the next one.
         let seed = 3000 + explored_s.len() as u64;
-        log.trials.extend(played(&plant, &design.schedule, seed)?.trials);
+        let further = played(&plant, &design.schedule, seed)?.trials;
+        log.trials = log.trials.iter().cloned().chain(further).collect();
         design = shortest(&self::suspects(&log, case)?, &rig, &limits, &Threads, &|_| ())?;
     }
     let after = explained(&played(&plant, &design.schedule, 1000)?, case)?;

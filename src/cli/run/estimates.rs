@@ -63,7 +63,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
             notes.extend(cut_at_the_next_step(joint, estimate));
             notes.extend(smeared(joint, estimate));
             notes.extend(as_long_as_allowed(joint, estimate));
-            notes.extend(later_than_the_next_step(joint, estimate));
+            notes.extend(later_than_the_next_step(joint));
             notes.extend(notes_on_sensor(joint, estimate));
         }
         let verdicts =
@@ -156,8 +156,8 @@ fn smeared(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
 }
 
 /// A line where the delay is longer than most holds.
-fn later_than_the_next_step(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
-    delay_beyond_holds(&joint.trials, &estimate.motion).map(|delay_s| {
+fn later_than_the_next_step(joint: &Joint) -> Option<String> {
+    delay_beyond_holds(&joint.trials).map(|delay_s| {
         format!(
             "joint `{}`: over the whole record it answers about {} s late, longer than most levels are \
              held: what is listed are delays of its answers to earlier steps. A model shows the \

@@ -10,8 +10,9 @@ use super::session::Session;
 use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
 use crate::cli::output::{Contents, Detail};
-use crate::delay::{Settings, held_inputs};
+use crate::delay::Settings;
 use crate::experiment::{Experiment, Joint, Other};
+use crate::fit::Mended;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::study::{OtherResult, others_of};
 
@@ -163,7 +164,7 @@ impl<T> Study<'_, T> {
 fn notes_on_models(joints: &[Joint]) -> Vec<String> {
     let note = |joint: &Joint| {
         let spikes = spikes_of(joint).map(|spikes| format!("{spikes}, which no error counts"));
-        let noise = held_inputs(&joint.trials).map(|_| {
+        let noise = joint.trials.property::<Mended>().has_noisy_input.then(|| {
             format!(
                 "joint `{}`: the input has noise or glitches: models take the levels that it holds",
                 joint.name

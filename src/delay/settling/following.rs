@@ -10,7 +10,7 @@
 //! Åström, K. J., and Hägglund, T., 2006, Advanced PID Control, section 2.4 (processes with
 //! self-regulation).
 
-use crate::experiment::Trial;
+use crate::experiment::{Property, Record, Trial};
 use crate::units::floor_to_index;
 
 /// Squared correlation of output and input from which the output follows the input. Chosen: of
@@ -31,7 +31,19 @@ const FOLLOWS_CLOSELY: f64 = 0.9;
 
 /// The lag in samples at which the output follows the input best, and the squared correlation
 /// there; none where it does not follow it.
-pub(crate) fn followed(trials: &[Trial]) -> Option<(usize, f64)> {
+pub(crate) fn followed(record: &Record) -> Option<(usize, f64)> {
+    record.property::<Followed>().0
+}
+
+struct Followed(Option<(usize, f64)>);
+
+impl Property for Followed {
+    fn find(record: &Record) -> Self {
+        Self(best_lag(record))
+    }
+}
+
+fn best_lag(trials: &[Trial]) -> Option<(usize, f64)> {
     let samples: usize = trials.iter().map(Trial::len).sum();
     if samples < FEWEST {
         return None;
@@ -89,14 +101,20 @@ pub(crate) struct FirstOrder {
     pub(crate) at_zero: f64,
 }
 
-impl FirstOrder {
-    /// The one that the outputs of `trials` follow best; none where they do not follow the input.
-    pub(crate) fn of(trials: &[Trial]) -> Option<Self> {
+impl Property for Option<FirstOrder> {
+    fn find(record: &Record) -> Self {
         /// Times of 1.5 each, from two samples on.
         const COUNT: usize = 16;
         // The whole lag is a dead time and the time constant behind it.
-        let (longest, _) = followed(trials)?;
-        Some(best(trials, longest, f64::INFINITY, COUNT)?.0)
+        let (longest, _) = followed(record)?;
+        Some(best(record, longest, f64::INFINITY, COUNT)?.0)
+    }
+}
+
+impl FirstOrder {
+    /// The one that the output of a joint follows best; none where it does not follow the input.
+    pub(crate) fn of(record: &Record) -> Option<Self> {
+        *record.property()
     }
 
     /// Where the output settles at `input`.

@@ -13,7 +13,7 @@ use crate::delay::interval::FineDelay;
 use crate::delay::lag::LagPart;
 use crate::delay::prepared::Prepared;
 use crate::delay::settings::Settings;
-use crate::experiment::Trial;
+use crate::experiment::Record;
 use crate::numerics::{NoiseModel, dot, robust_scale, student_quantile};
 use crate::units::SamplePeriod;
 
@@ -63,7 +63,7 @@ impl Settling {
     /// The first order from which the law of a joint is looked for, whatever the low-pass of what
     /// was prepared; none where the output does not settle.
     pub(in crate::delay) fn start(
-        trials: &[Trial],
+        trials: &Record,
         prepared: &[Prepared<'_>],
         settings: &Settings,
     ) -> Option<FirstOrder> {

@@ -4,7 +4,7 @@ use super::grid::{Factor, Grid};
 use super::run::{LevelSummary, RunDelays, RunSummary};
 use super::step::SweptStep;
 use crate::delay::{InputStep, Neutral, Settings, Transition, joint_steps};
-use crate::experiment::Trial;
+use crate::experiment::{Record, Trial};
 
 /// The delays of a joint over all settings.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ impl JointSweep {
     /// Judges every step of `trials` by what each run of `grid` reports of it, `None` where a
     /// run failed. Delays that differ by `tolerance` samples more than each of them allows
     /// still agree.
-    pub fn of(grid: &Grid, trials: &[Trial], runs: &[Option<RunDelays>], tolerance: f64) -> Self {
+    pub fn of(grid: &Grid, trials: &Record, runs: &[Option<RunDelays>], tolerance: f64) -> Self {
         let settings = grid.runs().first().cloned().unwrap_or_else(Settings::default);
         let ran: Vec<bool> = runs.iter().map(Option::is_some).collect();
         let neutral = Neutral::of(trials);
@@ -106,7 +106,7 @@ mod tests {
         let run = |delay: Option<f64>| {
             Some(RunDelays { steps: vec![delay.map(reported)], lag: None, kinds_differ: false })
         };
-        let sweep = JointSweep::of(&grid(), &[trial], &delays.map(run), 2.0);
+        let sweep = JointSweep::of(&grid(), &Record::from([trial]), &delays.map(run), 2.0);
         sweep.steps[0].clone()
     }
 
@@ -152,7 +152,7 @@ mod tests {
         let runs = [true, false, true, false, true, true].map(|ran| {
             ran.then(|| RunDelays { steps: vec![Some(reported)], lag: None, kinds_differ: false })
         });
-        let sweep = JointSweep::of(&grid(), &[trial], &runs, 0.0);
+        let sweep = JointSweep::of(&grid(), &Record::from([trial]), &runs, 0.0);
         assert_eq!((sweep.steps[0].tried, sweep.steps[0].accepted), (4, 4));
         assert!(sweep.steps[0].is_unanimous() && sweep.runs[1].is_none());
         assert!((sweep.levels[3][0].accepted - 1.0).abs() < 1e-12);

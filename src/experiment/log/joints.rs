@@ -53,16 +53,11 @@ impl Log<'_> {
         notes.extend(unread);
         let grids = own.as_deref().unwrap_or(grids);
         let origin_s = self.origin_s(time);
-        let mut joint = Joint {
-            name: layout.name.clone(),
-            input_unit: layout.input.signal.unit.clone(),
-            output_unit: layout.output.signal.unit.clone(),
-            covariates: layout.covariates.iter().map(|c| c.signal.clone()).collect::<Vec<Signal>>(),
-            trials: Vec::new(),
-        };
+        let covariates: Vec<Signal> = layout.covariates.iter().map(|c| c.signal.clone()).collect();
+        let mut made: Vec<Trial> = Vec::new();
         let mut continuous = self.continuous(layout, trials, time, repair);
         let mut split: Vec<(&TrialRows, Range<usize>)> = Vec::new();
-        let size = (2 + joint.covariates.len()) * SAMPLE_SIZE;
+        let size = (2 + covariates.len()) * SAMPLE_SIZE;
         for (rows, grid) in trials.iter().zip(grids) {
             self.take(grid.samples(), size)?;
             let mut signals = self.signals(layout, rows);
@@ -71,7 +66,7 @@ impl Log<'_> {
             signals.covariates.extend(is_interpolated.then(|| signals.output.clone()));
             let pieces = grid.pieces(signals);
             if pieces.len() > 1 {
-                let first = joint.trials.len();
+                let first = made.len();
                 split.push((rows, first..first + pieces.len()));
             }
             self.take(pieces.len(), TRIAL_SIZE + rows.label.len())?;
@@ -80,16 +75,23 @@ impl Log<'_> {
                 let mut piece = piece;
                 let measured = if is_interpolated { piece.signals.covariates.pop() } else { None };
                 let trial = self.trial(layout, label, grid, piece, origin_s)?;
-                joint.trials.push(match measured {
+                made.push(match measured {
                     Some(measured) => trial.with_interpolated(missing_ranges(&measured)),
                     None => trial,
                 });
             }
         }
-        if joint.trials.is_empty() {
+        if made.is_empty() {
             let (path, joint) = (self.head.path.clone(), layout.name.clone());
             return Err(ReadError::NoSamples { path, joint });
         }
+        let joint = Joint {
+            name: layout.name.clone(),
+            input_unit: layout.input.signal.unit.clone(),
+            output_unit: layout.output.signal.unit.clone(),
+            covariates,
+            trials: made.into(),
+        };
         notes.extend(self.split_notes(&joint, layout, &split, time));
         notes.extend(continuous.note(&joint, |row| self.row(row)));
         Ok((joint, notes))

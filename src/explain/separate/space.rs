@@ -30,7 +30,7 @@ impl ExperimentSpace {
             sample_period_s,
             radians_per_output_unit,
             ..
-        } = record.range(&levels, 1.0);
+        } = record.range(1.0);
         let least = levels.iter().copied().find(|level| *level > 0.0).unwrap_or(1.0);
         let largest = levels.last().copied().filter(|level| *level > 0.0).unwrap_or(1.0);
         let trials = record.joint().trials.iter();

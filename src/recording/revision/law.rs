@@ -39,7 +39,7 @@ pub(super) struct Still {
 impl Still {
     pub(super) fn of(joint: &Joint, shown: Shown) -> Self {
         let record = FitRecord::new(joint, Split::Time(1.0), Horizon::FreeRun);
-        let range = record.range(&[], 1.0);
+        let range = record.range(1.0);
         let input = joint.trials.iter().flat_map(Trial::input).copied();
         Self {
             angle: f64::midpoint(range.output_min, range.output_max),

@@ -248,7 +248,7 @@ mod tests {
             input_unit: None,
             output_unit: None,
             covariates: Vec::new(),
-            trials: Vec::new(),
+            trials: Vec::new().into(),
         };
         let worst = WorstSegment {
             trial: "1".to_owned(),

@@ -257,7 +257,7 @@ mod tests {
         let trial = Trial::new("t", 0.0, period, input, output).unwrap();
         let name = "boom".to_owned();
         let (input_unit, output_unit) = (None, None);
-        Joint { name, input_unit, output_unit, covariates: Vec::new(), trials: vec![trial] }
+        Joint { name, input_unit, output_unit, covariates: Vec::new(), trials: [trial].into() }
     }
 
     fn chosen(settings: &Settings) -> Vec<(&'static str, usize)> {

@@ -19,7 +19,7 @@ pub(super) struct Timeline<'a> {
 
 impl<'a> Timeline<'a> {
     pub(super) fn of(joint: &'a Joint) -> Self {
-        let trials = joint.trials.as_slice();
+        let trials = &*joint.trials;
         let follows = |pair: &[Trial]| match pair {
             [before, after] => end_s(before) < after.time_s(1),
             _ => true,

@@ -333,7 +333,7 @@ fn settled_joint(joint: &Joint, estimate: &JointEstimate) -> Option<(Joint, Join
     }
     let is_there = !trials.is_empty();
     let estimate = JointEstimate { trials: estimates, ..estimate.clone() };
-    is_there.then(|| (Joint { trials, ..joint.clone() }, estimate))
+    is_there.then(|| (Joint { trials: trials.into(), ..joint.clone() }, estimate))
 }
 
 #[cfg(test)]
