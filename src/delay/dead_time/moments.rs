@@ -1,5 +1,7 @@
 //! Products of lagged columns, from which the error of every delay follows.
 
+use std::ops::Range;
+
 use super::record::{Whitened, driven};
 use super::response::{Lags, NUMERATORS, Numerators};
 use crate::numerics::{NormalEquations, dot};
@@ -10,6 +12,7 @@ use crate::numerics::{NormalEquations, dot};
 /// The products of two columns that are a samples late differ from those that are one sample
 /// later by what enters and leaves at the ends of the rows, so that all delays cost little more
 /// than one.
+#[derive(Clone, Debug)]
 pub(super) struct Moments {
     columns: usize,
     /// First delay.
@@ -28,10 +31,51 @@ pub(super) struct Moments {
 impl Moments {
     /// For dead times from `from` up to `to` samples.
     pub(super) fn of(trials: &[Whitened], lags: Lags, from: usize, to: usize) -> Self {
-        let columns = trials.first().map_or(0, Whitened::lagged_columns);
+        let mut found = Self::empty(trials.first().map_or(0, Whitened::lagged_columns), from, to);
+        for trial in trials {
+            let lagged = trial.lagged(lags);
+            for rows in &trial.rows {
+                found.add(&lagged, &trial.changes, rows.start, rows.end);
+            }
+        }
+        found
+    }
+
+    /// Of one column, over the samples `rows` of it, for dead times up to `to` samples.
+    pub(super) fn of_column(
+        column: &[Vec<f64>; 1],
+        changes: &[f64],
+        rows: Range<usize>,
+        to: usize,
+    ) -> Self {
+        let mut found = Self::empty(1, 0, to);
+        found.add(column, changes, rows.start, rows.end);
+        found
+    }
+
+    /// The sums over the rows of all `parts`, which are of the same columns and dead times.
+    pub(super) fn total(parts: &[Self]) -> Option<Self> {
+        let (first, rest) = parts.split_first()?;
+        let mut total = first.clone();
+        let add = |to: &mut [f64], from: &[f64]| {
+            to.iter_mut().zip(from).for_each(|(sum, value)| *sum += value);
+        };
+        for part in rest {
+            total.rows += part.rows;
+            total.change += part.change;
+            total.squared_change += part.squared_change;
+            add(&mut total.products, &part.products);
+            add(&mut total.with_changes, &part.with_changes);
+            add(&mut total.sums, &part.sums);
+        }
+        Some(total)
+    }
+
+    /// No rows yet.
+    fn empty(columns: usize, from: usize, to: usize) -> Self {
         let delays = to.saturating_sub(from) + NUMERATORS;
         let square = columns * columns;
-        let mut found = Self {
+        Self {
             columns,
             from,
             rows: 0.0,
@@ -40,14 +84,11 @@ impl Moments {
             sums: vec![0.0; delays * columns],
             change: 0.0,
             squared_change: 0.0,
-        };
-        for trial in trials {
-            let lagged = trial.lagged(lags);
-            for rows in &trial.rows {
-                found.add(&lagged, &trial.changes, rows.start, rows.end);
-            }
         }
-        found
+    }
+
+    pub(super) fn rows(&self) -> f64 {
+        self.rows
     }
 
     fn add(&mut self, lagged: &[Vec<f64>], changes: &[f64], start: usize, end: usize) {
@@ -119,13 +160,51 @@ impl Moments {
 
     /// The squared error of the best curve behind `numerators`, and a constant.
     pub(super) fn error(&self, numerators: &Numerators) -> f64 {
-        let columns = self.columns;
-        let size = columns + 1;
-        let mut products = vec![0.0; size * size];
-        let Some(delay) = numerators.first.checked_sub(self.from) else { return f64::INFINITY };
-        if (delay + NUMERATORS) * columns > self.sums.len() {
-            return f64::INFINITY;
+        self.equations(numerators).map_or(f64::INFINITY, |mut equations| {
+            (0..self.columns).for_each(|column| equations.eliminate(column));
+            equations.error().max(0.0)
+        })
+    }
+
+    /// The squared error of the first column behind `numerators` times a gain, and a constant; and
+    /// the gain, zero where the column says nothing.
+    pub(super) fn gain(&self, numerators: &Numerators) -> (f64, f64) {
+        let Some(driven) = self.driven(numerators) else { return (f64::INFINITY, 0.0) };
+        let (square, sum) = (driven.products[0], driven.sums[0]);
+        let total = self.without_input();
+        let spread = square - sum * sum / self.rows.max(1.0);
+        if spread <= SAYS_NOTHING * square {
+            return (total, 0.0);
         }
+        let together = driven.with_changes[0] - sum * self.change / self.rows.max(1.0);
+        ((total - together * together / spread).max(0.0), together / spread)
+    }
+
+    /// The equations of all columns behind `numerators`; the constant is projected out.
+    fn equations(&self, numerators: &Numerators) -> Option<NormalEquations> {
+        let Driven { products, sums, with_changes } = self.driven(numerators)?;
+        let size = self.columns + 1;
+        let mut all = vec![0.0; size * size];
+        for i in 0..self.columns {
+            for j in i..self.columns {
+                // Σ(x − x̄)(z − z̄) = Σxz − ΣxΣz/n.
+                let product = products[i * self.columns + j];
+                all[i * size + j] = product - sums[i] * sums[j] / self.rows;
+            }
+            all[i * size + self.columns] = with_changes[i] - sums[i] * self.change / self.rows;
+        }
+        all[size * size - 1] = self.without_input();
+        Some(NormalEquations::from_products(size, all))
+    }
+
+    /// The sums of the columns behind `numerators`; none of a dead time that was not asked for.
+    fn driven(&self, numerators: &Numerators) -> Option<Driven> {
+        let columns = self.columns;
+        let delay = numerators.first.checked_sub(self.from)?;
+        if columns == 0 || (delay + NUMERATORS) * columns > self.sums.len() {
+            return None;
+        }
+        let mut products = vec![0.0; columns * columns];
         for (m, n) in numerators.values.iter().enumerate() {
             for (l, other) in numerators.values.iter().enumerate() {
                 let weight = n * other;
@@ -134,7 +213,7 @@ impl Moments {
                     for j in i..columns {
                         // Products were kept with the earlier column first.
                         let place = if m <= l { i * columns + j } else { j * columns + i };
-                        products[i * size + j] += weight * self.products[base + place];
+                        products[i * columns + j] += weight * self.products[base + place];
                     }
                 }
             }
@@ -143,21 +222,23 @@ impl Moments {
             let terms = numerators.values.iter().enumerate();
             terms.map(|(m, n)| n * values[(delay + m) * columns + i]).sum()
         };
-        let sums: Vec<f64> = (0..columns).map(|i| weighted(&self.sums, i)).collect();
-        for i in 0..columns {
-            for j in i..columns {
-                // The constant is projected out: Σ(x − x̄)(z − z̄) = Σxz − ΣxΣz/n.
-                products[i * size + j] -= sums[i] * sums[j] / self.rows;
-            }
-            products[i * size + columns] =
-                weighted(&self.with_changes, i) - sums[i] * self.change / self.rows;
-        }
-        products[size * size - 1] = self.without_input();
-        let mut equations = NormalEquations::from_products(size, products);
-        (0..columns).for_each(|column| equations.eliminate(column));
-        equations.error().max(0.0)
+        let all = |values: &[f64]| (0..columns).map(|i| weighted(values, i)).collect();
+        Some(Driven { products, sums: all(&self.sums), with_changes: all(&self.with_changes) })
     }
 }
+
+/// Sums over the rows of the columns behind a dead time.
+struct Driven {
+    /// Of the products of two columns, for `i ≤ j` at `i · columns + j`.
+    products: Vec<f64>,
+    /// Of each column.
+    sums: Vec<f64>,
+    /// Of the products of each column with the changes.
+    with_changes: Vec<f64>,
+}
+
+/// Part of a column's square that its spread about its mean is at least, to be more than rounding.
+const SAYS_NOTHING: f64 = 1e-12;
 
 /// The squared error of the best curve behind one dead time and lags, and a constant.
 pub(super) fn error_of(trials: &[Whitened], numerators: &Numerators, lags: Lags) -> f64 {

@@ -1,6 +1,7 @@
 //! The dead time in windows of the record, lags and curve being those of the whole.
 
-use super::record::{Samples, Whitened, driven};
+use super::moments::Moments;
+use super::record::{Samples, Whitened};
 use super::response::Numerators;
 use super::result::{Bounds, ErrorPoint, Window};
 use super::search::Fitted;
@@ -35,16 +36,6 @@ const EVIDENCE: f64 = 10.0;
 /// Dead times tried, per sample.
 const PER_SAMPLE: usize = 2;
 
-/// Sums over one part of a trial.
-#[derive(Clone, Debug)]
-struct Sums {
-    rows: f64,
-    change: f64,
-    squared_change: f64,
-    /// Per dead time: the prediction, its square, and its product with the change.
-    predictions: Vec<[f64; 3]>,
-}
-
 /// A window, and its interval with the lags taken for known.
 pub(super) struct Estimated {
     pub(super) window: Window,
@@ -63,13 +54,21 @@ impl Known<'_> {
         let Some(rows) = rows.filter(|rows| rows.len() >= self.rows) else { return Vec::new() };
         let parts = rows.len() * PARTS / self.rows;
         let border = |part: usize| rows.start + rows.len() * part / parts;
-        let prediction = self.prediction(trial);
-        let sums: Vec<Sums> =
-            (0..parts).map(|p| self.sums(trial, &prediction, border(p), border(p + 1))).collect();
+        let prediction = [self.prediction(trial)];
+        let part = |part: usize| {
+            let rows = border(part)..border(part + 1);
+            Moments::of_column(&prediction, &trial.changes, rows, self.longest)
+        };
+        let sums: Vec<Moments> = (0..parts).map(part).collect();
+        let numerators: Vec<Numerators> = (0..=self.longest * PER_SAMPLE)
+            .map(|k| k as f64 / PER_SAMPLE as f64)
+            .map(|delay| Numerators::of(self.best.structure, delay, self.best.lags))
+            .collect();
         let starts = (0..=parts - PARTS).step_by(HOP);
         let window = |start: usize| {
-            let sum = Sums::total(&sums[start..start + PARTS]);
-            let (curve, alone) = self.estimate(&sum, samples.period_s);
+            let sum = Moments::total(&sums[start..start + PARTS]);
+            let estimate = sum.map(|sum| self.estimate(&sum, &numerators, samples.period_s));
+            let (curve, alone) = estimate.unwrap_or_default();
             let averaged = samples.averaged;
             let (first, last) = (border(start) * averaged + 1, border(start + PARTS) * averaged);
             let estimate = alone.map(|bounds| self.with_lags(bounds, samples.period_s));
@@ -88,36 +87,19 @@ impl Known<'_> {
         sum
     }
 
-    fn sums(&self, trial: &Whitened, prediction: &[f64], start: usize, end: usize) -> Sums {
-        let changes = &trial.changes[start..end];
-        let of_delay = |k: usize| {
-            let delay = k as f64 / PER_SAMPLE as f64;
-            let numerators = Numerators::of(self.best.structure, delay, self.best.lags);
-            let mut sums = [0.0; 3];
-            for (change, k) in changes.iter().zip(start..) {
-                let x = driven(prediction, &numerators, k);
-                sums[0] += x;
-                sums[1] += x * x;
-                sums[2] += x * change;
-            }
-            sums
-        };
-        Sums {
-            rows: changes.len() as f64,
-            change: changes.iter().sum(),
-            squared_change: changes.iter().map(|change| change * change).sum(),
-            predictions: (0..=self.longest * PER_SAMPLE).map(of_delay).collect(),
-        }
-    }
-
     /// The error of each dead time, and the dead time with its interval where one stands out.
-    fn estimate(&self, sums: &Sums, period_s: f64) -> (Vec<ErrorPoint>, Option<Bounds>) {
-        let fits: Vec<(f64, f64)> = sums.predictions.iter().map(|p| sums.fit(p)).collect();
+    fn estimate(
+        &self,
+        sums: &Moments,
+        numerators: &[Numerators],
+        period_s: f64,
+    ) -> (Vec<ErrorPoint>, Option<Bounds>) {
+        let fits: Vec<(f64, f64)> = numerators.iter().map(|of| sums.gain(of)).collect();
         let errors: Vec<f64> = fits.iter().map(|(error, _)| *error).collect();
         let best = (0..errors.len()).min_by(|a, b| errors[*a].total_cmp(&errors[*b]));
         let Some(best) = best.filter(|best| errors[*best] > 0.0) else { return Default::default() };
         let least = errors[best];
-        let likelihood = |index: usize| sums.rows * (errors[index] / least).ln();
+        let likelihood = |index: usize| sums.rows() * (errors[index] / least).ln();
         let curve = errors.iter().enumerate().map(|(index, error)| ErrorPoint {
             delay_s: index as f64 / PER_SAMPLE as f64 * period_s,
             error: (error / least).sqrt(),
@@ -139,9 +121,9 @@ impl Known<'_> {
         };
         let (low, high) = (end(false), end(true));
         let value = vertex(&errors, best) / PER_SAMPLE as f64;
-        let without = sums.squared_change - sums.change * sums.change / sums.rows.max(1.0);
+        let without = sums.without_input();
         // Twice the logarithm of the likelihood ratio against a gain of 0.
-        let evidence = sums.rows * (without / least).ln();
+        let evidence = sums.rows() * (without / least).ln();
         let excites = evidence > EVIDENCE * self.threshold && fits[best].1 > 0.0;
         let bounds = high.map(|high| (value, low.unwrap_or(0.0), high));
         let bounds = bounds.filter(|(_, low, high)| excites && 0.5 * (high - low) <= self.widest);
@@ -173,37 +155,6 @@ fn vertex(errors: &[f64], best: usize) -> f64 {
         if bend > 0.0 { 0.5 * (before - after) / bend } else { 0.0 }
     });
     best as f64 + shift
-}
-
-impl Sums {
-    fn total(parts: &[Self]) -> Self {
-        let delays = parts.first().map_or(0, |part| part.predictions.len());
-        let sum = |of: fn(&Self) -> f64| parts.iter().map(of).sum::<f64>();
-        let mut predictions = vec![[0.0; 3]; delays];
-        for part in parts {
-            for (slots, values) in predictions.iter_mut().zip(&part.predictions) {
-                slots.iter_mut().zip(values).for_each(|(slot, value)| *slot += value);
-            }
-        }
-        Self {
-            rows: sum(|part| part.rows),
-            change: sum(|part| part.change),
-            squared_change: sum(|part| part.squared_change),
-            predictions,
-        }
-    }
-
-    /// The squared error of a constant and a gain on a prediction, and the gain.
-    fn fit(&self, [sum, square, product]: &[f64; 3]) -> (f64, f64) {
-        let rows = self.rows.max(1.0);
-        let spread = square - sum * sum / rows;
-        let together = product - sum * self.change / rows;
-        let total = self.squared_change - self.change * self.change / rows;
-        if spread <= 1e-12 * square {
-            return (total, 0.0);
-        }
-        ((total - together * together / spread).max(0.0), together / spread)
-    }
 }
 
 /// The p-value of dead times so far apart in windows that share no row, were it the same in all;
