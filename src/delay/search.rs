@@ -356,16 +356,6 @@ mod tests {
     }
 
     #[test]
-    fn a_kink_is_found_where_it_is() {
-        let found = Candidates::search(&kinked(48, 25), 79, 5);
-        let best = found.best().unwrap();
-        assert_eq!((found.len(), best.f, best.breakpoint), (8, 5, 104));
-        assert!(best.sse < 1e-20);
-        assert!(best.before.slope.abs() < 1e-12 && (best.after.slope - 2.0).abs() < 1e-12);
-        assert!((best.after.at(104.0)).abs() < 1e-9, "the lines are in sample numbers");
-    }
-
-    #[test]
     fn the_best_alone_and_the_second_are_those_of_all() {
         for (length, kink) in [(9, 4), (10, 5), (48, 25), (48, 3), (400, 390)] {
             let all = Candidates::search(&kinked(length, kink), 79, 5);
@@ -376,15 +366,6 @@ mod tests {
             assert_eq!((few.is_empty(), few.sse().len()), (all.is_empty(), 0));
             assert!((few.spread() - all.spread()).abs() <= 0.0);
         }
-    }
-
-    #[test]
-    fn the_rest_that_fills_no_row_is_dropped() {
-        let mut values = kinked(48, 25);
-        values[47] = 1e9;
-        values[46] = 1e9;
-        values[45] = 1e9;
-        assert_eq!(Candidates::search(&values, 79, 5).best().unwrap().f, 5);
     }
 
     #[test]
@@ -401,18 +382,5 @@ mod tests {
             assert!(Candidates::search(&vec![1.0; length], 1, 5).is_empty());
         }
         assert_eq!(Candidates::search(&[1.0; 10], 1, 5).len(), 1);
-    }
-
-    #[test]
-    fn a_joint_a_million_degrees_away_decides_alike() {
-        let noise = |k: usize| 0.01 * ((k * 7919 % 1000) as f64 / 500.0 - 1.0);
-        let near: Vec<f64> =
-            kinked(4000, 2345).iter().zip(0..).map(|(y, k)| y + noise(k)).collect();
-        let far: Vec<f64> = near.iter().map(|y| y + 1e6).collect();
-        let (near, far) = (Candidates::search(&near, 1, 5), Candidates::search(&far, 1, 5));
-        assert_eq!(near.best().unwrap().f, far.best().unwrap().f);
-        for (a, b) in near.sse().iter().zip(far.sse()) {
-            assert!((a - b).abs() <= 1e-6 * a, "{a} {b}");
-        }
     }
 }

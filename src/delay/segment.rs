@@ -38,13 +38,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn both_ends_belong_to_it() {
-        let segment = Segment::clipped(79, 126, 160);
-        assert_eq!(segment.len(), 48);
-        assert_eq!(segment.indices(), 78..126);
-    }
-
-    #[test]
     fn it_is_clipped_to_the_trial() {
         assert_eq!(Segment::clipped(0, 50, 40), Segment { first: 1, last: 40 });
         assert_eq!(Segment::clipped(45, 50, 40), Segment { first: 40, last: 40 });

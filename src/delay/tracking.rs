@@ -207,67 +207,25 @@ fn resting_holds(output: &[f64], steps: &[InputStep], range: f64) -> Vec<Resting
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Decision, TrialEstimate, estimate};
+    use super::super::estimate;
     use super::*;
-    use crate::numerics::testing::noise;
     use crate::units::SamplePeriod;
-
-    /// Samples by which the servo is late.
-    const DELAY: usize = 12;
-
-    /// Levels that are each held for `hold` samples.
-    fn held(levels: &[f64], hold: usize) -> Vec<f64> {
-        levels.iter().flat_map(|level| std::iter::repeat_n(*level, hold)).collect()
-    }
-
-    /// What goes at `rate` per sample to 3 + 2·u, as `u` was [`DELAY`] samples before.
-    fn servo(input: &[f64], rate: f64) -> Vec<f64> {
-        let mut angle = 3.0 + 2.0 * input[0];
-        let late = std::iter::repeat_n(&input[0], DELAY).chain(input);
-        let angles = late.take(input.len()).map(|u| {
-            angle += (3.0 + 2.0 * u - angle).clamp(-rate, rate);
-            angle
-        });
-        let angles: Vec<f64> = angles.collect();
-        angles.iter().zip(noise(7, 0.0, angles.len())).map(|(y, e)| y + 0.01 * e).collect()
-    }
-
-    fn found(input: Vec<f64>, output: Vec<f64>) -> TrialEstimate {
-        let period = SamplePeriod::from_seconds(0.02).unwrap();
-        let trial = Trial::new("1", 0.0, period, input, output).unwrap();
-        estimate(&trial, &Settings::default()).unwrap()
-    }
-
-    const LEVELS: [f64; 12] = [0.0, 2.0, -1.0, 1.0, -2.0, 0.0, 1.0, -1.0, 2.0, 0.0, -2.0, 1.0];
-
-    #[test]
-    fn the_arrival_of_a_servo_is_no_reaction() {
-        // Some holds end before it has arrived.
-        for rate in [0.2, 0.06] {
-            let input = held(&LEVELS, 110);
-            let output = servo(&input, rate);
-            let found = found(input, output);
-            let tracking = found.tracking.unwrap();
-            assert!((tracking.offset() - 3.0).abs() < 0.02, "{tracking:?}");
-            assert!((tracking.gain() - 2.0).abs() < 0.02, "{tracking:?}");
-            let delays: Vec<f64> = found.decisions.iter().filter_map(Decision::delay).collect();
-            assert!(delays.len() >= 7, "{delays:?}");
-            // Rows of five samples, behind a low-pass.
-            assert!(delays.iter().all(|d| (d - DELAY as f64).abs() <= 8.0), "{rate}: {delays:?}");
-        }
-    }
 
     #[test]
     fn what_integrates_does_not_track() {
-        let input = held(&LEVELS, 60);
+        let levels = [0.0, 2.0, -1.0, 1.0, -2.0, 0.0, 1.0, -1.0, 2.0, 0.0, -2.0, 1.0];
+        let input: Vec<f64> =
+            levels.iter().flat_map(|level| std::iter::repeat_n(*level, 60)).collect();
         let mut angle = 0.0;
-        let late = std::iter::repeat_n(&0.0, DELAY).chain(&input).take(input.len());
+        let late = std::iter::repeat_n(&0.0, 12).chain(&input).take(input.len());
         let output: Vec<f64> = late
             .map(|u| {
                 angle = f64::clamp(angle + 0.02 * u, -1.5, 1.5);
                 angle
             })
             .collect();
-        assert_eq!(found(input, output).tracking, None);
+        let period = SamplePeriod::from_seconds(0.02).unwrap();
+        let trial = Trial::new("1", 0.0, period, input, output).unwrap();
+        assert_eq!(estimate(&trial, &Settings::default()).unwrap().tracking, None);
     }
 }

@@ -310,7 +310,6 @@ pub(super) fn differ(a: f64, b: f64) -> bool {
 mod tests {
     use super::super::predict::tests::rig;
     use super::*;
-    use crate::model::JointModel;
 
     fn steps(duration_s: f64) -> RandomSteps {
         let levels = vec![-2.0, -1.0, 0.0, 1.0, 2.0];
@@ -326,37 +325,5 @@ mod tests {
         assert!(made.holds().windows(2).all(|pair| differ(pair[0].level, pair[1].level)));
         assert_eq!(made.levels(), steps(1.0).levels);
         assert!(!differ(made.holds()[0].level, 0.0));
-    }
-
-    #[test]
-    fn transitions_are_balanced() {
-        for seed in 0..5 {
-            let made = random_steps(&RandomSteps { seed, ..steps(200.0) }, &rig(None), None, 0);
-            let (least, most) = transitions(&made);
-            assert!(least >= 5 && most - least <= 2, "{least} to {most}");
-        }
-    }
-
-    #[test]
-    fn seeds_and_joints_are_drawn_apart() {
-        let draw = |seed, index| {
-            random_steps(&RandomSteps { seed, ..steps(20.0) }, &rig(None), None, index)
-        };
-        assert_eq!(draw(1, 0), draw(1, 0));
-        assert_ne!(draw(1, 0), draw(2, 0));
-        assert_ne!(draw(1, 0), draw(1, 1));
-    }
-
-    #[test]
-    fn the_range_is_kept_with_its_margin() {
-        let model = Uncertain::by_share(JointModel::integrator(10.0, 0.2), 0.1);
-        for seed in 0..5 {
-            let rig = rig(Some((-40.0, 40.0)));
-            let steps = RandomSteps { seed, ..steps(60.0) };
-            let free = random_steps(&steps, &rig, None, 0);
-            let made = random_steps(&steps, &rig, Some(&model), 0);
-            assert_eq!(rig.prediction(&model, &made).kept_until((-40.0, 40.0)), None);
-            assert!(rig.prediction(&model, &free).kept_until((-40.0, 40.0)).is_some());
-        }
     }
 }

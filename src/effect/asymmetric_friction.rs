@@ -139,12 +139,6 @@ mod tests {
     }
 
     #[test]
-    fn without_inertia_negative_motion_is_slower_by_its_viscous_friction() {
-        let outputs = run(&AsymmetricFriction, &[0.3, 0.2, 0.0, 2.0], &[1.0, 0.3, -0.1, -1.0]);
-        assert_close(&outputs, &[0.7, 0.0, 0.0, -0.4]);
-    }
-
-    #[test]
     fn turns_with_the_friction_of_each_direction() {
         // T = 1 s, levels 1, input −2, v = 3(e − 1): the drive −3 brakes for 1 s, over a way of
         // 3(e − 1) − 3; then the force −1 moves it against twice the viscous friction: to −1/2,

@@ -136,12 +136,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn without_inertia_it_is_a_dead_band() {
-        let outputs = run(&CoulombFriction, &[0.3, 0.2, 0.0], &[1.0, 0.3, -0.1, -1.0, 1.0]);
-        assert_close(&outputs, &[0.7, 0.0, 0.0, -0.8, 0.7]);
-    }
-
-    #[test]
     fn without_friction_it_is_a_lag() {
         let inputs = [1.0, 1.0, -2.0, -2.0, 0.0];
         let lag = run(&super::super::ActuatorLag, &[0.03], &inputs);

@@ -169,12 +169,6 @@ mod tests {
     }
 
     #[test]
-    fn without_valve_and_angle_it_is_a_resonance() {
-        let expected = of_resonance(&[0.2, 0.1], -3.0);
-        assert_close(&step_response(&[0.2, 0.1, 0.0, 0.0, 0.0, 5.0], -3.0, 40.0), &expected);
-    }
-
-    #[test]
     fn the_valve_damps_by_its_opening_either_way() {
         let parameters = [0.2, 0.1, 0.05, 0.0, 0.0, 5.0];
         for signal in [4.0, -4.0] {

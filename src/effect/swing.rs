@@ -160,13 +160,6 @@ mod tests {
     }
 
     #[test]
-    fn undamped_it_is_a_cosine() {
-        // 1 − cos after a half and after a whole period; the mean over both is 1.
-        assert_close(&step_response(2.0, 0.0, 1.0), &[2.0, 1.0]);
-        assert_close(&step_response(2.0, 0.0, 2.0), &[0.0, 1.0]);
-    }
-
-    #[test]
     fn critically_damped_it_follows_its_closed_form() {
         // ω = 1: x = 1 − (1 + t) e^−t, its integral t − 2 + (2 + t) e^−t, at t = 1.
         let e = (-1.0_f64).exp();

@@ -277,19 +277,6 @@ mod tests {
     }
 
     #[test]
-    fn reads_a_mapping_file() {
-        let file: MapFile = toml::from_str(
-            "time = 't_s'\n[joint.arm]\ninput = 'u'\noutput = 'y'\noutput_unit = 'deg'\n\
-             covariates = { pilot = 'p_bar' }",
-        )
-        .unwrap();
-        let map = ColumnMap::from(file);
-        assert_eq!(map.time.as_deref(), Some("t_s"));
-        assert_eq!(map.joints[0].output_unit.as_deref(), Some("deg"));
-        assert_eq!(map.joints[0].covariates, [("pilot".to_owned(), "p_bar".to_owned())]);
-    }
-
-    #[test]
     fn joints_may_have_settings_of_their_own() {
         let text = "[joint.arm.estimate]\nmax_delay = '0.5s'\noutput_limits = [-40, 40.5]\n";
         let map = ColumnMap::from(toml::from_str::<MapFile>(text).unwrap());
@@ -305,10 +292,5 @@ mod tests {
             JointColumns::new("boom", "u", "y"),
         ];
         assert_eq!(map.joints, expected);
-    }
-
-    #[test]
-    fn a_key_that_is_unknown_is_refused() {
-        assert!(toml::from_str::<MapFile>("tiem = 't_s'").is_err());
     }
 }

@@ -411,19 +411,8 @@ fn tidy(seconds: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const NAN: f64 = f64::NAN;
-
     fn signals(input: &[f64], output: &[f64]) -> Signals {
         Signals { input: input.to_vec(), output: output.to_vec(), covariates: Vec::new() }
-    }
-
-    fn repair(resample: Option<f64>, fill_s: Option<f64>) -> Repair {
-        Repair {
-            resample: resample.and_then(SamplePeriod::from_seconds),
-            fill_s,
-            as_it_stands: false,
-            joins_steps: false,
-        }
     }
 
     #[test]
@@ -453,50 +442,11 @@ mod tests {
     }
 
     #[test]
-    fn a_short_gap_is_filled_and_a_long_one_splits() {
-        let times = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-        let grid = Grid::lay(&times, repair(None, Some(2.0))).unwrap();
-        let log = signals(
-            &[5.0, 5.0, 6.0, 6.0, 6.0, 7.0, 7.0, 7.0],
-            &[0.0, NAN, 2.0, 3.0, NAN, NAN, 6.0, 7.0],
-        );
-        let pieces = grid.pieces(log);
-        assert_eq!(pieces.len(), 2);
-        assert_eq!(pieces[0].signals.output, [0.0, 1.0, 2.0, 3.0]);
-        assert_eq!(pieces[0].signals.input, [5.0, 5.0, 6.0, 6.0]);
-        assert_eq!(pieces[1].start_s.to_string(), "6");
-        assert_eq!(pieces[1].signals.input, [7.0, 7.0]);
-    }
-
-    #[test]
-    fn lost_rows_are_filled_too() {
-        let times = [0.0, 1.0, 2.0, 4.0, 5.0, 6.0];
-        assert!(Grid::lay(&times, Repair::default()).is_err());
-        let grid = Grid::lay(&times, repair(None, Some(2.0))).unwrap();
-        let log = signals(&[1.0, 1.0, 1.0, 2.0, 2.0, 2.0], &[0.0, 1.0, 2.0, 4.0, 5.0, 6.0]);
-        let pieces = grid.pieces(log);
-        assert_eq!(pieces.len(), 1);
-        assert_eq!(pieces[0].signals.output, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-        assert_eq!(pieces[0].signals.input, [1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0]);
-    }
-
-    #[test]
-    fn resampling_draws_lines_and_holds_the_input() {
-        let times = [0.0, 0.9, 2.1, 3.0];
-        let grid = Grid::lay(&times, repair(Some(0.5), None)).unwrap();
-        let log = signals(&[1.0, 2.0, 3.0, 4.0], &[0.0, 0.9, 2.1, 3.0]);
-        let piece = &grid.pieces(log)[0].signals;
-        assert_eq!(piece.input, [1.0, 1.0, 2.0, 2.0, 2.0, 3.0, 4.0]);
-        for (k, y) in piece.output.iter().enumerate() {
-            assert!((y - 0.5 * k as f64).abs() < 1e-12, "{:?}", piece.output);
-        }
-    }
-
-    #[test]
     fn resampling_does_not_bridge_a_pause() {
         let mut times: Vec<f64> = (0..20).map(f64::from).collect();
         times.extend((0..20).map(|k| 100.0 + f64::from(k)));
-        let grid = Grid::lay(&times, repair(Some(1.0), None)).unwrap();
+        let resampled = Repair { resample: SamplePeriod::from_seconds(1.0), ..Repair::default() };
+        let grid = Grid::lay(&times, resampled).unwrap();
         assert_eq!(grid.pieces(signals(&times, &times)).len(), 2);
     }
 }

@@ -500,17 +500,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_unit_stands_in_brackets() {
-        let header = Header::parse(" boom.output [deg/s] ");
-        assert_eq!(header.name, "boom.output");
-        assert_eq!(header.unit.as_deref(), Some("deg/s"));
-        assert_eq!(Header::parse("boom.output").unit, None);
-        let ended = Header::parse("boom.input_pct");
-        assert_eq!((ended.name.as_str(), ended.unit.as_deref()), ("boom.input", Some("%")));
-        assert_eq!(Header::parse("boom.pressure_bar").name, "boom.pressure_bar");
-    }
-
-    #[test]
     #[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
     fn values_end_before_one_that_is_infinite() {
         let mut column = Column::default();

@@ -60,29 +60,3 @@ impl Arrivals {
             .map(|((index, now), before)| (*index, now.speed - before.speed))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_overtaken_level_never_comes_back() {
-        let mut arrivals = Arrivals::new(0.0, 0.0);
-        arrivals.push(0, 1.0, 10.0);
-        arrivals.push(1, 3.0, 20.0);
-        arrivals.push(2, 2.0, -5.0);
-        let acting: Vec<usize> = arrivals.later().iter().map(|(index, _)| *index).collect();
-        assert_eq!(acting, [0, 2]);
-        assert!((arrivals.angle_at(4.0) - (10.0 - 2.0 * 5.0)).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_step_is_charged_with_the_change_from_what_acted_before_it() {
-        let mut arrivals = Arrivals::new(0.0, 0.0);
-        arrivals.push(0, 3.0, 20.0);
-        arrivals.push(1, 2.0, -5.0);
-        arrivals.push(2, 5.0, 1.0);
-        let changes: Vec<(usize, f64)> = arrivals.speed_changes().collect();
-        assert_eq!(changes, [(1, -5.0), (2, 6.0)]);
-    }
-}

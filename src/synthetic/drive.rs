@@ -360,16 +360,6 @@ mod tests {
     }
 
     #[test]
-    fn the_range_is_kept_at_all_times() {
-        let joint = JointSpec { range: Some([-60.0, 70.0]), ..wandering([0.9, 2.0]) };
-        for seed in 0..20 {
-            let drive = Drive::of(&joint, 0, seed, clock(12_000)).unwrap();
-            let angles = (0..12_000).map(|k| drive.arrivals().angle_at(f64::from(k) * 0.01));
-            assert!({ angles }.all(|angle| (-60.0..=70.0).contains(&angle)), "seed {seed}");
-        }
-    }
-
-    #[test]
     fn a_range_that_no_level_keeps_is_an_error() {
         let levels = vec![-1.0, 1.0];
         let input = InputSpec::Levels { levels, hold_s: [5.0, 5.0] };

@@ -308,9 +308,13 @@ pub(super) mod tests {
         let text = "gain = -5\nstart = 3\nrange = [-90, 90]\ndead_band = [-0.2, 0.1]\n\
              saturation = 1.5\nlag_s = 0.06\nringing = { period_s = 0.4, damping = 0.2 }\n\
              noise = 0.05\nnoise_correlation = 0.3\nresolution = 0.01\n";
-        let spec = joint(&[text, INPUT, DELAY]).unwrap();
-        let written = toml::to_string(&spec).unwrap();
-        assert_eq!(PlantSpec::from_toml(&written).unwrap(), spec);
+        let hidden = "effect.end_stop.high = 10\n\
+             outside.sticky_spot = { from = 1, to = 2, share = 0.5 }\n";
+        let cylinder = "start = 20\ncylinder = { only = ['gravity'], bore_mm = 70 }\n";
+        for text in [text, hidden, cylinder] {
+            let spec = joint(&[text, INPUT, DELAY]).unwrap();
+            assert_eq!(PlantSpec::from_toml(&spec.to_toml().unwrap()).unwrap(), spec, "{text}");
+        }
     }
 
     #[test]

@@ -47,17 +47,3 @@ impl<'a> StaticChain<'a> {
         shifted.clamp(-self.limit, self.limit)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn is_zero_inside_the_band_shifted_outside_and_flat_beyond_the_limit() {
-        let chain = StaticChain { valve: None, dead_band: [-0.2, 0.3], limit: 1.0, gain: 10.0 };
-        let cases = [(-0.1, 0.0), (0.3, 0.0), (0.5, 2.0), (-0.7, -5.0), (2.0, 10.0), (-2.0, -10.0)];
-        for (level, speed) in cases {
-            assert!((chain.speed(level) - speed).abs() < 1e-12, "at {level}");
-        }
-    }
-}

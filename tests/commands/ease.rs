@@ -204,16 +204,12 @@ fn names_that_were_mistyped_are_answered_with_the_nearest() {
     );
     let refused = [
         ("estimte log.csv", "'estimate'"),
-        ("estimate log.csv --joint bom", "`boom`"),
         ("estimate log.csv --methd hinge", "'--method'"),
         ("estimate log.csv --method hing", "'hinge'"),
         ("estimate log.csv --joint arm=bom.input:boom.output", "`boom.input`"),
         ("estimate log.csv --time time_", "`time_s`"),
         ("sweep log.csv --method hing", "`hinge`"),
         ("effects dead_bnd", "`dead_band`"),
-        ("explain log.csv --effects dead_bnd", "`dead_band`"),
-        ("add dead_bnd log.csv --model boom.toml", "`dead_band`"),
-        ("simulate --effect dead_bnd -o made.csv", "`dead_band`"),
         ("completions bsh", "'bash'"),
     ];
     for (arguments, near) in refused {

@@ -102,6 +102,7 @@ fn logs_in_folders_within_a_folder_are_said_to_be_left_out() {
     let folder = TempDir::new().unwrap();
     let inner = folder.path().join("day").join("monday");
     fs::create_dir_all(&inner).unwrap();
+    fs::create_dir(folder.path().join("day").join("tuesday")).unwrap();
     fs::write(inner.join("log.csv"), log_text()).unwrap();
     let said = |code| {
         let command = ["estimate", "day", "--results", "r"];
@@ -114,6 +115,7 @@ fn logs_in_folders_within_a_folder_are_said_to_be_left_out() {
     fs::write(folder.path().join("day").join("log.csv"), log_text()).unwrap();
     let beside = said(0);
     assert!(beside.contains("left out") && beside.contains("monday"), "{beside}");
+    assert!(!beside.contains("tuesday"), "it has no log: {beside}");
 }
 
 #[test]

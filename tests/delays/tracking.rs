@@ -86,7 +86,9 @@ fn delays_of_servos_are_those_of_their_departures() {
         for (method, near_s) in [(Method::TWO_LINE, 0.06), (Method::HINGE, 0.04)] {
             let trial = servo.log(77 + index as u64, size(50, 120));
             let found = estimate(&trial, &Settings::of(method)).unwrap();
-            assert!(found.tracking.is_some(), "servo {index}");
+            let tracking = found.tracking.unwrap();
+            assert!(tracking.offset().abs() < 0.05, "servo {index}: {tracking:?}");
+            assert!((tracking.gain() - 1.5).abs() < 0.05, "servo {index}: {tracking:?}");
             let accepted = found.decisions.iter().filter(|d| d.verdict() == Verdict::Accepted);
             let delays = accepted.filter_map(Decision::delay);
             let mut errors: Vec<f64> =

@@ -1,9 +1,9 @@
 //! What differs between trials and is in no signal, but in their labels: the load.
 
 use std::fmt::Write as _;
-use std::path::Path;
-use std::process::Command;
 
+use crate::desk::Desk;
+use crate::sample::size;
 use serde_json::Value;
 use tauscope::synthetic::{PlantSpec, simulate, write_log};
 
@@ -45,26 +45,16 @@ fn log(seed: u64, load: Load, full: impl Fn(u64) -> bool) -> String {
     text
 }
 
-fn tauscope(arguments: &[&str]) -> (String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_tauscope"));
-    let output = command.args(arguments).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (text(output.stdout), text(output.stderr))
+/// What `improve` says of the log, and the desk with the log and its model.
+fn improved(log: &str) -> (Value, Desk) {
+    let desk = Desk::of_log(log);
+    let found = desk.json("improve log.csv --write model.toml --quiet", 0);
+    (found["joints"][0].clone(), desk)
 }
 
-fn path(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
-
-/// What `improve` says of the log, and the folder of the log and its model.
-fn improved(log: &str) -> (Value, tempfile::TempDir) {
-    let folder = tempfile::tempdir().unwrap();
-    let (data, model) = (folder.path().join("log.csv"), folder.path().join("model.toml"));
-    std::fs::write(&data, log).unwrap();
-    let arguments =
-        ["improve", path(&data), "--write", path(&model), "--quiet", "--format", "json"];
-    let found: Value = serde_json::from_str(&tauscope(&arguments).0).unwrap();
-    (found["joints"][0].clone(), folder)
+/// What a command says on standard error.
+fn notes(desk: &Desk, arguments: &str) -> String {
+    String::from_utf8(desk.run(arguments).stderr).unwrap()
 }
 
 fn value(joint: &Value, name: &str) -> f64 {
@@ -72,15 +62,16 @@ fn value(joint: &Value, name: &str) -> f64 {
 }
 
 #[test]
-fn a_load_that_is_in_the_labels_alone_is_found() {
-    let (slower, _folder) = improved(&log(31, Load::Slower, |trial| trial % 2 == 0));
+fn a_load_that_is_in_the_labels_alone_is_found_and_the_model_knows_its_trials() {
+    let (slower, desk) = improved(&log(31, Load::Slower, |trial| trial % 2 == 0));
     assert_eq!(slower["effects"], serde_json::json!(["gain[empty]"]));
     // The first word in the alphabet: a third more without the load is a quarter less with it.
     for direction in ["positive", "negative"] {
         let part = value(&slower, &format!("gain[empty].{direction}"));
         assert!((part - 1.0 / 3.0).abs() < 0.015, "{direction}: {part}");
     }
-    let (lifted, _folder) = improved(&log(32, Load::Gravity, |trial| trial % 2 == 1));
+    assert_knows_its_trials(&desk);
+    let (lifted, _) = improved(&log(32, Load::Gravity, |trial| trial % 2 == 1));
     assert_eq!(lifted["effects"], serde_json::json!(["gravity_load[full]"]));
     assert!((value(&lifted, "gravity_load[full].kappa") - 0.45).abs() < 0.02);
     assert_eq!(lifted["verdict"], "adequate");
@@ -88,54 +79,44 @@ fn a_load_that_is_in_the_labels_alone_is_found() {
 
 #[test]
 fn labels_that_say_nothing_of_the_joint_name_no_effect() {
-    for seed in [41, 42, 43] {
-        let (joint, _folder) = improved(&log(seed, Load::None, |trial| trial % 3 == 0));
+    for seed in 41..size(42, 44) {
+        let (joint, _) = improved(&log(seed, Load::None, |trial| trial % 3 == 0));
         assert_eq!(joint["effects"], serde_json::json!([]), "seed {seed}");
     }
 }
 
-#[test]
-fn the_model_knows_its_trials() {
-    let (_, folder) = improved(&log(33, Load::Slower, |trial| trial % 2 == 0));
-    let [data, model, code] = ["log.csv", "model.toml", "model.py"].map(|f| folder.path().join(f));
-    let error = |data: &Path| {
-        let arguments = ["compare", path(data), "-m", path(&model), "--format", "json"];
-        let (found, notes) = tauscope(&arguments);
-        let found: Value = serde_json::from_str(&found).unwrap();
-        (found["joints"][0]["error"]["train"]["rmse"].as_f64().unwrap(), notes)
+/// The model of `log.csv` has a gain of its own in the trials whose label says `empty`.
+fn assert_knows_its_trials(desk: &Desk) {
+    let error = |log: &str| {
+        let compare = format!("compare {log} -m model.toml");
+        let found = desk.json(&compare, 0);
+        let rmse = found["joints"][0]["error"]["train"]["rmse"].as_f64().unwrap();
+        (rmse, notes(desk, &compare))
     };
-    let (whole, notes) = error(&data);
-    assert!(whole < 0.06 && !notes.contains("does nothing"), "{whole} {notes}");
+    let (whole, said) = error("log.csv");
+    assert!(whole < 0.06 && !said.contains("does nothing"), "{whole} {said}");
     // Under labels that the model does not know it is the model of the other trials.
-    let renamed = folder.path().join("renamed.csv");
-    let text = std::fs::read_to_string(&data).unwrap();
-    std::fs::write(&renamed, text.replace("-empty", "-light")).unwrap();
-    let (renamed, notes) = error(&renamed);
+    desk.write("renamed.csv", &desk.read("log.csv").replace("-empty", "-light"));
+    let (renamed, said) = error("renamed.csv");
     assert!(renamed > 5.0 * whole, "{renamed}");
-    assert!(
-        notes.contains("no trial has `empty` in its label: `gain[empty]` does nothing"),
-        "{notes}"
-    );
+    let expected = "no trial has `empty` in its label: `gain[empty]` does nothing";
+    assert!(said.contains(expected), "{said}");
     // A model that stands alone is that of one kind of trial.
-    let export = |more: &[&str]| {
-        tauscope(&[&["export", path(&model), path(&code), "--quiet"], more].concat()).1
-    };
-    let refused = export(&[]);
+    let export = |more: &str| notes(desk, &format!("export model.toml model.py --quiet {more}"));
+    let refused = export("");
     assert!(refused.contains("`--trial empty` or `--trial none`"), "{refused}");
-    assert_eq!(export(&["--trial", "run9-empty"]), "");
-    assert!(std::fs::read_to_string(&code).unwrap().contains("gain_empty_positive"));
-    assert_eq!(export(&["--trial", "none"]), "");
-    assert!(!std::fs::read_to_string(&code).unwrap().contains("gain_empty"));
+    assert_eq!(export("--trial run9-empty"), "");
+    assert!(desk.read("model.py").contains("gain_empty_positive"));
+    assert_eq!(export("--trial none"), "");
+    assert!(!desk.read("model.py").contains("gain_empty"));
 }
 
 #[test]
 fn an_effect_is_added_to_the_trials_of_a_condition_by_hand() {
-    let (_, folder) = improved(&log(34, Load::None, |trial| trial % 2 == 0));
-    let [data, model] = ["log.csv", "model.toml"].map(|file| folder.path().join(file));
-    let (_, errors) = tauscope(&["add", "dead_band[full]", path(&data), "-m", path(&model), "-q"]);
-    assert_eq!(errors, "");
-    let text = std::fs::read_to_string(&model).unwrap();
+    let desk = Desk::of_log(&log(34, Load::None, |trial| trial % 2 == 0));
+    assert_eq!(notes(&desk, "add dead_band[full] log.csv -m model.toml -q"), "");
+    let text = desk.read("model.toml");
     assert!(text.contains("kind = \"dead_band[full]\""), "{text}");
-    let (_, errors) = tauscope(&["add", "deadband[full]", path(&data), "-m", path(&model), "-q"]);
-    assert!(errors.contains("did you mean `dead_band`?"), "{errors}");
+    let said = notes(&desk, "add deadband[full] log.csv -m model.toml -q");
+    assert!(said.contains("did you mean `dead_band`?"), "{said}");
 }

@@ -3,6 +3,7 @@
 //! `TAUSCOPE_REAL_LOGS`, or `../shared/data`.
 
 use crate::real;
+use crate::sample::size;
 use tauscope::effect::find;
 use tauscope::experiment::{Joint, Trial};
 use tauscope::explain::{Options, Sequential, improve};
@@ -177,7 +178,11 @@ fn friction_that_differs_by_direction_comes_after_coulomb_friction_and_explains_
     let record = FitRecord::new(&joint, Split::Time(0.7), SHORT);
     let base = fit(&record, &start(), &record.range(0.5)).unwrap();
     let coulomb = force_error_percent(&joint, physical(&base));
-    let options = Options { keeps_refinements: true, ..Options::default() };
+    // In the small sample the effects that may be taken for it.
+    let alike = ["asymmetric_friction", "direction_gain", "input_offset"];
+    let effects = alike.map(|id| find(id).unwrap()).to_vec();
+    let whole = Options { keeps_refinements: true, ..Options::default() };
+    let options = size(Options { effects, ..whole.clone() }, whole);
     let improvement = improve(&record, base, &options, &Sequential, |revision| {
         let effects = revision.comparison.fit.model.components();
         !effects.iter().any(|part| part.effect().spec().id == "asymmetric_friction")

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;
 
+use crate::sample::size;
 use tauscope::effect::REGISTRY;
 use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::export::{Export, ExportError, Units, by_ending};
@@ -172,14 +173,29 @@ fn export(folder: &Path, name: &str, model: &JointModel, ending: &str) {
     }
 }
 
-/// Runs `program` on each of `records`, in the files `FOLDER/NAME.in` and `FOLDER/NAME.out`.
-fn run(folder: &Path, name: &str, records: &[Record], program: &mut Command) -> Vec<Vec<f64>> {
+/// Writes `records` to the file `FOLDER/NAME.in`.
+fn write_records(folder: &Path, name: &str, records: &[Record]) {
     let numbers: Vec<u8> =
         records.iter().flat_map(Record::numbers).flat_map(f64::to_le_bytes).collect();
     fs::write(folder.join(format!("{name}.in")), numbers).unwrap();
+}
+
+/// Runs a program in `folder`, and panics with what it says if it fails.
+fn done(folder: &Path, program: &mut Command) {
     let done = program.current_dir(folder).output().unwrap();
-    let said = String::from_utf8_lossy(&done.stderr);
-    assert!(done.status.success(), "{name}: {said}{}", String::from_utf8_lossy(&done.stdout));
+    let said = [done.stderr, done.stdout].concat();
+    assert!(done.status.success(), "{program:?}: {}", String::from_utf8_lossy(&said));
+}
+
+/// Runs `program` on each of `records`, in the files `FOLDER/NAME.in` and `FOLDER/NAME.out`.
+fn run(folder: &Path, name: &str, records: &[Record], program: &mut Command) -> Vec<Vec<f64>> {
+    write_records(folder, name, records);
+    done(folder, program);
+    read_outputs(folder, name, records)
+}
+
+/// The outputs in the file `FOLDER/NAME.out`, one of each of `records`.
+fn read_outputs(folder: &Path, name: &str, records: &[Record]) -> Vec<Vec<f64>> {
     let bytes = fs::read(folder.join(format!("{name}.out"))).unwrap();
     let found: Vec<f64> =
         bytes.chunks_exact(8).map(|eight| f64::from_le_bytes(eight.try_into().unwrap())).collect();
@@ -238,13 +254,11 @@ fn each_effect_that_is_tried_moves_the_joint() {
     }
 }
 
-const MAIN_C: &str = r#"
-#include "MODEL.h"
-#include <stdio.h>
-#include <stdlib.h>
-int main(void)
+/// Drives one model.
+const RUN_C: &str = r#"
+static int MODEL_run(void)
 {
-    FILE *in = fopen("MODEL.in", "rb");
+    FILE *in = fopen("all.in", "rb");
     FILE *out = fopen("MODEL.out", "wb");
     double head[4];
     static MODEL_state joint;
@@ -269,9 +283,22 @@ int main(void)
         }
         free(input);
     }
-    return fclose(out) != 0;
+    return fclose(in) != 0 || fclose(out) != 0;
 }
 "#;
+
+/// A program that drives each of `models`.
+fn program_in_c(models: &[(String, JointModel)]) -> String {
+    let of_each = |text: &str| -> String {
+        models.iter().map(|(name, _)| text.replace("MODEL", name)).collect()
+    };
+    let (headers, runs) = (of_each("#include \"MODEL.h\"\n"), of_each(RUN_C));
+    let calls = of_each(" || MODEL_run()");
+    format!(
+        "{headers}#include <stdio.h>\n#include <stdlib.h>\n{runs}\nint main(void)\n{{\n    \
+         return 0{calls};\n}}\n"
+    )
+}
 
 #[test]
 fn c_moves_as_the_library_does_over_all_data() {
@@ -279,22 +306,19 @@ fn c_moves_as_the_library_does_over_all_data() {
         return skipped("no `cc` to compile models with");
     }
     let folder = tempfile::tempdir().unwrap();
-    let records = records(usize::MAX, usize::MAX);
-    for (name, model) in models() {
-        export(folder.path(), &name, &model, "c");
-        let main = format!("{name}_main.c");
-        fs::write(folder.path().join(&main), MAIN_C.replace("MODEL", &name)).unwrap();
-        let strict = ["-std=c99", "-O1", "-Wall", "-Wextra", "-Werror", "-pedantic"];
-        let compiled = Command::new("cc")
-            .args(strict)
-            .args([&format!("{name}.c"), &main, "-o", &name, "-lm"])
-            .current_dir(folder.path())
-            .output()
-            .unwrap();
-        assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
-        let found =
-            run(folder.path(), &name, &records, &mut Command::new(folder.path().join(&name)));
-        assert_same(&name, &model, &records, &found);
+    let (records, models) = (records(usize::MAX, size(3000, usize::MAX)), models());
+    let mut cc = Command::new("cc");
+    cc.args(["-std=c99", "-O1", "-Wall", "-Wextra", "-Werror", "-pedantic", "main.c"]);
+    fs::write(folder.path().join("main.c"), program_in_c(&models)).unwrap();
+    for (name, model) in &models {
+        export(folder.path(), name, model, "c");
+        cc.arg(format!("{name}.c"));
+    }
+    done(folder.path(), cc.args(["-o", "all", "-lm"]));
+    write_records(folder.path(), "all", &records);
+    done(folder.path(), &mut Command::new(folder.path().join("all")));
+    for (name, model) in &models {
+        assert_same(name, model, &records, &read_outputs(folder.path(), name, &records));
     }
 }
 

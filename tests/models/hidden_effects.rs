@@ -446,28 +446,6 @@ fn odd_numbers_give_data_or_an_error_but_no_panic() {
 }
 
 #[test]
-fn a_key_that_an_effect_does_not_have_is_refused() {
-    let mut joint = hiding("", &[(101, 1.0)]);
-    for key in ["lowr", "lower"] {
-        let found = joint.hide("dead_band", &[(key.to_owned(), -0.1)]);
-        assert!(matches!(found, Err(PlantError::Numbers { name: "dead_band", .. })), "{key}");
-    }
-}
-
-#[test]
-fn a_plant_with_effects_is_read_as_it_was_written() {
-    let mut joint = hiding("end_stop:high=10", &[(101, 1.0)]);
-    joint
-        .hide(
-            "sticky_spot",
-            &[("from", 1.0), ("to", 2.0), ("share", 0.5)].map(|(k, v)| (k.to_owned(), v)),
-        )
-        .unwrap();
-    let plant = PlantSpec::new(1, 6.0, vec![joint]);
-    assert_eq!(PlantSpec::from_toml(&plant.to_toml().unwrap()).unwrap(), plant);
-}
-
-#[test]
 fn the_names_are_those_of_the_catalogue_and_all_are_documented() {
     let sorted = |names: &mut dyn Iterator<Item = &'static str>| {
         let mut names: Vec<_> = names.collect();
@@ -500,26 +478,4 @@ fn the_plant_file_of_the_documents_makes_a_log() {
     let PlantError::Parse { source } = &refused else { panic!("{refused:?}") };
     let text = source.to_string();
     assert!(text.contains("lowr") && text.contains("expected `lower` or `upper`"), "{text}");
-}
-
-#[test]
-fn no_file_of_the_plant_uses_the_effects_or_models_that_are_fitted() {
-    fn check(folder: &std::path::Path) -> usize {
-        let mut files = 0;
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                files += check(&path);
-            } else {
-                let text = std::fs::read_to_string(&path).unwrap();
-                for module in ["effect::", "model::", "fit::", "diagnosis::"] {
-                    let named = text.contains(&format!("crate::{module}"));
-                    assert!(!named, "{} uses {module}", path.display());
-                }
-                files += 1;
-            }
-        }
-        files
-    }
-    assert!(check(std::path::Path::new("src/synthetic")) > 15);
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::desk::{Desk, assert_fields, banded, fields, joint, number};
+use crate::sample::size;
 use serde_json::{Value, json};
 use tauscope::model::ModelFile;
 use tauscope::synthetic::effects::OilColumn;
@@ -287,7 +288,7 @@ fn most_of_the_error_of_a_cylinder_is_taken_away() {
         noise,
         ..JointSpec::new("boom", input, DelayLaw::Constant { seconds: 0.08 })
     };
-    let desk = Desk::for_seconds(90.0, vec![boom]);
+    let desk = Desk::for_seconds(size(50.0, 90.0), vec![boom]);
     let few = "--effects dead_band,position_gain,gravity_load,flow_curve,resonance,oil_column";
     // A little is left, which the verdict may hold for something or not.
     let json = desk.json(&format!("improve log.csv --write m.toml {few}"), 0);

@@ -7,6 +7,7 @@ use std::process::Command;
 use serde_json::Value;
 
 use crate::real::log;
+use crate::sample::size;
 
 fn parameter(revision: &Value, name: &str) -> f64 {
     revision["parameters"][name]["value"].as_f64().unwrap()
@@ -24,6 +25,7 @@ fn dead_band_and_stops_of_an_excavator_are_found() {
         .arg(log)
         .args(["--joint", "arm=u_duty_pct:angle_deg"])
         .args(["--effects", "dead_band,input_saturation,end_stop"])
+        .args(size(&["--resample", "0.03"][..], &[]))
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -1,8 +1,9 @@
 //! What a further column of the log has to do with the gain: the pressure of the supply, a force.
 
 use std::fmt::Write as _;
-use std::process::Command;
 
+use crate::desk::Desk;
+use crate::sample::size;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
@@ -62,14 +63,9 @@ fn log(seed: u64, signal: Signal) -> String {
 }
 
 fn improved(log: &str) -> (Value, String) {
-    let folder = tempfile::tempdir().unwrap();
-    let (data, model) = (folder.path().join("log.csv"), folder.path().join("model.toml"));
-    std::fs::write(&data, log).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_tauscope"));
-    command.args(["improve", "--quiet", "--format", "json", "--write"]).args([&model, &data]);
-    let output = command.output().unwrap();
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
-    (found["joints"][0].clone(), std::fs::read_to_string(&model).unwrap())
+    let desk = Desk::of_log(log);
+    let found = desk.json("improve log.csv --write model.toml --quiet", 0);
+    (found["joints"][0].clone(), desk.read("model.toml"))
 }
 
 fn value(joint: &Value, name: &str) -> f64 {
@@ -100,7 +96,7 @@ fn a_force_makes_one_direction_faster_and_the_other_slower() {
 
 #[test]
 fn a_signal_that_does_nothing_is_not_named() {
-    for seed in 3..9 {
+    for seed in 3..size(5, 9) {
         let (joint, _) = improved(&log(seed, Signal::None));
         assert_eq!(joint["effects"], serde_json::json!([]), "{seed}: {}", joint["conclusion"]);
     }

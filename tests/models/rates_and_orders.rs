@@ -2,11 +2,12 @@
 //! them are held back.
 
 use std::fmt::Write as _;
-use std::process::Command;
+use std::sync::LazyLock;
 
+use crate::desk::Desk;
+use crate::sample::size;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use serde_json::Value;
 
 const DELAY_S: f64 = 0.2;
 /// The same in samples.
@@ -38,7 +39,7 @@ fn ramp(x: f64) -> f64 {
     0.5 * (x + x.hypot(ROUND))
 }
 
-/// Rows of each trial at 100 Hz: random steps of 0.5 to 1.5 s; the sensor is noisy.
+/// Rows of each trial at 100 Hz, 15 s in the small sample and 25 s in the whole one: random steps of 0.5 to 1.5 s; the sensor is noisy.
 fn trials(flow: impl Fn(f64) -> f64) -> Vec<Vec<String>> {
     let mut random = ChaCha8Rng::seed_from_u64(20);
     let trial = |trial: u32| {
@@ -59,24 +60,19 @@ fn trials(flow: impl Fn(f64) -> f64) -> Vec<Vec<String>> {
             place += PERIOD_S * GAIN * flow(late.map_or(0.0, |index| inputs[index]));
             format!("{trial},{:.2},{level},{measured:.4}", PERIOD_S * f64::from(sample))
         };
-        (0..2500).map(row).collect()
+        (0..size(1500, 2500)).map(row).collect()
     };
     (0..TRIALS).map(trial).collect()
 }
 
 /// What `improve` names in a log of each `every`-th row of `trials`, sorted; and the delay.
-fn named(trials: &[Vec<String>], every: usize, options: &[&str]) -> (Vec<String>, f64) {
-    let folder = tempfile::tempdir().unwrap();
-    let (data, model) = (folder.path().join("log.csv"), folder.path().join("model.toml"));
+fn named(trials: &[Vec<String>], every: usize, options: &str) -> (Vec<String>, f64) {
     let mut text = "trial,t_s,boom.input,boom.output\n".to_owned();
     for row in trials.iter().flat_map(|rows| rows.iter().step_by(every)) {
         writeln!(text, "{row}").unwrap();
     }
-    std::fs::write(&data, text).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_tauscope"));
-    command.args(["improve", "--quiet", "--format", "json", "--write"]).args([&model, &data]);
-    let output = command.args(options).output().unwrap();
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let improve = format!("improve log.csv --write model.toml --quiet {options}");
+    let found = Desk::of_log(&text).json(&improve, 0);
     let joint = &found["joints"][0];
     let named = joint["conclusion"]["found"].as_array().unwrap().iter();
     let mut named: Vec<_> = named.map(|one| one["effect"].as_str().unwrap().to_owned()).collect();
@@ -89,27 +85,28 @@ fn assert_finds_both((named, delay_s): &(Vec<String>, f64), within_s: f64) {
     assert!((delay_s - DELAY_S).abs() < within_s, "{delay_s} s");
 }
 
+/// What is named at 50 Hz, with the trials as they were logged.
+static AT_50_HZ: LazyLock<(Vec<String>, f64)> = LazyLock::new(|| named(&trials(flow), 2, ""));
+
+/// A step of the input is logged up to a sample late.
 #[test]
 fn the_same_is_named_at_100_50_and_20_hz() {
     let trials = trials(flow);
-    // A step of the input is logged up to a sample late.
-    for (every, within_s) in [(1, 0.012), (2, 0.025), (5, 0.055)] {
-        assert_finds_both(&named(&trials, every, &[]), within_s);
-    }
+    assert_finds_both(&named(&trials, 1, ""), 0.012);
+    assert_finds_both(&AT_50_HZ, 0.025);
+    assert_finds_both(&named(&trials, 5, ""), 0.055);
 }
 
 #[test]
 fn the_order_of_the_trials_and_what_is_held_back_change_no_name() {
     let mut trials = trials(flow);
-    let as_logged = named(&trials, 2, &[]);
-    assert_finds_both(&as_logged, 0.025);
-    assert_finds_both(&named(&trials, 2, &["--split", "0.6"]), 0.025);
+    assert_finds_both(&named(&trials, 2, "--split 0.6"), 0.025);
     trials.rotate_left(3);
     trials.swap(0, 4);
-    let reordered = named(&trials, 2, &[]);
-    assert_eq!(as_logged.0, reordered.0);
+    let reordered = named(&trials, 2, "");
+    assert_eq!(AT_50_HZ.0, reordered.0);
     // The same trials are held back: the same fit but for rounding.
-    assert!((as_logged.1 - reordered.1).abs() < 1e-5, "{} s, {} s", as_logged.1, reordered.1);
+    assert!((AT_50_HZ.1 - reordered.1).abs() < 1e-5, "{} s, {} s", AT_50_HZ.1, reordered.1);
 }
 
 /// Friction with the one viscous part or the other would follow it as well: without inertia the two are
@@ -117,8 +114,9 @@ fn the_order_of_the_trials_and_what_is_held_back_change_no_name() {
 #[test]
 fn an_overlap_and_a_gain_by_direction_are_no_friction_at_100_and_50_hz() {
     let trials = trials(flow_by_direction);
-    for every in [1, 2] {
-        let (named, _) = named(&trials, every, &[]);
+    // In the small sample at 100 Hz alone.
+    for every in size(&[1][..], &[1, 2]) {
+        let (named, _) = named(&trials, *every, "");
         assert_eq!(named, ["dead_band", "direction_gain"]);
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::sample::size;
 use proptest::prelude::*;
 use tauscope::effect::expression::define;
 use tauscope::effect::{Definition, OwnParameter};
@@ -374,6 +375,8 @@ fn any_revision() -> impl Strategy<Value = Revision> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(size(64, 256)))]
+
     #[test]
     fn what_is_written_reads_the_same(
         name in prop_oneof!["[a-z_]{1,8}", ".{0,8}", Just("arm".to_owned()), Just("boom 2.left".to_owned())],

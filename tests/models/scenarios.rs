@@ -41,7 +41,7 @@ fn a_fitted_integrator_is_as_wrong_as_was_promised() {
 #[test]
 fn each_effect_can_be_hidden() {
     for (index, name) in
-        CATALOGUE.into_iter().chain(OUTSIDE).chain(FINER).enumerate().step_by(size(3, 1))
+        CATALOGUE.into_iter().chain(OUTSIDE).chain(FINER).enumerate().step_by(size(5, 1))
     {
         let strength = if index % 2 == 0 { Strength::Weak } else { Strength::Clear };
         let scenario = Scenario::new(&[name], strength, Noise::white(NOISE), 5).unwrap();

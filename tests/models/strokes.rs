@@ -1,8 +1,10 @@
 //! Models of strokes from rest into a stop.
 
+use crate::sample::size;
 use crate::stroke::{PERIOD_S, strokes};
 use tauscope::batch::Threads;
 use tauscope::delay::{Method, Settings, TrialEstimate, estimate_joint};
+use tauscope::effect::find;
 use tauscope::experiment::{Joint, Record};
 use tauscope::explain::{Change, Options, improve};
 use tauscope::fit::{FitRecord, Horizon, Split, fit};
@@ -10,6 +12,18 @@ use tauscope::model::integrators;
 
 fn estimated(trials: &Record, settings: &Settings) -> Vec<TrialEstimate> {
     estimate_joint(trials, settings).into_iter().map(Result::unwrap).collect()
+}
+
+/// What strokes into a stop need, in the order in which it is found.
+const USUAL: [&str; 5] =
+    ["dead_band", "input_saturation", "direction_gain", "end_stop", "position_gain"];
+
+/// In the small sample the usual effects have a few rivals only, and nothing is looked for beyond them.
+fn options() -> Options {
+    let rivals = ["flow_curve", "actuator_lag"];
+    let effects = USUAL.iter().chain(&rivals).map(|id| find(id).unwrap()).collect();
+    let few = Options { effects, max_effects: USUAL.len(), ..Options::default() };
+    size(few, Options::default())
 }
 
 #[test]
@@ -29,14 +43,12 @@ fn a_model_of_strokes_has_the_measured_delay_and_gets_the_usual_effects_first() 
 
     let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
     let base = fit(&record, start, &record.range(20.0)).unwrap();
-    let options = Options::default();
-    let improvement = improve(&record, base, &options, &Threads, |_| true);
+    let improvement = improve(&record, base, &options(), &Threads, |_| true);
     let added = improvement.revisions.iter().filter_map(|revision| match revision.change {
         Change::Added(id) => Some(id),
         _ => None,
     });
-    let usual = ["dead_band", "input_saturation", "direction_gain", "end_stop", "position_gain"];
-    assert_eq!(added.take(5).collect::<Vec<_>>(), usual);
+    assert_eq!(added.take(5).collect::<Vec<_>>(), USUAL);
     // The cylinder runs into its ends, and what is not there carries nothing.
     let error = |index: usize| improvement.revisions[index].comparison.judged().unwrap().rmse;
     let last = improvement.revisions.len() - 1;

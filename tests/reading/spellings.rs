@@ -5,7 +5,6 @@ mod gaps;
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 
 use proptest::prelude::*;
 use tauscope::batch::Threads;

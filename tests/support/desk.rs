@@ -32,12 +32,21 @@ impl Desk {
 
     /// A desk with a log of `duration_s` seconds.
     pub(crate) fn for_seconds(duration_s: f64, joints: Vec<JointSpec>) -> Self {
-        let plant = PlantSpec { sample_period_s: 0.02, ..PlantSpec::new(11, duration_s, joints) };
-        let made = simulate(&plant).unwrap();
-        let folder = tempfile::tempdir().unwrap();
-        let log = std::fs::File::create(folder.path().join("log.csv")).unwrap();
-        write_log(&made, log).unwrap();
-        Self { folder }
+        Self::of(&PlantSpec { sample_period_s: 0.02, ..PlantSpec::new(11, duration_s, joints) })
+    }
+
+    /// A desk with the log of this plant.
+    pub(crate) fn of(plant: &PlantSpec) -> Self {
+        let mut log = Vec::new();
+        write_log(&simulate(plant).unwrap(), &mut log).unwrap();
+        Self::of_log(&String::from_utf8(log).unwrap())
+    }
+
+    /// A desk with this log.
+    pub(crate) fn of_log(log: &str) -> Self {
+        let desk = Self { folder: tempfile::tempdir().unwrap() };
+        desk.write("log.csv", log);
+        desk
     }
 
     /// Gives the log a joint `broken`, an output of which is missing.

@@ -255,28 +255,12 @@ mod tests {
     }
 
     #[test]
-    fn four_pairs_by_hand() {
-        // ρ = 0.8 for one exchange of neighbours: 1 + 3 orders reach it, and as many fall.
-        let test = spearman(&[1.0, 2.0, 3.0, 4.0], &[1.0, 3.0, 2.0, 4.0]).unwrap();
-        assert!((test.statistic - 0.8).abs() < 1e-14);
-        assert!((test.p_value - 8.0 / 24.0).abs() < 1e-14);
-    }
-
-    #[test]
     fn there_is_none_of_a_constant_or_of_three_pairs() {
         assert_eq!(spearman(&[1.0; 5], &[1.0, 2.0, 3.0, 4.0, 5.0]), None);
         assert_eq!(spearman(&[1.0, 2.0, 3.0], &[1.0, 2.0, 3.0]), None);
         assert_eq!(spearman(&[1.0; 4], &[1.0; 5]), None);
         assert_eq!(mann_whitney(&[1.0, 1.0], &[1.0]), None);
         assert_eq!(mann_whitney(&[], &[1.0]), None);
-    }
-
-    #[test]
-    fn two_against_two_by_hand() {
-        // Of the six choices of two ranks, the lowest and the highest are as far out.
-        let test = mann_whitney(&[1.0, 2.0], &[3.0, 4.0]).unwrap();
-        assert!(test.statistic.abs() < 1e-15);
-        assert!((test.p_value - 2.0 / 6.0).abs() < 1e-14);
     }
 
     #[test]

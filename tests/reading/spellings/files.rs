@@ -76,20 +76,3 @@ fn beside_a_log_the_truth_is_left_out_and_alone_it_is_not() {
     let (found, _) = expand_folders(std::slice::from_ref(&truth));
     assert_eq!(found, [truth], "a message tells what it is");
 }
-
-/// They would be missed without a word.
-#[test]
-fn logs_in_folders_within_a_folder_are_left_out_and_said() {
-    let folder = tempfile::tempdir().unwrap();
-    let inner = folder.path().join("monday");
-    fs::create_dir(&inner).unwrap();
-    fs::create_dir(folder.path().join("empty")).unwrap();
-    for place in [folder.path(), &inner] {
-        fs::copy("data/worked_example.csv", place.join("log.csv")).unwrap();
-    }
-    let program = env!("CARGO_BIN_EXE_tauscope");
-    let ran = Command::new(program).arg("estimate").arg(folder.path()).output().unwrap();
-    let said = String::from_utf8_lossy(&ran.stderr).into_owned();
-    assert!(said.contains("logs in folders within it") && said.contains("monday"), "{said}");
-    assert!(!said.contains("empty"), "{said}");
-}

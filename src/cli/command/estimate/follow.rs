@@ -391,18 +391,6 @@ mod tests {
     }
 
     #[test]
-    fn another_log_under_the_name_is_not_read_on() {
-        let (_folder, mut file, args, path) = begun("log.csv", "t,a.input,a.output\n");
-        let mut log = Followed::of(&path, &args);
-        assert!(log.catch_up().unwrap());
-        file.write_all(b"0,1,2\n").unwrap();
-        assert!(log.catch_up().unwrap());
-        assert!(!log.catch_up().unwrap(), "nothing came");
-        std::fs::write(&path, "t,b.input,b.output\n0,3,4\n1,3,4\n").unwrap();
-        assert!(log.catch_up().unwrap_err().to_string().contains("another log"));
-    }
-
-    #[test]
     fn what_is_no_text_is_read_from_a_copy() {
         let (_folder, mut file, args, path) = begun("log.mcap", "a");
         let mut log = Followed::of(&path, &args);
