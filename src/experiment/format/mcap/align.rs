@@ -119,7 +119,11 @@ impl Alignment<'_> {
         let topic = self.topics.name(self.topic);
         let others = listed(held.iter().map(|series| self.topics.name(series.topic)));
         let reason = format!("no message of {topic} comes after the first ones of {others}");
-        Fault::new(reason, "choose topics that were recorded together")
+        Fault::new(
+            reason,
+            "choose topics that were recorded together, and `--time log_time` where their stamps are of \
+             several clocks",
+        )
     }
 
     /// What was held, where the first rows up to `start` are left out, and what is missing.
@@ -246,7 +250,9 @@ mod tests {
     use super::*;
 
     fn series(times: &[i64], places: &[u32]) -> Series {
-        Series { times: times.to_vec(), places: places.to_vec(), ..Series::default() }
+        let mut series = Series::of(0);
+        (series.times, series.places) = (times.to_vec(), places.to_vec());
+        series
     }
 
     #[test]

@@ -24,16 +24,6 @@ impl Fault {
         Self::Damaged { reason, remedy }
     }
 
-    /// This fault, and what may be the reason for it.
-    pub(super) fn also(self, more: Option<String>) -> Self {
-        match (self, more) {
-            (Self::Damaged { reason, remedy }, Some(more)) => {
-                Self::new(format!("{reason}: {more}"), remedy)
-            }
-            (fault, _) => fault,
-        }
-    }
-
     pub(super) fn refuse(self, path: &Path) -> ReadError {
         match self {
             Self::Damaged { reason, remedy } => {

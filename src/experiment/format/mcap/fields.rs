@@ -5,12 +5,24 @@ use std::fmt::Write as _;
 
 use super::message::{Fields, Value};
 
-/// Hands each number of a message to `visit` with its name, until that fails.
+/// Hands each number in those fields of a message that are `wanted` to `visit` with its name, until that
+/// fails.
 pub(super) fn each_number<E>(
     message: &Value<'_>,
+    wanted: impl Fn(&str) -> bool,
     mut visit: impl FnMut(&str, f64) -> Result<(), E>,
 ) -> Result<(), E> {
-    walk(message, &mut Vec::new(), &mut String::new(), &mut visit)
+    let Value::Message(fields) = message else { return Ok(()) };
+    let mut outer = vec![fields];
+    for (field, value) in fields.iter().filter(|(field, _)| wanted(field)) {
+        walk(value, &mut outer, &mut (*field).to_owned(), &mut visit)?;
+    }
+    Ok(())
+}
+
+/// The field of a message in which the number of this name lies.
+pub(super) fn first_field(name: &str) -> &str {
+    name.split(['.', '[']).next().unwrap_or_default()
 }
 
 /// [`each_number`] of a value of this `name` that lies in the messages `outer`.
@@ -40,9 +52,7 @@ fn walk<'m, E>(
         Value::Message(fields) => {
             outer.push(fields);
             for (field, value) in fields {
-                if length > 0 {
-                    name.push('.');
-                }
+                name.push('.');
                 name.push_str(field);
                 walk(value, outer, name, visit)?;
                 name.truncate(length);
@@ -97,10 +107,14 @@ mod tests {
 
     fn numbers(message: &Value<'_>) -> Vec<(String, f64)> {
         let mut found = Vec::new();
-        each_number::<()>(message, |name, number| {
-            found.push((name.to_owned(), number));
-            Ok(())
-        })
+        each_number::<()>(
+            message,
+            |_| true,
+            |name, number| {
+                found.push((name.to_owned(), number));
+                Ok(())
+            },
+        )
         .unwrap();
         found
     }

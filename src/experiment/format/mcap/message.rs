@@ -20,11 +20,11 @@ const LONGEST_NAME: usize = 255;
 /// Types may lie in types, but not without end.
 const DEEPEST: usize = 32;
 
-/// Values of a message, at most, without those in long arrays of numbers: far more than a machine has
-/// joints, and no more than time and memory allow.
-const MOST_VALUES: usize = 1 << 22;
+/// Fields of a message and of those in it, at most: far more than a machine has joints, and no more than
+/// memory allows.
+const MOST_FIELDS: usize = 1 << 22;
 
-/// Values without a byte that a message may have.
+/// Fields without a byte that a message may have.
 const MOST_EMPTY: usize = 1 << 16;
 
 /// A value in a message.
@@ -128,14 +128,14 @@ fn refused(reason: String) -> Error {
 struct Decoding<'a, E> {
     reader: CdrReader<'a, E>,
     decoder: &'a Decoder,
-    /// Values that may still be looked at: as many as the bytes can be, and some that have none.
-    values: usize,
+    /// Fields that may still be looked at: as many as there are bytes, and some that have none.
+    fields: usize,
 }
 
 impl<'a, E: CdrEndian> Decoding<'a, E> {
     fn new(data: &'a [u8], decoder: &'a Decoder) -> Self {
-        let values = data.len().saturating_mul(4).saturating_add(MOST_EMPTY);
-        Self { reader: CdrReader::new(data), decoder, values: values.min(MOST_VALUES) }
+        let fields = data.len().saturating_add(MOST_EMPTY).min(MOST_FIELDS);
+        Self { reader: CdrReader::new(data), decoder, fields }
     }
 
     /// The fields of a message, which lies in so many others.
@@ -147,6 +147,8 @@ impl<'a, E: CdrEndian> Decoding<'a, E> {
         if depth > DEEPEST {
             return Err(refused(format!("`{}` lies too deep in itself or other types", spec.name)));
         }
+        let left = self.fields.checked_sub(1 + spec.fields.len());
+        self.fields = left.ok_or_else(|| refused("it has too many fields".to_owned()))?;
         let mut fields = Fields::with_capacity(spec.fields.len());
         for field in &spec.fields {
             let value = match &field.ty {
@@ -164,22 +166,19 @@ impl<'a, E: CdrEndian> Decoding<'a, E> {
         ty: &'a Type,
         depth: usize,
     ) -> Result<Value<'a>, Error> {
-        let left = self.values.checked_sub(1);
-        self.values = left.ok_or_else(|| refused("it has too many values".to_owned()))?;
-        match ty {
-            Type::BuiltIn(kind) => self.scalar(kind),
-            Type::Complex(wanted) => {
-                let spec = self.decoder.resolve(scope, wanted);
-                let spec =
-                    spec.ok_or_else(|| refused(format!("its type {wanted:?} is not defined")))?;
-                // An enumeration has constants alone, and is sent as one of them.
-                let kind = spec.underlying_type_if_enum_like();
-                match kind.map_err(|error| refused(error.to_string()))? {
-                    Some(kind) => self.scalar(kind),
-                    None => self.message(spec, depth + 1),
-                }
-            }
-            Type::Array { .. } => Err(refused("it has an array of arrays".to_owned())),
+        let wanted = match ty {
+            // It takes a byte at least.
+            Type::BuiltIn(kind) => return self.scalar(kind),
+            Type::Complex(wanted) => wanted,
+            Type::Array { .. } => return Err(refused("it has an array of arrays".to_owned())),
+        };
+        let spec = self.decoder.resolve(scope, wanted);
+        let spec = spec.ok_or_else(|| refused(format!("its type {wanted:?} is not defined")))?;
+        // An enumeration has constants alone, and is sent as one of them.
+        let kind = spec.underlying_type_if_enum_like();
+        match kind.map_err(|error| refused(error.to_string()))? {
+            Some(kind) => self.scalar(kind),
+            None => self.message(spec, depth + 1),
         }
     }
 
@@ -195,10 +194,8 @@ impl<'a, E: CdrEndian> Decoding<'a, E> {
             ArraySize::Fixed(count) => *count,
             ArraySize::Bounded(_) | ArraySize::Unbounded => self.reader.read_sequence_length()?,
         };
-        let width = if let Type::BuiltIn(kind) = ty { width(kind) } else { None };
-        if let Some(width) = width.filter(|_| count > MOST_ELEMENTS) {
-            self.reader.align(width)?;
-            self.reader.read_bytes(count.checked_mul(width).ok_or(Error::UnexpectedEof)?)?;
+        if count > MOST_ELEMENTS && is_of_bytes(ty) {
+            self.reader.read_bytes(count)?;
             return Ok(Value::List(Vec::new()));
         }
         let mut elements = Vec::new();
@@ -240,19 +237,10 @@ impl<'a, E: CdrEndian> Decoding<'a, E> {
     }
 }
 
-/// Bytes of a number; a text has its own.
-fn width(kind: &BuiltInType) -> Option<usize> {
-    Some(match kind {
-        BuiltInType::Bool
-        | BuiltInType::Byte
-        | BuiltInType::Char
-        | BuiltInType::Int8
-        | BuiltInType::UInt8 => 1,
-        BuiltInType::Int16 | BuiltInType::UInt16 => 2,
-        BuiltInType::Int32 | BuiltInType::UInt32 | BuiltInType::Float32 => 4,
-        BuiltInType::Int64 | BuiltInType::UInt64 | BuiltInType::Float64 => 8,
-        BuiltInType::String(_) | BuiltInType::WString(_) => return None,
-    })
+/// Whether the elements of an array of this type are bytes, as those of images are.
+fn is_of_bytes(ty: &Type) -> bool {
+    use BuiltInType::{Byte, Char, Int8, UInt8};
+    matches!(ty, Type::BuiltIn(Byte | Char | Int8 | UInt8))
 }
 
 #[cfg(test)]
@@ -296,10 +284,14 @@ mod tests {
         let decoder = Decoder::new("demo/msg/Twins", DEFINITION.as_bytes()).unwrap();
         let bytes = message();
         let mut found = Vec::new();
-        each_number::<()>(&decoder.decode(&bytes).unwrap(), |name, value| {
-            found.push((value, name.to_owned()));
-            Ok(())
-        })
+        each_number::<()>(
+            &decoder.decode(&bytes).unwrap(),
+            |_| true,
+            |name, value| {
+                found.push((value, name.to_owned()));
+                Ok(())
+            },
+        )
         .unwrap();
         let expected = [
             (1.5, "parts[boom].values[effort]"),
@@ -319,6 +311,20 @@ mod tests {
             assert!(decoder.decode(&whole[..length]).is_err(), "{length}");
         }
         assert!(Decoder::new("demo/msg/Twins", b"float64").is_err());
+    }
+
+    #[test]
+    fn a_message_without_bytes_has_no_more_fields_than_memory_allows() {
+        const LINE: &str = "\n====\n";
+        let fields: String = (0..100).map(|k| format!("uint8[0] x{k}\n")).collect();
+        let parts = |count: usize| {
+            let text =
+                format!("A[{count}] a{LINE}MSG: demo/A\nB[{count}] b{LINE}MSG: demo/B\n{fields}");
+            Decoder::new("demo/msg/Many", text.as_bytes()).unwrap()
+        };
+        assert!(parts(2).decode(&[0, 1, 0, 0]).is_ok());
+        let refused = parts(64).decode(&[0, 1, 0, 0]).unwrap_err();
+        assert!(refused.to_string().contains("too many fields"), "{refused}");
     }
 
     #[test]

@@ -86,10 +86,7 @@ impl Rows for Unread {
             label: wanted.label,
             budget: &self.budget,
         };
-        let mut aligned = match alignment.align(series) {
-            Ok(aligned) => aligned,
-            Err(fault) => return Err(fault.also(of_several).refuse(path)),
-        };
+        let mut aligned = alignment.align(series).map_err(|fault| fault.refuse(path))?;
         let zero = self.topics.zero(clock).unwrap_or_default();
         let times = format!("times are {} from {:.9} s on", clock.name(), zero as f64 * 1e-9);
         let notes = [times].into_iter().chain(std::mem::take(&mut aligned.notes)).chain(of_several);

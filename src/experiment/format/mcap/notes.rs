@@ -98,7 +98,8 @@ mod tests {
     fn note(seconds: impl Iterator<Item = f64>, end_s: f64, without: usize) -> Option<String> {
         let nanoseconds = |seconds: f64| format!("{:.0}", seconds * 1e9).parse::<i64>().unwrap();
         let times: Vec<i64> = seconds.map(nanoseconds).collect();
-        let series = Series { times, empty: without, ..Series::default() };
+        let mut series = Series::of(0);
+        (series.times, series.empty) = (times, without);
         missing(&series, nanoseconds(end_s), "/valve")
     }
 

@@ -1,8 +1,8 @@
 //! What each topic said: the times and values of its messages.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use super::fields::each_number;
+use super::fields::{each_number, first_field};
 use super::message::Value;
 use crate::experiment::memory::{Budget, TooLarge};
 use crate::numerics::median;
@@ -21,6 +21,8 @@ pub(super) struct Series {
     pub(super) columns: Vec<Collected>,
     /// Columns by the names of their numbers.
     by_name: HashMap<String, usize>,
+    /// The fields of the messages in which these lie.
+    fields: HashSet<String>,
     /// Messages that have none of the values.
     pub(super) empty: usize,
     /// How long before their recording the messages are timed, at least, nanoseconds.
@@ -43,6 +45,7 @@ impl Series {
 
     /// Collects the number of this name, too.
     pub(super) fn add(&mut self, header: usize, name: &str) {
+        self.fields.insert(first_field(name).to_owned());
         self.by_name.entry(name.to_owned()).or_insert_with(|| {
             self.columns.push(Collected { header, values: Vec::new() });
             self.columns.len() - 1
@@ -57,11 +60,15 @@ impl Series {
         budget: &Budget,
     ) -> Result<(), TooLarge> {
         let mut numbers = vec![None; self.columns.len()];
-        each_number(message, |name, number| {
-            let column = self.by_name.get(name).and_then(|column| numbers.get_mut(*column));
-            column.map(|column| column.get_or_insert(number));
-            Ok(())
-        })?;
+        each_number(
+            message,
+            |field| self.fields.contains(field),
+            |name, number| {
+                let column = self.by_name.get(name).and_then(|column| numbers.get_mut(*column));
+                column.map(|column| column.get_or_insert(number));
+                Ok(())
+            },
+        )?;
         if numbers.iter().all(Option::is_none) {
             self.empty += 1;
             return Ok(());

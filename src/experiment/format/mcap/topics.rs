@@ -74,14 +74,18 @@ struct Topic {
 impl Topic {
     /// Learns the numbers of a message.
     fn learn(&mut self, message: &Value<'_>, budget: &Budget) -> Result<(), TooLarge> {
-        each_number(message, |name, _| {
-            if !self.known.contains(name) {
-                budget.take_values(name.len() + 1, FIELD_SIZE)?;
-                self.known.insert(name.to_owned());
-                self.fields.push(name.to_owned());
-            }
-            Ok(())
-        })
+        each_number(
+            message,
+            |_| true,
+            |name, _| {
+                if !self.known.contains(name) {
+                    budget.take_values(name.len() + 1, FIELD_SIZE)?;
+                    self.known.insert(name.to_owned());
+                    self.fields.push(name.to_owned());
+                }
+                Ok(())
+            },
+        )
     }
 }
 
@@ -140,16 +144,14 @@ impl Topics {
         if self.channels.contains_key(&channel.id) {
             return Ok(());
         }
-        let schema = self.schemas.get(&channel.schema_id).map(|schema| &schema.decoder);
-        let decoder = match schema {
+        let decoder = match self.schemas.get(&channel.schema_id).map(|schema| &schema.decoder) {
             Some(Ok(decoder)) if channel.message_encoding == "cdr" => Arc::clone(decoder),
             Some(Err(reason)) => {
                 leave(&mut self.left, format!("{} ({reason})", channel.topic));
                 return Ok(());
             }
             _ => {
-                let what = format!("{} ({})", channel.topic, channel.message_encoding);
-                leave(&mut self.left, what);
+                leave(&mut self.left, format!("{} ({})", channel.topic, channel.message_encoding));
                 return Ok(());
             }
         };
