@@ -105,8 +105,8 @@ impl Alignment<'_> {
         }
         let notes = self.notes(&clock, &held, start);
         for column in clock.columns {
-            let is_label = self.label == Some(column.header);
-            columns.insert(column.header, own(&column.values, &rows, is_label));
+            let at_rows = if self.label == Some(column.header) { labels } else { own };
+            columns.insert(column.header, at_rows(&column.values, &rows));
         }
         for values in columns.values_mut() {
             values.drain(..start);
@@ -182,14 +182,19 @@ fn rows(clock: &Series, parts: i64) -> Vec<Row> {
     rows
 }
 
-/// The `values` of the messages at their rows. Between them those of labels are held, and NaN stands
-/// for others: what is missing there is filled where it is an output.
-fn own(values: &[f64], rows: &[Row], is_label: bool) -> Vec<f64> {
-    let value = |row: &Row| match values.get(row.message) {
-        Some(value) if row.is_own || is_label => *value,
-        _ => f64::NAN,
-    };
-    rows.iter().map(value).collect()
+/// The `values` of the messages at their rows, and NaN between them: what is missing there is filled
+/// where it is an output.
+fn own(values: &[f64], rows: &[Row]) -> Vec<f64> {
+    let mut own = labels(values, rows);
+    for (value, _) in own.iter_mut().zip(rows).filter(|(_, row)| !row.is_own) {
+        *value = f64::NAN;
+    }
+    own
+}
+
+/// The `values` of the messages at the rows, each held up to the next.
+fn labels(values: &[f64], rows: &[Row]) -> Vec<f64> {
+    rows.iter().filter_map(|row| values.get(row.message).copied()).collect()
 }
 
 /// The latest of the `values` of a series at each of `rows`, by their times and places in the file, which
@@ -271,8 +276,8 @@ mod tests {
         let times: Vec<i64> = rows.iter().map(|row| row.time).collect();
         assert_eq!(times, [0, 20, 40, 60, 80, 400, 420, 440], "none in the pause");
         let values = [1.0, 2.0, 3.0, 4.0, 5.0];
-        assert_eq!(own(&values, &rows, true), [1.0, 1.0, 2.0, 2.0, 3.0, 4.0, 4.0, 5.0]);
-        let numbers = own(&values, &rows, false);
+        assert_eq!(labels(&values, &rows), [1.0, 1.0, 2.0, 2.0, 3.0, 4.0, 4.0, 5.0]);
+        let numbers = own(&values, &rows);
         assert!(rows.iter().zip(numbers).all(|(row, number)| row.is_own != number.is_nan()));
     }
 }

@@ -316,7 +316,7 @@ mod tests {
     #[test]
     fn a_message_without_bytes_has_no_more_fields_than_memory_allows() {
         const LINE: &str = "\n====\n";
-        let fields: String = (0..100).map(|k| format!("uint8[0] x{k}\n")).collect();
+        let fields = (0..100).map(|k| format!("uint8[0] x{k}\n")).collect::<Vec<_>>().concat();
         let parts = |count: usize| {
             let text =
                 format!("A[{count}] a{LINE}MSG: demo/A\nB[{count}] b{LINE}MSG: demo/B\n{fields}");

@@ -108,7 +108,7 @@ pub(super) struct Readable {
 /// What is known of a file.
 #[derive(Debug, Default)]
 pub(super) struct Topics {
-    topics: Vec<Topic>,
+    list: Vec<Topic>,
     by_name: HashMap<String, usize>,
     schemas: HashMap<u16, Schema>,
     pub(super) channels: HashMap<u16, Readable>,
@@ -158,8 +158,8 @@ impl Topics {
         budget.take_values(channel.topic.len() + 1, FIELD_SIZE)?;
         let topic = *self.by_name.entry(channel.topic.clone()).or_insert_with(|| {
             let (fields, known) = (Vec::new(), HashSet::new());
-            self.topics.push(Topic { name: channel.topic, fields, known });
-            self.topics.len() - 1
+            self.list.push(Topic { name: channel.topic, fields, known });
+            self.list.len() - 1
         });
         let readable = Readable { topic, decoder, seen: 0, lengths: HashSet::new() };
         self.channels.insert(channel.id, readable);
@@ -171,7 +171,7 @@ impl Topics {
         let [start, ..] = &mut self.zero;
         *start = [*start, i64::try_from(header.log_time).ok()].into_iter().flatten().min();
         let Some(channel) = self.channels.get_mut(&header.channel_id) else { return Ok(()) };
-        let Some(topic) = self.topics.get_mut(channel.topic) else { return Ok(()) };
+        let Some(topic) = self.list.get_mut(channel.topic) else { return Ok(()) };
         channel.seen += 1;
         if !channel.lengths.insert(data.len()) && channel.seen > ENOUGH {
             return Ok(());
@@ -193,7 +193,7 @@ impl Topics {
 
     /// Refuses a file in which no message can be read.
     pub(super) fn check(&self) -> Result<(), Fault> {
-        if self.topics.iter().any(|topic| !topic.fields.is_empty()) {
+        if self.list.iter().any(|topic| !topic.fields.is_empty()) {
             return Ok(());
         }
         let reason = match self.left.as_slice() {
@@ -210,7 +210,7 @@ impl Topics {
     pub(super) fn places(&self) -> Vec<Place> {
         let clocks = Clock::ALL.into_iter().filter(|clock| self.zero(*clock).is_some());
         let mut places: Vec<Place> = clocks.map(Place::Time).collect();
-        for (number, topic) in self.topics.iter().enumerate() {
+        for (number, topic) in self.list.iter().enumerate() {
             places.extend(topic.fields.iter().map(|field| Place::Field(number, field.clone())));
         }
         places
@@ -230,7 +230,7 @@ impl Topics {
     }
 
     pub(super) fn name(&self, topic: usize) -> &str {
-        self.topics.get(topic).map_or("", |topic| &topic.name)
+        self.list.get(topic).map_or("", |topic| &topic.name)
     }
 
     /// The earliest time by a clock, in nanoseconds, where messages have it.
