@@ -453,7 +453,17 @@ mod mcap {
         assert_eq!(both.joints[1].trials[0].len(), alone.trials[0].len());
         let said = |words: &str| both.notes.iter().any(|note| note.contains(words));
         assert!(said("what the input was there is not known, nor a step to it"), "{both:?}");
-        assert!(said("`/joint_states` has `position[bucket]` in later messages alone"), "{both:?}");
+        assert!(!said("later messages"), "{both:?}");
+    }
+
+    #[test]
+    fn a_joint_that_is_added_late_is_a_column() {
+        let bucket = ("bucket", "/valve.data[0]", "/joint_states.position[bucket]");
+        let found = read_whole("late_command.mcap", &mapped(&[bucket]));
+        let [trial] = &found.joints[0].trials[..] else { panic!("{found:?}") };
+        assert_eq!(trial.len(), 199, "the states of the second half");
+        let note = "of 400 messages of `/joint_states` have none of its values and are left out";
+        assert!(found.notes.iter().any(|said| said.contains(note)), "{:?}", found.notes);
     }
 
     #[test]

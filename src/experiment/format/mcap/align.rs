@@ -2,15 +2,35 @@
 
 use std::collections::BTreeMap;
 
-use super::between::Between;
-use super::clock::Clock;
 use super::fault::Fault;
-use super::series::{ClockMessages, NUMBER_SIZE, Series};
+use super::notes;
+use super::runs::in_runs;
+use super::series::{NUMBER_SIZE, Series, interval};
+use super::topics::{Clock, Topics};
 use crate::experiment::memory::Budget;
 use crate::experiment::names::listed;
 use crate::experiment::table::Column;
 
-/// Columns with a value for each message of one topic.
+/// Time in nanoseconds by which a step may come late, and by which rows are apart then.
+const LATE: i64 = 10_000_000;
+
+/// Rows for each message, at most.
+const MOST_ROWS: i64 = 10;
+
+/// Usual intervals beyond which nothing is known between two messages, as in tables.
+const LONGEST: f64 = 3.0;
+
+/// What is aligned, and how.
+pub(super) struct Alignment<'a> {
+    pub(super) topics: &'a Topics,
+    /// The topic that gives the rows.
+    pub(super) topic: usize,
+    /// The header of labels, which are held between two messages, as numbers are not.
+    pub(super) label: Option<usize>,
+    pub(super) budget: &'a Budget,
+}
+
+/// Columns with a value for each row.
 #[derive(Default)]
 pub(super) struct Aligned {
     /// Nanoseconds.
@@ -21,172 +41,178 @@ pub(super) struct Aligned {
     pub(super) notes: Vec<String>,
 }
 
-/// All series at the times of the one of `topic`, and of some between where that is slow: each is held
-/// from its latest message, and so is the column of `labels`.
-/// What comes before the first message of all others is left out; what begins later is NaN up to
-/// there, so that a joint whose command comes late takes no rows from those beside it. Where the
-/// clock starts anew, each run is aligned by itself.
-pub(super) fn align<'a>(
-    series: Vec<Series>,
-    (topic, labels): (usize, Option<usize>),
-    budget: &Budget,
-    name: impl Fn(usize) -> &'a str,
-) -> Result<Aligned, Fault> {
-    let Some(clock) = series.iter().find(|series| series.topic == topic) else {
-        return Ok(Aligned::default());
-    };
-    let clock = ClockMessages::of(clock);
-    let mut of_runs: Vec<Vec<Series>> = clock.starts.iter().map(|_| Vec::new()).collect();
-    for series in series {
-        let starts = series.run_starts(&clock);
-        for (run, part) in of_runs.iter_mut().zip(series.in_runs(&starts)) {
-            run.push(part);
-        }
-    }
-    let (mut aligned, mut failed) = (Aligned::default(), Vec::new());
-    for series in of_runs {
-        match align_run(series, (topic, labels), budget, &name) {
-            Ok(run) => aligned.append(run),
-            Err(fault) => failed.push(fault),
-        }
-    }
-    let left_out = failed.len();
-    if let Some(fault) = failed.into_iter().next().filter(|_| aligned.times.is_empty()) {
-        return Err(fault);
-    }
-    aligned.notes.extend((left_out > 0).then(|| {
-        format!("its clock starts anew, and {left_out} runs without a message of each topic are left out")
-    }));
-    Ok(aligned)
+/// A row: a message of the topic that gives them, or a time between two.
+struct Row {
+    time: i64,
+    /// Where it stands in the file; between two messages behind all that comes at its time.
+    place: u32,
+    /// The message at it or before it, and whether it is that message's own.
+    message: usize,
+    is_own: bool,
 }
 
-/// [`align`] of a run in which the clock does not start anew.
-fn align_run<'a>(
-    mut series: Vec<Series>,
-    (topic, labels): (usize, Option<usize>),
-    budget: &Budget,
-    name: &impl Fn(usize) -> &'a str,
-) -> Result<Aligned, Fault> {
-    series.iter_mut().for_each(Series::sort);
-    let Some(place) = series.iter().position(|series| series.topic == topic) else {
-        return Ok(Aligned::default());
-    };
-    let mut clock = series.swap_remove(place);
-    let mut notes: Vec<String> = without_values(&clock, name(topic)).into_iter().collect();
-    let held: usize = series.iter().map(|series| series.columns.len()).sum();
-    if let Some(rows) = Between::of(&clock.times, &series) {
-        budget.take_values(rows.times.len().saturating_mul(clock.columns.len()), NUMBER_SIZE)?;
-        fill(&mut clock, rows, labels);
-    }
-    // A topic of one message is held at as many rows as there are.
-    budget.take_values(clock.times.len().saturating_mul(held), NUMBER_SIZE)?;
-    let own = clock.columns.into_iter().map(|column| (column.header, column.values));
-    let mut columns: Vec<_> = own.collect();
-    let mut start = clock.times.len();
-    let mut others: Vec<&str> = Vec::new();
-    let end = clock.times.last().copied().unwrap_or_default();
-    for held in series {
-        others.push(name(held.topic));
-        notes.extend(held.missing(end).note(name(held.topic)));
-        for column in held.columns {
-            let messages = held.times.iter().copied().zip(held.places.iter().copied());
-            let rows = clock.times.iter().copied().zip(clock.places.iter().copied());
-            let values = hold(messages.zip(column.values), rows);
-            let first = values.iter().position(|value| !value.is_nan()).unwrap_or(values.len());
-            start = start.min(first);
-            columns.push((column.header, values));
-        }
-    }
-    let mut times = clock.times;
-    if others.is_empty() {
-        start = 0;
-    }
-    if start == times.len() && start > 0 {
-        let (topic, others) = (name(topic), listed(others.into_iter()));
-        let reason = format!("no message of {topic} comes after the first ones of {others}");
-        return Err(Fault::new(reason, "choose topics that were recorded together"));
-    }
-    times.drain(..start);
-    for (_, values) in &mut columns {
-        values.drain(..start);
-    }
-    let columns = columns.into_iter().collect();
-    let on_others = (!others.is_empty()).then(|| {
-        let (topic, count, others) = (name(topic), others.len(), others.join("`, `"));
-        let early = match start {
-            0 => String::new(),
-            1 => ", of which the first comes too early and is left out".to_owned(),
-            _ => format!(", of which the first {start} come too early and are left out"),
-        };
-        let are = if count > 1 { "are held from their" } else { "is held from its" };
-        format!("`{others}` {are} latest message at each message of `{topic}`{early}")
-    });
-    let notes = on_others.into_iter().chain(notes).collect();
-    Ok(Aligned { times, columns, notes })
-}
-
-/// A line on topics whose messages are timed by clocks that differ, as those of two computers do: by the
-/// time from the stamp of a message to its recording, at least.
-pub(super) fn clocks_differ<'a>(
-    series: &[Series],
-    name: impl Fn(usize) -> &'a str,
-    clock: &str,
-) -> Option<String> {
-    /// Nanoseconds that messages may take to their recording.
-    const USUAL: i64 = 50_000_000;
-    let lags = || series.iter().filter_map(|series| Some((series.least_lag?, series.topic)));
-    let ((least, of_least), (most, of_most)) = lags().min().zip(lags().max())?;
-    let apart = most.saturating_sub(least);
-    (apart > USUAL).then(|| {
-        format!(
-            "the {clock} of `{}` is {:.3} s behind that of `{}`, by the time of recording: if these are \
-             the clocks of two computers, delays are off by that; `--time log_time` has one clock",
-            name(of_most),
-            apart as f64 * 1e-9,
-            name(of_least)
-        )
-    })
-}
-
-/// A line on messages of the topic of the times that have none of its values.
-fn without_values(clock: &Series, name: &str) -> Option<String> {
-    let all = clock.empty + clock.times.len();
-    (clock.empty > 0).then(|| {
-        format!(
-            "{} of {all} messages of `{name}` have none of its values and are left out",
-            clock.empty
-        )
-    })
-}
-
-/// Puts `rows` between the messages of the topic of the times.
-fn fill(clock: &mut Series, rows: Between, labels: Option<usize>) {
-    for column in &mut clock.columns {
-        let is_label = Some(column.header) == labels;
-        let at_rows = if is_label { Between::held } else { Between::sparse };
-        column.values = at_rows(&rows, &column.values);
-    }
-    clock.places = rows.in_file(&clock.places);
-    clock.times = rows.times;
-}
-
-/// The latest value of `messages` at each of `rows`, both by their times and places in the file, which says
-/// what came first at one time, as where a clock is coarse; NaN before the first.
-fn hold(
-    messages: impl Iterator<Item = ((i64, u32), f64)>,
-    rows: impl Iterator<Item = (i64, u32)>,
-) -> Vec<f64> {
-    let mut messages = messages.peekable();
-    let mut latest = f64::NAN;
-    let value = |row: (i64, u32)| {
-        while let Some((_, value)) = messages.next_if(|(sent, _)| *sent <= row) {
-            if !value.is_nan() {
-                latest = value;
+impl Alignment<'_> {
+    /// All series at the messages of the topic, and at times between these where it is slow: each is held
+    /// from its latest message.
+    /// What comes before the first message of all others is left out; what begins later is NaN up to
+    /// there, so that a joint whose command comes late takes no rows from those beside it.
+    pub(super) fn align(&self, series: Vec<Series>) -> Result<Aligned, Fault> {
+        let (mut aligned, mut failed) = (Aligned::default(), Vec::new());
+        for run in in_runs(series, self.topic) {
+            match self.align_run(run) {
+                Ok(run) => aligned.append(run),
+                Err(fault @ Fault::Damaged { .. }) => failed.push(fault),
+                Err(fault) => return Err(fault),
             }
         }
-        latest
+        let left_out = failed.len();
+        match failed.into_iter().next() {
+            Some(fault) if aligned.times.is_empty() => return Err(fault),
+            Some(_) => aligned.notes.push(format!(
+                "its clock starts anew, and {left_out} runs without a message of each topic are left out"
+            )),
+            None => {}
+        }
+        Ok(aligned)
+    }
+
+    /// [`Self::align`] of a run in which the clock does not start anew.
+    fn align_run(&self, mut series: Vec<Series>) -> Result<Aligned, Fault> {
+        series.iter_mut().for_each(Series::sort);
+        let Some(place) = series.iter().position(|series| series.topic == self.topic) else {
+            return Ok(Aligned::default());
+        };
+        let clock = series.swap_remove(place);
+        let held = series;
+        let parts = rows_per_message(&clock.times, &held);
+        let columns = held.iter().chain([&clock]).map(|series| series.columns.len()).sum();
+        // A topic of one message is held at as many rows as there are.
+        let most = clock.times.len().saturating_mul(usize::try_from(parts).unwrap_or(1));
+        self.budget.take_values(most.saturating_mul(columns), NUMBER_SIZE)?;
+        let rows = rows(&clock, parts);
+        let mut columns = BTreeMap::new();
+        let mut start = if held.is_empty() { 0 } else { rows.len() };
+        for series in &held {
+            for column in &series.columns {
+                let values = hold(series, &column.values, &rows);
+                let first = values.iter().position(|value| !value.is_nan());
+                start = start.min(first.unwrap_or(rows.len()));
+                columns.insert(column.header, values);
+            }
+        }
+        if start == rows.len() && start > 0 {
+            return Err(self.never_together(&held));
+        }
+        let notes = self.notes(&clock, &held, start);
+        for column in clock.columns {
+            let at_rows = if self.label == Some(column.header) { labels } else { own };
+            columns.insert(column.header, at_rows(&column.values, &rows));
+        }
+        for values in columns.values_mut() {
+            values.drain(..start);
+        }
+        let times = rows.iter().skip(start).map(|row| row.time).collect();
+        Ok(Aligned { times, columns, notes })
+    }
+
+    fn never_together(&self, held: &[Series]) -> Fault {
+        let topic = self.topics.name(self.topic);
+        let others = listed(held.iter().map(|series| self.topics.name(series.topic)));
+        let reason = format!("no message of {topic} comes after the first ones of {others}");
+        Fault::new(
+            reason,
+            "choose topics that were recorded together, and `--time log_time` where their stamps are of \
+             several clocks",
+        )
+    }
+
+    /// What was held, where the first rows up to `start` are left out, and what is missing.
+    fn notes(&self, clock: &Series, held: &[Series], start: usize) -> Vec<String> {
+        let topic = self.topics.name(self.topic);
+        let others: Vec<&str> = held.iter().map(|held| self.topics.name(held.topic)).collect();
+        let mut notes: Vec<String> = notes::held(topic, &others, start).into_iter().collect();
+        notes.extend(notes::without_values(clock, topic));
+        let end = clock.times.last().copied().unwrap_or_default();
+        for (held, name) in held.iter().zip(others) {
+            notes.extend(notes::missing(held, end, name));
+        }
+        notes
+    }
+}
+
+/// Rows for each message at these `times`: more than one where messages are far apart and a value that is
+/// `held` would come later than by [`LATE`] without them.
+fn rows_per_message(times: &[i64], held: &[Series]) -> i64 {
+    let Some(usual) = interval(times) else { return 1 };
+    if !held.iter().any(|held| comes_late(held, times)) {
+        return 1;
+    }
+    let is_enough = |parts: &i64| (parts * LATE) as f64 >= usual;
+    (1..MOST_ROWS).find(is_enough).unwrap_or(MOST_ROWS)
+}
+
+/// Whether a new value of a topic comes more than [`LATE`] before the first of `times` that has it.
+fn comes_late(held: &Series, times: &[i64]) -> bool {
+    let is_new = |index: usize| {
+        held.columns.iter().any(|column| match column.values.get(index - 1..=index) {
+            Some([before, value]) => (value - before).abs() > 0.0,
+            _ => false,
+        })
     };
-    rows.map(value).collect()
+    held.times.iter().enumerate().skip(1).any(|(index, sent)| {
+        let row = times.partition_point(|row| row < sent);
+        row > 0 && times.get(row).is_some_and(|row| row - sent > LATE) && is_new(index)
+    })
+}
+
+/// The messages, and times between those that follow one another, up to so many `parts` of each interval.
+fn rows(clock: &Series, parts: i64) -> Vec<Row> {
+    let usual = interval(&clock.times).unwrap_or_default();
+    let mut rows = Vec::new();
+    for (message, (&time, &place)) in clock.times.iter().zip(&clock.places).enumerate() {
+        rows.push(Row { time, place, message, is_own: true });
+        let Some(next) = clock.times.get(message + 1) else { break };
+        let step = next.saturating_sub(time);
+        let parts = if step as f64 <= LONGEST * usual { parts } else { 1 };
+        for part in 1..parts {
+            let time = time.saturating_add(step / parts * part);
+            rows.push(Row { time, place: u32::MAX, message, is_own: false });
+        }
+    }
+    rows
+}
+
+/// The `values` of the messages at their rows, and NaN between them: what is missing there is filled
+/// where it is an output.
+fn own(values: &[f64], rows: &[Row]) -> Vec<f64> {
+    let mut own = labels(values, rows);
+    for (value, _) in own.iter_mut().zip(rows).filter(|(_, row)| !row.is_own) {
+        *value = f64::NAN;
+    }
+    own
+}
+
+/// The `values` of the messages at the rows, each held up to the next.
+fn labels(values: &[f64], rows: &[Row]) -> Vec<f64> {
+    rows.iter().filter_map(|row| values.get(row.message).copied()).collect()
+}
+
+/// The latest of the `values` of a series at each of `rows`, by their times and places in the file, which
+/// say what came first at one time, as where a clock is coarse; NaN before the first.
+fn hold(series: &Series, values: &[f64], rows: &[Row]) -> Vec<f64> {
+    let sent = series.times.iter().zip(&series.places);
+    let mut messages = sent.zip(values).peekable();
+    let mut latest = f64::NAN;
+    let mut held = Vec::with_capacity(rows.len());
+    for row in rows {
+        let is_before =
+            |((time, place), _): &((&i64, &u32), &f64)| (**time, **place) <= (row.time, row.place);
+        while let Some((_, value)) = messages.next_if(is_before) {
+            latest = if value.is_nan() { latest } else { *value };
+        }
+        held.push(latest);
+    }
+    held
 }
 
 impl Aligned {
@@ -196,12 +222,20 @@ impl Aligned {
         for (header, values) in later.columns {
             self.columns.entry(header).or_default().extend(values);
         }
-        let new = later.notes.into_iter().filter(|note| !self.notes.contains(note));
-        self.notes.extend(new.collect::<Vec<_>>());
+        for note in later.notes {
+            if !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
+        }
     }
 
     pub(super) fn rows(&self) -> usize {
         self.times.len()
+    }
+
+    /// The values of a header.
+    pub(super) fn values(&self, header: usize) -> &[f64] {
+        self.columns.get(&header).map_or(&[], Vec::as_slice)
     }
 
     /// The column of a header, handed over.
@@ -211,8 +245,8 @@ impl Aligned {
 
     /// Seconds from `zero` on, by the clock that the messages were collected by.
     pub(super) fn times(&self, wanted: Clock, clock: Clock, zero: i64) -> Column {
-        let seconds = |time: &i64| (time - zero) as f64 / 1e9;
-        Column::of(self.times.iter().filter(|_| wanted == clock).map(seconds))
+        let times = self.times.iter().filter(|_| wanted == clock);
+        Column::of(times.map(|time| time.saturating_sub(zero) as f64 / 1e9))
     }
 }
 
@@ -220,12 +254,30 @@ impl Aligned {
 mod tests {
     use super::*;
 
+    fn series(times: &[i64], places: &[u32]) -> Series {
+        let mut series = Series::of(0);
+        (series.times, series.places) = (times.to_vec(), places.to_vec());
+        series
+    }
+
     #[test]
     fn a_value_is_held_from_its_message_on() {
-        let messages = [((10, 0), 1.0), ((20, 3), 2.0), ((20, 5), 3.0), ((30, 6), f64::NAN)];
-        let rows = [(5, 1), (10, 2), (19, 2), (20, 4), (20, 7), (40, 8)];
-        let held = hold(messages.into_iter(), rows.into_iter());
+        let messages = series(&[10, 20, 20, 30], &[0, 3, 5, 6]);
+        let clock = series(&[5, 10, 19, 20, 20, 40], &[1, 2, 2, 4, 7, 8]);
+        let held = hold(&messages, &[1.0, 2.0, 3.0, f64::NAN], &rows(&clock, 1));
         assert!(held[0].is_nan());
         assert_eq!(held[1..], [1.0, 1.0, 2.0, 3.0, 3.0]);
+    }
+
+    #[test]
+    fn rows_between_messages_hold_no_number_of_theirs() {
+        let clock = series(&[0, 40, 80, 400, 440], &[0, 1, 2, 3, 4]);
+        let rows = rows(&clock, 2);
+        let times: Vec<i64> = rows.iter().map(|row| row.time).collect();
+        assert_eq!(times, [0, 20, 40, 60, 80, 400, 420, 440], "none in the pause");
+        let values = [1.0, 2.0, 3.0, 4.0, 5.0];
+        assert_eq!(labels(&values, &rows), [1.0, 1.0, 2.0, 2.0, 3.0, 4.0, 4.0, 5.0]);
+        let numbers = own(&values, &rows);
+        assert!(rows.iter().zip(numbers).all(|(row, number)| row.is_own != number.is_nan()));
     }
 }

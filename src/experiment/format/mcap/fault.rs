@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use mcap::McapError;
+
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::TooLarge;
 
@@ -14,19 +16,12 @@ pub(super) enum Fault {
     TooLarge(TooLarge),
 }
 
+/// What to do about a file that is damaged.
+const RECOVER: &str = "`mcap recover FILE` saves what is whole";
+
 impl Fault {
     pub(super) fn new(reason: String, remedy: &'static str) -> Self {
         Self::Damaged { reason, remedy }
-    }
-
-    /// This fault, and what may be the reason for it.
-    pub(super) fn also(self, more: Option<&str>) -> Self {
-        match (self, more) {
-            (Self::Damaged { reason, remedy }, Some(more)) => {
-                Self::Damaged { reason: format!("{reason}: {more}"), remedy }
-            }
-            (fault, _) => fault,
-        }
     }
 
     pub(super) fn refuse(self, path: &Path) -> ReadError {
@@ -42,5 +37,17 @@ impl Fault {
 impl From<TooLarge> for Fault {
     fn from(error: TooLarge) -> Self {
         Self::TooLarge(error)
+    }
+}
+
+impl From<McapError> for Fault {
+    fn from(error: McapError) -> Self {
+        let remedy = match error {
+            McapError::UnsupportedCompression(_) => {
+                "write it with the compression zstd, lz4 or none: `mcap compress FILE`"
+            }
+            _ => RECOVER,
+        };
+        Self::new(error.to_string(), remedy)
     }
 }

@@ -1,29 +1,76 @@
-//! Messages of ROS 2: decoded by their definition, and their numbers by name.
+//! Messages of ROS 2, decoded by the definition that the recording holds.
+//!
+//! Not by the decoder of the crate `re_ros_msg` 0.36, which follows definitions that contain
+//! themselves until the stack ends, and reserves memory for as many elements as a message claims to have.
 
-use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::HashMap;
 
-use re_cdr::{BigEndian, LittleEndian};
+use re_cdr::{BigEndian, CdrEndian, CdrReader, Error, LittleEndian};
 use re_ros_msg::MessageSchema;
-use re_ros_msg::deserialize::Value;
-use re_ros_msg::deserialize::primitive_array::PrimitiveArray;
-use re_ros_msg::message_spec::MessageSpecification;
-
-use super::decode::{Decoding, Types, key};
-
-type Fields = BTreeMap<String, Value>;
+use re_ros_msg::message_spec::{
+    ArraySize, BuiltInType, ComplexType, MessageSpecification, Type, message_package,
+};
 
 /// Arrays longer than this are images and the like, not joints.
 const MOST_ELEMENTS: usize = 64;
 
-/// Letters of a field's name: messages repeat it with each value.
+/// Letters of a field's name, at most: each column below it bears them.
 const LONGEST_NAME: usize = 255;
+
+/// Types may lie in types, but not without end.
+const DEEPEST: usize = 32;
+
+/// Fields of a message and of those in it, at most: far more than a machine has joints, and no more than
+/// memory allows.
+const MOST_FIELDS: usize = 1 << 22;
+
+/// Fields without a byte that a message may have.
+const MOST_EMPTY: usize = 1 << 16;
+
+/// A value in a message.
+#[derive(Debug, PartialEq)]
+pub(super) enum Value<'a> {
+    Number(f64),
+    Integer(i64),
+    Text(&'a str),
+    /// The elements of an array; none of one that is too long for joints.
+    List(Vec<Self>),
+    Message(Fields<'a>),
+}
+
+/// The fields of a message by their names, in the order of its definition.
+pub(super) type Fields<'a> = Vec<(&'a str, Value<'a>)>;
+
+impl<'a> Value<'a> {
+    /// The field of this name, where this is a message that has it.
+    pub(super) fn field(&self, name: &str) -> Option<&Self> {
+        let Self::Message(fields) = self else { return None };
+        fields.iter().find_map(|(field, value)| (*field == name).then_some(value))
+    }
+
+    /// The time in a message's header, in nanoseconds.
+    pub(super) fn stamp(&self) -> Option<i64> {
+        let stamp = self.field("header")?.field("stamp")?;
+        match (stamp.field("sec")?, stamp.field("nanosec")?) {
+            (Self::Integer(seconds), Self::Integer(rest)) => {
+                seconds.checked_mul(1_000_000_000)?.checked_add(*rest)
+            }
+            _ => None,
+        }
+    }
+
+    /// The text of one.
+    pub(super) fn text(&self) -> Option<&'a str> {
+        if let Self::Text(text) = self { Some(text) } else { None }
+    }
+}
 
 /// Decodes the messages of one type.
 #[derive(Debug)]
 pub(super) struct Decoder {
     message: MessageSpecification,
-    types: Types,
+    /// The types that a message is made of, by `package/Name`.
+    types: HashMap<String, MessageSpecification>,
 }
 
 impl Decoder {
@@ -32,265 +79,177 @@ impl Decoder {
         let text = std::str::from_utf8(definition).map_err(|error| error.to_string())?;
         let schema = MessageSchema::parse(name, text).map_err(|error| format!("{error:#}"))?;
         let specs = std::iter::once(&schema.spec).chain(&schema.dependencies);
-        if let Some(field) =
-            specs.flat_map(|spec| &spec.fields).find(|field| field.name.len() > LONGEST_NAME)
-        {
+        let mut fields = specs.flat_map(|spec| &spec.fields);
+        if let Some(field) = fields.find(|field| field.name.len() > LONGEST_NAME) {
             let start: String = field.name.chars().take(20).collect();
             return Err(format!("the name of the field `{start}…` is too long"));
         }
         let types = schema.dependencies.into_iter().map(|part| (key(&part.name), part)).collect();
-        Ok(Self { message: schema.spec, types: Types(types) })
+        Ok(Self { message: schema.spec, types })
     }
 
     /// The fields of a message. Its first bytes give the order of the others.
-    pub(super) fn decode(&self, data: &[u8]) -> Result<Value, String> {
+    pub(super) fn decode<'a>(&'a self, data: &'a [u8]) -> Result<Value<'a>, Error> {
         let Some(([_, kind, _, _], content)) = data.split_first_chunk::<4>() else {
-            return Err("it is too short".to_owned());
+            return Err(Error::UnexpectedEof);
         };
         match kind {
-            0 => Decoding::<BigEndian>::new(content, &self.types, MOST_ELEMENTS)
-                .message(&self.message, 0),
-            1 => Decoding::<LittleEndian>::new(content, &self.types, MOST_ELEMENTS)
-                .message(&self.message, 0),
-            other => Err(format!("its encoding {other} is not plain CDR")),
+            0 => Decoding::<BigEndian>::new(content, self).message(&self.message, 0),
+            1 => Decoding::<LittleEndian>::new(content, self).message(&self.message, 0),
+            other => Err(refused(format!("its encoding {other} is not plain CDR"))),
         }
     }
-}
 
-/// A number in the messages of a topic.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Field {
-    /// How it is called: `position[boom]`.
-    pub(super) text: String,
-    steps: Vec<Step>,
-}
-
-/// A step on the way to a number.
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum Step {
-    Field(String),
-    Element(String),
-}
-
-impl Field {
-    fn new() -> Self {
-        Self { text: String::new(), steps: Vec::new() }
-    }
-
-    fn field(&self, name: &str) -> Self {
-        let mut next = self.clone();
-        if !next.text.is_empty() {
-            next.text.push('.');
-        }
-        next.text += name;
-        next.steps.push(Step::Field(name.to_owned()));
-        next
-    }
-
-    fn element(&self, key: &str) -> Self {
-        let mut next = self.clone();
-        next.text.extend(["[", key, "]"]);
-        next.steps.push(Step::Element(key.to_owned()));
-        next
-    }
-
-    /// The number in a message, where it has one.
-    pub(super) fn number(&self, message: &Value) -> Option<f64> {
-        find(message, &mut Vec::new(), &self.steps)
-    }
-}
-
-/// The number at the end of `steps`, in a message that lies in those of `outer`.
-fn find<'m>(value: &'m Value, outer: &mut Vec<&'m Fields>, steps: &[Step]) -> Option<f64> {
-    let Some((Step::Field(name), rest)) = steps.split_first() else {
-        return scalar(value).filter(|_| steps.is_empty());
-    };
-    let Value::Message(fields) = value else { return None };
-    let field = fields.get(name)?;
-    outer.push(fields);
-    let Some((Step::Element(key), rest)) = rest.split_first() else {
-        return find(field, outer, rest);
-    };
-    let length = length(field)?;
-    let index = match keys(outer, field, length) {
-        Some(names) => names.iter().position(|name| name == key),
-        None => key.parse().ok().filter(|index| *index < length),
-    };
-    let index = index?;
-    match field {
-        Value::Array(values) | Value::Sequence(values) => find(values.get(index)?, outer, rest),
-        Value::PrimitiveArray(values) | Value::PrimitiveSeq(values) => {
-            primitive(values, index).filter(|_| rest.is_empty())
-        }
-        _ => None,
-    }
-}
-
-/// All numbers of a message.
-pub(super) fn fields(message: &Value) -> Vec<Field> {
-    let mut found = Vec::new();
-    collect(message, &mut Vec::new(), &Field::new(), &mut found);
-    found
-}
-
-fn collect<'m>(value: &'m Value, outer: &mut Vec<&'m Fields>, at: &Field, found: &mut Vec<Field>) {
-    let Value::Message(fields) = value else {
-        found.extend(scalar(value).map(|_| at.clone()));
-        return;
-    };
-    outer.push(fields);
-    for (name, field) in fields {
-        let at = at.field(name);
-        let elements = length(field).map(|length| length.min(MOST_ELEMENTS + 1));
-        let Some(length) = elements else {
-            collect(field, outer, &at, found);
-            continue;
+    fn resolve(
+        &self,
+        scope: &MessageSpecification,
+        wanted: &ComplexType,
+    ) -> Option<&MessageSpecification> {
+        let (package, name) = match wanted {
+            ComplexType::Absolute { package, name } => (package.as_str(), name),
+            ComplexType::Relative { name } => {
+                (message_package(&scope.name).unwrap_or_default(), name)
+            }
         };
-        let names = keys(outer, field, length).map(|names| names.to_vec());
-        for index in 0..length.min(if length > MOST_ELEMENTS { 0 } else { length }) {
-            let name = names.as_ref().and_then(|names| names.get(index).cloned());
-            let at = at.element(&name.unwrap_or_else(|| index.to_string()));
-            match field {
-                Value::Array(values) | Value::Sequence(values) => {
-                    if let Some(value) = values.get(index) {
-                        collect(value, outer, &at, found);
-                    }
-                }
-                Value::PrimitiveArray(values) | Value::PrimitiveSeq(values) => {
-                    found.extend(primitive(values, index).map(|_| at.clone()));
-                }
-                _ => {}
+        self.types.get(&key(&format!("{package}/{name}")))
+    }
+}
+
+/// `std_msgs/msg/Header` is `std_msgs/Header` too.
+fn key(name: &str) -> String {
+    name.replacen("/msg/", "/", 1)
+}
+
+fn refused(reason: String) -> Error {
+    Error::Custom(reason)
+}
+
+/// A message that is being read.
+struct Decoding<'a, E> {
+    reader: CdrReader<'a, E>,
+    decoder: &'a Decoder,
+    /// Fields that may still be looked at: as many as there are bytes, and some that have none.
+    fields: usize,
+}
+
+impl<'a, E: CdrEndian> Decoding<'a, E> {
+    fn new(data: &'a [u8], decoder: &'a Decoder) -> Self {
+        let fields = data.len().saturating_add(MOST_EMPTY).min(MOST_FIELDS);
+        Self { reader: CdrReader::new(data), decoder, fields }
+    }
+
+    /// The fields of a message, which lies in so many others.
+    fn message(
+        &mut self,
+        spec: &'a MessageSpecification,
+        depth: usize,
+    ) -> Result<Value<'a>, Error> {
+        if depth > DEEPEST {
+            return Err(refused(format!("`{}` lies too deep in itself or other types", spec.name)));
+        }
+        let left = self.fields.checked_sub(1 + spec.fields.len());
+        self.fields = left.ok_or_else(|| refused("it has too many fields".to_owned()))?;
+        let mut fields = Fields::with_capacity(spec.fields.len());
+        for field in &spec.fields {
+            let value = match &field.ty {
+                Type::Array { ty, size } => self.array(spec, ty, size, depth)?,
+                ty => self.value(spec, ty, depth)?,
+            };
+            fields.push((field.name.as_str(), value));
+        }
+        Ok(Value::Message(fields))
+    }
+
+    fn value(
+        &mut self,
+        scope: &'a MessageSpecification,
+        ty: &'a Type,
+        depth: usize,
+    ) -> Result<Value<'a>, Error> {
+        let wanted = match ty {
+            // It takes a byte at least.
+            Type::BuiltIn(kind) => return self.scalar(kind),
+            Type::Complex(wanted) => wanted,
+            Type::Array { .. } => return Err(refused("it has an array of arrays".to_owned())),
+        };
+        let spec = self.decoder.resolve(scope, wanted);
+        let spec = spec.ok_or_else(|| refused(format!("its type {wanted:?} is not defined")))?;
+        // An enumeration has constants alone, and is sent as one of them.
+        let kind = spec.underlying_type_if_enum_like();
+        match kind.map_err(|error| refused(error.to_string()))? {
+            Some(kind) => self.scalar(kind),
+            None => self.message(spec, depth + 1),
+        }
+    }
+
+    /// The elements of an array, where these are few enough to be joints.
+    fn array(
+        &mut self,
+        scope: &'a MessageSpecification,
+        ty: &'a Type,
+        size: &ArraySize,
+        depth: usize,
+    ) -> Result<Value<'a>, Error> {
+        let count = match size {
+            ArraySize::Fixed(count) => *count,
+            ArraySize::Bounded(_) | ArraySize::Unbounded => self.reader.read_sequence_length()?,
+        };
+        if count > MOST_ELEMENTS && is_of_bytes(ty) {
+            self.reader.read_bytes(count)?;
+            return Ok(Value::List(Vec::new()));
+        }
+        let mut elements = Vec::new();
+        for _ in 0..count {
+            let place = self.reader.position();
+            let element = self.value(scope, ty, depth)?;
+            if count <= MOST_ELEMENTS {
+                elements.push(element);
+            } else if self.reader.position() == place {
+                // Elements without a byte are all alike, and may be any number.
+                break;
             }
         }
+        Ok(Value::List(elements))
     }
-    outer.pop();
-}
 
-/// Elements of an array.
-fn length(value: &Value) -> Option<usize> {
-    match value {
-        Value::Array(values) | Value::Sequence(values) => Some(values.len()),
-        Value::PrimitiveArray(values) | Value::PrimitiveSeq(values) => Some(match values {
-            PrimitiveArray::Bool(values) => values.len(),
-            PrimitiveArray::I8(values) => values.len(),
-            PrimitiveArray::U8(values) => values.len(),
-            PrimitiveArray::I16(values) => values.len(),
-            PrimitiveArray::U16(values) => values.len(),
-            PrimitiveArray::I32(values) => values.len(),
-            PrimitiveArray::U32(values) => values.len(),
-            PrimitiveArray::I64(values) => values.len(),
-            PrimitiveArray::U64(values) => values.len(),
-            PrimitiveArray::F32(values) => values.len(),
-            PrimitiveArray::F64(values) => values.len(),
-            PrimitiveArray::String(values) => values.len(),
-        }),
-        _ => None,
-    }
-}
-
-/// The names of the elements of `array`, as the messages in which it lies give them, the last of which
-/// has it; of numbers those further out may, as the joints of a trajectory; or as its elements do.
-fn keys<'m>(outer: &[&'m Fields], array: &'m Value, length: usize) -> Option<Cow<'m, [String]>> {
-    let (own, further) = outer.split_last()?;
-    let of_itself = || names(own, length).map(|names| Cow::Borrowed(names.as_slice()));
-    match array {
-        Value::Array(values) | Value::Sequence(values) => {
-            of_itself().or_else(|| own_names(values).map(Cow::Owned))
-        }
-        _ => of_itself().or_else(|| {
-            let names = further.iter().rev().find_map(|fields| names(fields, length));
-            names.map(|names| Cow::Borrowed(names.as_slice()))
-        }),
-    }
-}
-
-/// The names in a message of the elements of its arrays with `length` of them.
-fn names(fields: &Fields, length: usize) -> Option<&Vec<String>> {
-    const NAMES: [&str; 5] = ["name", "joint", "joints", "labels", "ids"];
-    fields.iter().find_map(|(name, value)| match value {
-        Value::PrimitiveSeq(PrimitiveArray::String(names))
-        | Value::PrimitiveArray(PrimitiveArray::String(names))
-            if names.len() == length
-                && (NAMES.contains(&name.as_str()) || name.ends_with("names")) =>
-        {
-            Some(names)
-        }
-        _ => None,
-    })
-}
-
-/// The names that messages bear themselves, where each has one of its own.
-fn own_names(messages: &[Value]) -> Option<Vec<String>> {
-    const NAMES: [&str; 5] = ["name", "joint", "label", "id", "child_frame_id"];
-    let name = |message: &Value| {
-        let Value::Message(fields) = message else { return None };
-        fields.iter().find_map(|(field, value)| match value {
-            Value::String(name) if NAMES.contains(&field.as_str()) || field.ends_with("_name") => {
-                Some(name.clone()).filter(|name| !name.is_empty())
+    fn scalar(&mut self, kind: &BuiltInType) -> Result<Value<'a>, Error> {
+        let reader = &mut self.reader;
+        Ok(match kind {
+            BuiltInType::Bool => Value::Integer(reader.read_bool()?.into()),
+            BuiltInType::Byte | BuiltInType::Char | BuiltInType::UInt8 => {
+                Value::Integer(reader.read_u8()?.into())
             }
-            _ => None,
+            BuiltInType::Int8 => Value::Integer(reader.read_i8()?.into()),
+            BuiltInType::Int16 => Value::Integer(reader.read_i16()?.into()),
+            BuiltInType::UInt16 => Value::Integer(reader.read_u16()?.into()),
+            BuiltInType::Int32 => Value::Integer(reader.read_i32()?.into()),
+            BuiltInType::UInt32 => Value::Integer(reader.read_u32()?.into()),
+            BuiltInType::Int64 => Value::Integer(reader.read_i64()?),
+            BuiltInType::UInt64 => Value::Number(reader.read_u64()? as f64),
+            BuiltInType::Float32 => Value::Number(reader.read_f32()?.into()),
+            BuiltInType::Float64 => Value::Number(reader.read_f64()?),
+            BuiltInType::String(_) => Value::Text(reader.read_str()?),
+            // They lie differently.
+            BuiltInType::WString(_) => {
+                return Err(refused("it has a text of wide letters (wstring)".to_owned()));
+            }
         })
-    };
-    let names: Vec<String> = messages.iter().map(name).collect::<Option<_>>()?;
-    let different: BTreeSet<&String> = names.iter().collect();
-    (different.len() == names.len()).then_some(names)
-}
-
-fn scalar(value: &Value) -> Option<f64> {
-    Some(match value {
-        Value::Bool(value) => f64::from(u8::from(*value)),
-        Value::I8(value) => f64::from(*value),
-        Value::U8(value) => f64::from(*value),
-        Value::I16(value) => f64::from(*value),
-        Value::U16(value) => f64::from(*value),
-        Value::I32(value) => f64::from(*value),
-        Value::U32(value) => f64::from(*value),
-        Value::I64(value) => *value as f64,
-        Value::U64(value) => *value as f64,
-        Value::F32(value) => f64::from(*value),
-        Value::F64(value) => *value,
-        _ => return None,
-    })
-}
-
-fn primitive(values: &PrimitiveArray, index: usize) -> Option<f64> {
-    match values {
-        PrimitiveArray::Bool(values) => values.get(index).map(|value| f64::from(u8::from(*value))),
-        PrimitiveArray::I8(values) => values.get(index).copied().map(f64::from),
-        PrimitiveArray::U8(values) => values.get(index).copied().map(f64::from),
-        PrimitiveArray::I16(values) => values.get(index).copied().map(f64::from),
-        PrimitiveArray::U16(values) => values.get(index).copied().map(f64::from),
-        PrimitiveArray::I32(values) => values.get(index).copied().map(f64::from),
-        PrimitiveArray::U32(values) => values.get(index).copied().map(f64::from),
-        PrimitiveArray::I64(values) => values.get(index).map(|value| *value as f64),
-        PrimitiveArray::U64(values) => values.get(index).map(|value| *value as f64),
-        PrimitiveArray::F32(values) => values.get(index).copied().map(f64::from),
-        PrimitiveArray::F64(values) => values.get(index).copied(),
-        PrimitiveArray::String(_) => None,
     }
 }
 
-/// The time in a message's header, in nanoseconds.
-pub(super) fn stamp(message: &Value) -> Option<i64> {
-    let field = |value: &Value, name: &str| match value {
-        Value::Message(fields) => fields.get(name).cloned(),
-        _ => None,
-    };
-    let stamp = field(&field(message, "header")?, "stamp")?;
-    match (field(&stamp, "sec")?, field(&stamp, "nanosec")?) {
-        (Value::I32(seconds), Value::U32(rest)) => {
-            Some(i64::from(seconds) * 1_000_000_000 + i64::from(rest))
-        }
-        _ => None,
-    }
+/// Whether the elements of an array of this type are bytes, as those of images are.
+fn is_of_bytes(ty: &Type) -> bool {
+    use BuiltInType::{Byte, Char, Int8, UInt8};
+    matches!(ty, Type::BuiltIn(Byte | Char | Int8 | UInt8))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::fields::each_number;
     use super::*;
 
-    /// Two joints of which each has a list of values.
-    const DEFINITION: &str = "string[] joint_names\nPart[] parts\nfloat64[2] pair\nbool on\n\
+    /// Two joints of which each has a list of values, behind an image.
+    const DEFINITION: &str = "string[] joint_names\nuint16[] image\nPart[] parts\nfloat64[2] pair\nbool on\n\
         ================================================================================\n\
         MSG: demo/Part\nstring[] names\nfloat32[] values\n";
 
@@ -305,6 +264,8 @@ mod tests {
     fn message() -> Vec<u8> {
         let mut bytes = 2_u32.to_le_bytes().to_vec();
         bytes.extend([text("boom"), text("arm")].concat());
+        bytes.extend(100_u32.to_le_bytes());
+        bytes.extend([9; 200]);
         bytes.extend(2_u32.to_le_bytes());
         for value in [1.5_f32, 2.5] {
             bytes.extend(1_u32.to_le_bytes());
@@ -319,52 +280,27 @@ mod tests {
     }
 
     #[test]
-    fn every_number_has_a_name_by_which_it_is_found() {
+    fn every_number_has_a_name_and_images_have_none() {
         let decoder = Decoder::new("demo/msg/Twins", DEFINITION.as_bytes()).unwrap();
-        let value = decoder.decode(&message()).unwrap();
-        let found: Vec<_> = fields(&value)
-            .into_iter()
-            .map(|field| (field.number(&value).unwrap(), field.text))
-            .collect();
+        let bytes = message();
+        let mut found = Vec::new();
+        each_number::<()>(
+            &decoder.decode(&bytes).unwrap(),
+            |_| true,
+            |name, value| {
+                found.push((value, name.to_owned()));
+                Ok(())
+            },
+        )
+        .unwrap();
         let expected = [
-            (1.0, "on"),
-            (7.0, "pair[boom]"),
-            (8.0, "pair[arm]"),
             (1.5, "parts[boom].values[effort]"),
             (2.5, "parts[arm].values[effort]"),
+            (7.0, "pair[boom]"),
+            (8.0, "pair[arm]"),
+            (1.0, "on"),
         ];
         assert_eq!(found, expected.map(|(value, text)| (value, text.to_owned())));
-    }
-
-    #[test]
-    fn names_further_out_and_within_elements_name_them() {
-        let text = |text: &str| Value::String(text.to_owned());
-        let message = |fields: &[(&str, Value)]| {
-            let fields = fields.iter().map(|(name, value)| ((*name).to_owned(), value.clone()));
-            Value::Message(fields.collect())
-        };
-        let numbers = |numbers: &[f64]| Value::PrimitiveSeq(PrimitiveArray::F64(numbers.to_vec()));
-        let joints = ["boom", "arm"].map(str::to_owned).to_vec();
-        let trajectory = |joints: &[String]| {
-            message(&[
-                ("joint_names", Value::PrimitiveSeq(PrimitiveArray::String(joints.to_vec()))),
-                ("points", Value::Sequence(vec![message(&[("velocities", numbers(&[1.0, 2.0]))])])),
-            ])
-        };
-        let found = fields(&trajectory(&joints));
-        let texts: Vec<&str> = found.iter().map(|field| field.text.as_str()).collect();
-        assert_eq!(texts, ["points[0].velocities[boom]", "points[0].velocities[arm]"]);
-        let turned: Vec<String> = joints.iter().rev().cloned().collect();
-        assert_eq!(found[0].number(&trajectory(&joints)), Some(1.0));
-        assert_eq!(found[0].number(&trajectory(&turned)), Some(2.0));
-        let axis =
-            |name: &str, angle| message(&[("name", text(name)), ("angle", Value::F64(angle))]);
-        let axes = |axes: Vec<Value>| message(&[("axes", Value::Sequence(axes))]);
-        let found = fields(&axes(vec![axis("boom", 1.0), axis("arm", 2.0)]));
-        assert_eq!(found[0].text, "axes[boom].angle");
-        assert_eq!(found[0].number(&axes(vec![axis("arm", 2.0), axis("boom", 3.0)])), Some(3.0));
-        let unnamed = fields(&axes(vec![axis("", 1.0), axis("", 2.0)]));
-        assert_eq!(unnamed[1].text, "axes[1].angle");
     }
 
     #[test]
@@ -375,5 +311,29 @@ mod tests {
             assert!(decoder.decode(&whole[..length]).is_err(), "{length}");
         }
         assert!(Decoder::new("demo/msg/Twins", b"float64").is_err());
+    }
+
+    #[test]
+    fn a_message_without_bytes_has_no_more_fields_than_memory_allows() {
+        const LINE: &str = "\n====\n";
+        let fields = (0..100).map(|k| format!("uint8[0] x{k}\n")).collect::<Vec<_>>().concat();
+        let parts = |count: usize| {
+            let text =
+                format!("A[{count}] a{LINE}MSG: demo/A\nB[{count}] b{LINE}MSG: demo/B\n{fields}");
+            Decoder::new("demo/msg/Many", text.as_bytes()).unwrap()
+        };
+        assert!(parts(2).decode(&[0, 1, 0, 0]).is_ok());
+        let refused = parts(64).decode(&[0, 1, 0, 0]).unwrap_err();
+        assert!(refused.to_string().contains("too many fields"), "{refused}");
+    }
+
+    #[test]
+    fn the_stamp_of_a_message_is_in_nanoseconds() {
+        let stamp =
+            vec![("sec", Value::Integer(1_700_000_000)), ("nanosec", Value::Integer(123_456_789))];
+        let header = Value::Message(vec![("stamp", Value::Message(stamp))]);
+        let message = Value::Message(vec![("header", header)]);
+        assert_eq!(message.stamp(), Some(1_700_000_000_123_456_789));
+        assert_eq!(Value::Message(Vec::new()).stamp(), None);
     }
 }

@@ -1,0 +1,121 @@
+//! What the reader of a recording should know of its topics.
+
+use std::ops::RangeInclusive;
+
+use super::series::Series;
+use crate::numerics::median;
+
+/// A line on topics whose messages are held at those of `topic`, the first rows of which are left out.
+pub(super) fn held(topic: &str, others: &[&str], left_out: usize) -> Option<String> {
+    if others.is_empty() {
+        return None;
+    }
+    let early = match left_out {
+        0 => String::new(),
+        1 => ", of which the first comes too early and is left out".to_owned(),
+        _ => format!(", of which the first {left_out} come too early and are left out"),
+    };
+    let are = if others.len() > 1 { "are held from their" } else { "is held from its" };
+    let others = others.join("`, `");
+    Some(format!("`{others}` {are} latest message at each message of `{topic}`{early}"))
+}
+
+/// A line on messages of the topic of the rows that have none of its values.
+pub(super) fn without_values(clock: &Series, name: &str) -> Option<String> {
+    let (empty, all) = (clock.empty, clock.empty + clock.times.len());
+    (empty > 0).then(|| {
+        format!("{empty} of {all} messages of `{name}` have none of its values and are left out")
+    })
+}
+
+/// A line on what is missing from a topic that is held, up to the `end` of the record: messages without a
+/// value, and pauses of one that else sends at one rate.
+pub(super) fn missing(series: &Series, end: i64, name: &str) -> Option<String> {
+    let mut said = Vec::new();
+    match pauses(&series.times, end) {
+        (0, _) => {}
+        (1, longest) => said.push(format!("pauses once, for up to {longest:.2} s")),
+        (times, longest) => said.push(format!("pauses {times} times, for up to {longest:.2} s")),
+    }
+    match series.lacking() {
+        0 => {}
+        1 => said.push("has 1 message without a value".to_owned()),
+        count => said.push(format!("has {count} messages without a value")),
+    }
+    let held = "the last value is held, so that a step in between is seen late or not at all";
+    (!said.is_empty()).then(|| format!("`{name}` {}: {held}", said.join(" and ")))
+}
+
+/// How often a topic with messages at these `times` pauses up to the `end` of the record, and the longest
+/// pause in seconds, where it sends at one rate: what is sent at changes alone does not.
+fn pauses(times: &[i64], end: i64) -> (usize, f64) {
+    /// Part of the intervals that are as long as usual, and how long they may be.
+    const ALIKE: f64 = 0.9;
+    const USUAL: RangeInclusive<f64> = 0.3..=2.0;
+    /// A pause is longer than this in usual intervals and in seconds, as rows that are lost from a table
+    /// and not filled are.
+    const LONG: f64 = 5.0;
+    const LONG_S: f64 = 0.05;
+    let seconds = |from: i64, to: i64| to.saturating_sub(from) as f64 * 1e-9;
+    let mut intervals: Vec<f64> = times.windows(2).map(|pair| seconds(pair[0], pair[1])).collect();
+    let usual = median(&intervals).unwrap_or_default();
+    let alike = intervals.iter().filter(|interval| USUAL.contains(&(*interval / usual))).count();
+    if usual <= 0.0 || (alike as f64) < ALIKE * intervals.len() as f64 {
+        return (0, 0.0);
+    }
+    intervals.extend(times.last().map(|last| seconds(*last, end)));
+    intervals.retain(|interval| *interval > (LONG * usual).max(LONG_S));
+    (intervals.len(), intervals.into_iter().fold(0.0, f64::max))
+}
+
+/// A line on topics whose messages are timed by clocks that differ, as those of two computers do: by the
+/// time from the stamp of a message to its recording, at least.
+pub(super) fn clocks_differ<'a>(
+    series: &[Series],
+    name: impl Fn(usize) -> &'a str,
+    clock: &str,
+) -> Option<String> {
+    /// Nanoseconds that messages may take to their recording.
+    const USUAL: i64 = 50_000_000;
+    let lags = || series.iter().filter_map(|series| Some((series.least_lag?, series.topic)));
+    let ((least, of_least), (most, of_most)) = lags().min().zip(lags().max())?;
+    let apart = most.saturating_sub(least);
+    (apart > USUAL).then(|| {
+        format!(
+            "the {clock} of `{}` is {:.3} s behind that of `{}`, by the time of recording: if these are \
+             the clocks of two computers, delays are off by that; `--time log_time` has one clock",
+            name(of_most),
+            apart as f64 * 1e-9,
+            name(of_least)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn note(seconds: impl Iterator<Item = f64>, end_s: f64, without: usize) -> Option<String> {
+        let nanoseconds = |seconds: f64| format!("{:.0}", seconds * 1e9).parse::<i64>().unwrap();
+        let times: Vec<i64> = seconds.map(nanoseconds).collect();
+        let mut series = Series::of(0);
+        (series.times, series.empty) = (times, without);
+        missing(&series, nanoseconds(end_s), "/valve")
+    }
+
+    #[test]
+    fn pauses_are_those_of_a_topic_that_sends_at_one_rate() {
+        let at = |k: i32| 0.01 * f64::from(k) + 0.002 * (1.3 * f64::from(k)).sin();
+        assert_eq!(note((0..1000).map(at), 10.0, 0), None);
+        let lost = (0..1000).filter(|k| !(300..365).contains(k)).map(at);
+        let said = note(lost, 25.0, 0).unwrap();
+        assert!(said.starts_with("`/valve` pauses 2 times, for up to 15.0"), "{said}");
+        let changes = (1..40).map(|k| 0.1 * f64::from(k).powi(3));
+        assert_eq!(note(changes, 9000.0, 0), None, "sent at changes");
+        let said = note((0..1000).map(at), 10.0, 65).unwrap();
+        assert!(said.starts_with("`/valve` has 65 messages without a value: the last"), "{said}");
+        assert_eq!(note((0..1000).map(at), 10.0, 500), None, "those of another node");
+        assert_eq!(note([].into_iter(), 1.0, 0), None);
+        assert_eq!(note([0.5].into_iter(), 1.0, 0), None);
+    }
+}
