@@ -1,6 +1,6 @@
 //! Which rows follow one another: in order, each once, and parted where the clock jumps.
 
-use super::fault::ClockFault;
+use super::fault::Fault;
 use super::period::Typical;
 use super::run::{JUMP, Run};
 use crate::numerics::median;
@@ -18,7 +18,7 @@ pub(super) fn is_even_once_sorted(times: &[f64]) -> bool {
 }
 
 /// Runs of rows between the places where time jumps back for good.
-pub(super) fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usize>>, ClockFault> {
+pub(super) fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usize>>, Fault> {
     let at = |row: usize| times.get(row).copied();
     let mut runs = vec![Vec::new()];
     for row in 0..times.len() {
@@ -29,7 +29,7 @@ pub(super) fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usi
             let returns = before.is_some_and(|before| later.clone().any(|time| time > before));
             let spike = row.checked_sub(2).and_then(at).zip(at(row)).is_some_and(|(a, b)| b > a);
             if returns || spike {
-                return Err(ClockFault::Garbage { row });
+                return Err(Fault::NotIncreasing { row });
             }
             runs.push(Vec::new());
         }
@@ -40,12 +40,17 @@ pub(super) fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usi
     Ok(runs)
 }
 
-/// What was found on the way.
-#[derive(Default)]
+/// How many rows of a kind were found on the way, and the first of them.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Found {
     pub(super) twice: Option<(usize, usize)>,
     pub(super) disordered: Option<(usize, usize)>,
+    /// During which the clock stood still before it jumped.
     pub(super) frozen: Option<(usize, usize)>,
+    /// At which the clock starts anew.
+    pub(super) restarts: Option<(usize, usize)>,
+    /// Between two gaps, and left out.
+    pub(super) alone: Option<(usize, usize)>,
 }
 
 impl Found {
@@ -127,7 +132,8 @@ impl Found {
     }
 }
 
-fn count(found: &mut Option<(usize, usize)>, row: usize) {
+/// Counts a row of a kind.
+pub(super) fn count(found: &mut Option<(usize, usize)>, row: usize) {
     let (many, first) = found.unwrap_or((0, row));
     *found = Some((many + 1, first.min(row)));
 }
@@ -145,7 +151,7 @@ pub(super) fn parted(rows: &[usize], times: &[f64], typical: &Typical, longest: 
                 run.rows.push(row);
                 run.places.push(place);
             }
-            _ => runs.push(Run { rows: vec![row], places: vec![0], restarts: false }),
+            _ => runs.push(Run { rows: vec![row], places: vec![0] }),
         }
     }
     runs

@@ -8,18 +8,16 @@ pub(super) const LOST_SHARE: f64 = 0.1;
 
 /// Rows that follow one another without a long gap.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::experiment) struct Run {
+pub(super) struct Run {
     /// Rows in the order of their time.
-    pub(in crate::experiment) rows: Vec<usize>,
+    pub(super) rows: Vec<usize>,
     /// Their places on an even grid; the first is 0.
-    pub(in crate::experiment) places: Vec<usize>,
-    /// Whether the clock starts anew here, and not behind a gap.
-    pub(in crate::experiment) restarts: bool,
+    pub(super) places: Vec<usize>,
 }
 
 impl Run {
     /// When its places begin, on a grid of `period`: the least-squares offset.
-    pub(in crate::experiment) fn start_s(&self, times: &[f64], period: f64) -> f64 {
+    pub(super) fn start_s(&self, times: &[f64], period: f64) -> f64 {
         let offsets = self.points(times).map(|(place, time)| time - place * period);
         offsets.sum::<f64>() / self.rows.len().max(1) as f64
     }

@@ -1,10 +1,224 @@
 //! The numbers of a log as joints: its cells, its times, and the trials of each joint.
 
-mod cells;
-mod continuous;
 mod joints;
-mod repeated;
+mod missing;
 mod times;
 mod unit_change;
 
-pub(super) use cells::Log;
+use std::borrow::Cow;
+use std::collections::HashSet;
+use std::ops::Range;
+
+use super::error::ReadError;
+use super::grid::Repair;
+use super::layout::{JointLayout, Layout};
+use super::memory::Budget;
+use super::table::{BadCell, Column, Head, Table, TrialRows};
+use crate::units::SamplePeriod;
+
+pub(super) use self::times::repeats;
+
+/// A table that was read, with what is needed to mend it and to speak of its cells.
+pub(super) struct Log<'a> {
+    pub(super) head: &'a Head,
+    pub(super) layout: &'a Layout,
+    /// The columns that were read, by their places among the headers.
+    numeric: &'a [usize],
+    /// A copy of its own where anything is mended in one that grows.
+    pub(super) table: Cow<'a, Table>,
+    budget: &'a Budget,
+    /// What may be done to it.
+    pub(super) options: Repair,
+    pub(super) times: Times,
+    pub(super) trials: Vec<TrialRows>,
+    /// The rows of each trial that count, where not all do.
+    pub(super) rows: Option<Vec<Vec<usize>>>,
+    /// The columns of outputs that wrapped.
+    pub(super) unwrapped: Vec<usize>,
+    /// What a reader of the log should know.
+    pub(super) notes: Vec<String>,
+}
+
+/// Times of the rows in seconds, or the period between rows that have none.
+#[derive(Debug)]
+pub(super) enum Times {
+    Stamps(Vec<f64>),
+    Rows(SamplePeriod),
+}
+
+/// The output of a joint among the columns.
+pub(super) struct Output {
+    pub(super) column: usize,
+    /// The column of the joint's input.
+    pub(super) input: usize,
+    pub(super) unit: Option<String>,
+    joint: String,
+    is_wanted: bool,
+}
+
+impl Output {
+    /// `text` of its joint, where that is among the results.
+    pub(super) fn note(&self, text: &str) -> Option<String> {
+        self.is_wanted.then(|| format!("joint `{}`: {text}", self.joint))
+    }
+}
+
+impl<'a> Log<'a> {
+    /// The log with the columns `numeric` in `table`, as it stands; a file without labels is one trial, named
+    /// `1` or by its `stem`.
+    pub(super) fn new(
+        head: &'a Head,
+        layout: &'a Layout,
+        numeric: &'a [usize],
+        table: Cow<'a, Table>,
+        budget: &'a Budget,
+        (options, stem): (Repair, Option<&str>),
+    ) -> Self {
+        let trials = named(&table, stem);
+        let (times, rows) = (Times::Stamps(Vec::new()), None);
+        let (unwrapped, notes) = (Vec::new(), Vec::new());
+        Self {
+            head,
+            layout,
+            numeric,
+            table,
+            budget,
+            options,
+            times,
+            trials,
+            rows,
+            unwrapped,
+            notes,
+        }
+    }
+
+    /// The outputs of all joints, each column once.
+    pub(super) fn outputs(&self) -> impl Iterator<Item = Output> {
+        let mut seen = HashSet::new();
+        let wanted = self.layout.joints.iter().map(|joint| (joint, true));
+        let others = self.layout.others.iter().map(|joint| (joint, false));
+        let outputs = wanted.chain(others).map(|(joint, is_wanted)| Output {
+            column: joint.output.column,
+            input: joint.input.column,
+            unit: joint.output.signal.unit.clone(),
+            joint: joint.name.clone(),
+            is_wanted,
+        });
+        outputs.filter(move |output| seen.insert(output.column))
+    }
+
+    /// The rows of each trial.
+    pub(super) fn spans(&self) -> Vec<Range<usize>> {
+        self.trials.iter().map(|trial| trial.start..trial.end).collect()
+    }
+
+    /// The numbers in a column, trial by trial; none where it ends at a bad cell.
+    pub(super) fn parts(&self, column: usize) -> Option<Vec<&[f64]>> {
+        let values = &self.column(column)?.values;
+        self.spans().into_iter().map(|rows| values.get(rows)).collect()
+    }
+
+    /// The rows of a trial, or those of it that are in `some`.
+    pub(super) fn rows_of(&self, trial: usize, some: Option<&[Vec<usize>]>) -> Vec<usize> {
+        match (some, self.trials.get(trial)) {
+            (Some(some), _) => some.get(trial).cloned().unwrap_or_default(),
+            (None, Some(trial)) => (trial.start..trial.end).collect(),
+            (None, None) => Vec::new(),
+        }
+    }
+
+    /// The times of the rows of a trial, or of those of it that are in `some`; none where rows have no time.
+    pub(super) fn times_of(
+        &self,
+        trial: usize,
+        some: Option<&[Vec<usize>]>,
+    ) -> Option<Cow<'_, [f64]>> {
+        let Times::Stamps(times) = &self.times else { return None };
+        match some {
+            Some(some) => {
+                let rows = some.get(trial)?.iter();
+                Some(rows.filter_map(|row| times.get(*row).copied()).collect())
+            }
+            None => {
+                let rows = self.trials.get(trial)?;
+                times.get(rows.start..rows.end).map(Cow::Borrowed)
+            }
+        }
+    }
+
+    /// Takes the memory of `count` values of `size` bytes each.
+    fn take(&self, count: usize, size: usize) -> Result<(), ReadError> {
+        let taken = self.budget.take_values(count, size);
+        taken.map_err(|error| error.refuse(&self.head.path))
+    }
+
+    pub(super) fn column(&self, index: usize) -> Option<&Column> {
+        self.table.columns.get(self.numeric.binary_search(&index).ok()?)
+    }
+
+    pub(super) fn column_mut(&mut self, index: usize) -> Option<&mut Column> {
+        let place = self.numeric.binary_search(&index).ok()?;
+        self.table.to_mut().columns.get_mut(place)
+    }
+
+    /// The name of a column.
+    fn header(&self, column: usize) -> String {
+        self.head.headers.get(column).map(|header| header.name.clone()).unwrap_or_default()
+    }
+
+    /// The header of a column as it stands in the file.
+    pub(super) fn cell_of_header(&self, column: usize) -> &str {
+        self.head.headers.get(column).map_or("", |header| &header.text)
+    }
+
+    /// What messages call a row.
+    pub(super) fn row(&self, index: usize) -> u64 {
+        self.table.rows.number(index)
+    }
+
+    /// `note` behind the name of the file.
+    pub(super) fn named(&self, note: &str) -> String {
+        format!("{}: {note}", self.head.path.display())
+    }
+
+    /// The first bad cell of a column.
+    fn bad_cell(&self, column: usize) -> Option<ReadError> {
+        let (row, bad) = self.column(column)?.error.clone()?;
+        let (path, column) = (self.head.path.clone(), self.header(column));
+        Some(match bad {
+            BadCell::Kind(found) => ReadError::NotNumbers { path, column, found },
+            BadCell::Text(text) => ReadError::NotANumber { path, row, column, text },
+            BadCell::Thousands(text) => ReadError::Thousands { path, row, column, text },
+            BadCell::DecimalMark(text) => ReadError::DecimalMarks { path, row, column, text },
+            BadCell::Infinite => ReadError::Infinite { path, row, column },
+            BadCell::TooLarge(value) => ReadError::BeyondPrecision { path, row, column, value },
+        })
+    }
+
+    /// Refuses an output that has several series at each time, as in a table with a row for each joint.
+    fn check_one_series(&self, layout: &JointLayout) -> Result<(), ReadError> {
+        match self.series_in(layout.output.column) {
+            Some(size) => Err(ReadError::SeveralSeries {
+                path: self.head.path.clone(),
+                column: self.header(layout.output.column),
+                size,
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The trials' rows, named: the whole file is trial `1` unless it says otherwise.
+fn named(table: &Table, stem: Option<&str>) -> Vec<TrialRows> {
+    let mut trials = table.trials.clone();
+    if trials.is_empty() {
+        let label = stem.unwrap_or("1").to_owned();
+        return vec![TrialRows { label, start: 0, end: table.rows.len() }];
+    }
+    for trial in &mut trials {
+        if let Some(stem) = stem {
+            trial.label = format!("{stem}/{}", trial.label);
+        }
+    }
+    trials
+}

@@ -1,8 +1,12 @@
 //! Rows that come in bursts, as packets over a network bring them: their stamps say when a packet came,
 //! and not when each row was measured.
 
-use super::run::JUMP;
+use super::Repair;
+use crate::experiment::log::{Log, Times};
 use crate::numerics::median;
+
+/// Usual steps beyond which one is a pause.
+const JUMP: f64 = 1.5;
 
 /// Rows between two pauses, at most, where they are not at once; and usual steps that a usual pause
 /// lasts, at least (chosen).
@@ -21,9 +25,50 @@ const SELDOM: usize = 100;
 /// Usual pauses beyond which one parts the record, and no packet came.
 const BREAK: f64 = 5.0;
 
+/// The rows of a trial that come in bursts, and their times once these are spread.
+pub(super) struct Bursts {
+    trial: usize,
+    times: Vec<f64>,
+}
+
+impl Repair for Bursts {
+    fn detect(log: &Log<'_>) -> Vec<Self> {
+        let trials = 0..log.trials.len();
+        let of = |trial: usize| {
+            let times = log.times_of(trial, log.rows.as_deref())?;
+            let times = if is_even(&times) { None } else { spread(&times) };
+            Some(Self { trial, times: times? })
+        };
+        trials.filter_map(of).collect()
+    }
+
+    fn apply(self, log: &mut Log<'_>) -> Option<String> {
+        let rows = log.rows_of(self.trial, log.rows.as_deref());
+        let Times::Stamps(times) = &mut log.times else { return None };
+        for (row, spread) in rows.into_iter().zip(self.times) {
+            if let Some(time) = times.get_mut(row) {
+                *time = spread;
+            }
+        }
+        let note = log.named(
+            "rows come in bursts, as packets bring them: those of each are spread evenly over the time \
+             since the one before",
+        );
+        // Once for all trials.
+        (!log.notes.contains(&note)).then_some(note)
+    }
+}
+
+/// Whether no step is a pause, as of most clocks.
+fn is_even(times: &[f64]) -> bool {
+    let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
+    let (low, high) = steps.fold((f64::MAX, 0.0_f64), |(l, h), s| (l.min(s), h.max(s)));
+    high <= JUMP * low
+}
+
 /// `times` whose rows are spread evenly over the time since the packet before theirs; none where rows do
 /// not come in bursts.
-pub(in crate::experiment) fn spread(times: &[f64]) -> Option<Vec<f64>> {
+fn spread(times: &[f64]) -> Option<Vec<f64>> {
     let forward = times.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0);
     let forward: Vec<f64> = forward.collect();
     let back = times.windows(2).filter(|pair| pair[1] < pair[0]).count();
