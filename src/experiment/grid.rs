@@ -134,16 +134,6 @@ impl Grid {
         if samples > MOST_SAMPLES { Err(Fault::TooMany { samples, period }) } else { Ok(grid) }
     }
 
-    /// This grid, of a trial of whose rows only `some` are looked at.
-    pub(super) fn of_some(mut self, some: &[usize]) -> Self {
-        for part in &mut self.parts {
-            let of =
-                |rows: &Vec<usize>| rows.iter().filter_map(|row| some.get(*row)).copied().collect();
-            part.rows = Some(part.rows.as_ref().map_or_else(|| some.to_vec(), of));
-        }
-        self
-    }
-
     pub(super) fn period(&self) -> SamplePeriod {
         self.period
     }

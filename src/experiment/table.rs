@@ -240,6 +240,13 @@ impl RowNumbers {
         self.turned = !self.turned;
     }
 
+    /// The numbers of some rows.
+    pub(super) fn of_some(&self, rows: &[usize]) -> Self {
+        let mut some = Self::default();
+        rows.iter().for_each(|row| some.push(self.number(*row)));
+        some
+    }
+
     /// What messages call the row with this index.
     pub(super) fn number(&self, index: usize) -> u64 {
         let index = if self.turned { (self.count - 1).saturating_sub(index) } else { index };

@@ -1,6 +1,5 @@
 //! The grids of a log whose clock is not uniform, and what its reader should know of them.
 
-use std::borrow::Cow;
 use std::cmp::Reverse;
 
 use super::run::Run;
@@ -25,7 +24,7 @@ const ROUND_RELATIVE: f64 = 0.03;
 /// was found, which calls a row of a trial by `number`. Where something cannot be mended it comes back with
 /// its trial.
 pub(in crate::experiment) fn grids(
-    trials: &[Cow<'_, [f64]>],
+    trials: &[&[f64]],
     repair: Repair,
     number: &dyn Fn(usize, usize) -> u64,
 ) -> Result<(Vec<Grid>, Vec<String>), (usize, Fault)> {
@@ -51,7 +50,7 @@ pub(in crate::experiment) fn grids(
     };
     let mut grids = Vec::new();
     for (trial, (clock, period)) in clocks.iter().zip(&periods).enumerate() {
-        let times = trials.get(trial).map_or(&[][..], AsRef::as_ref);
+        let times = trials.get(trial).copied().unwrap_or_default();
         grids.push(grid(clock, times, *period, repair).map_err(|fault| (trial, fault))?);
     }
     let is_uniform = uniform.iter().map(Option::is_some);
@@ -162,16 +161,12 @@ type Count = fn(&Clock) -> Option<(usize, usize)>;
 
 impl Findings<'_> {
     fn lines(&self) -> Vec<String> {
-        const KINDS: [(Count, &str); 4] = [
+        const KINDS: [(Count, &str); 3] = [
             (
                 |clock| clock.found.twice,
                 "at the time of the row before, and one of the two is left out",
             ),
             (|clock| clock.found.disordered, "out of order and sorted by time"),
-            (
-                |clock| clock.found.frozen,
-                "stamped while the clock stood still, and left out: their times are not known",
-            ),
             (|clock| clock.found.alone, "alone between gaps and left out"),
         ];
         let mut lines = self.on_periods();
@@ -305,9 +300,7 @@ mod tests {
     }
 
     fn laid(trials: &[&[f64]]) -> (Vec<Grid>, Vec<String>) {
-        let trials: Vec<Cow<'_, [f64]>> =
-            trials.iter().map(|times| Cow::Borrowed(*times)).collect();
-        grids(&trials, Repair::default(), &|_, row| row as u64 + 2).unwrap()
+        grids(trials, Repair::default(), &|_, row| row as u64 + 2).unwrap()
     }
 
     #[test]

@@ -62,7 +62,6 @@ impl Clock {
         })?;
         for (index, rows) in parts.into_iter().enumerate() {
             let rows = found.in_order(rows, times);
-            let rows = found.without_frozen(rows, times, &typical);
             let rows = found.once(rows, times, &typical);
             if let Some(first) = rows.iter().min().filter(|_| index > 0) {
                 count(&mut found.restarts, *first);

@@ -45,8 +45,6 @@ pub(super) fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usi
 pub(super) struct Found {
     pub(super) twice: Option<(usize, usize)>,
     pub(super) disordered: Option<(usize, usize)>,
-    /// During which the clock stood still before it jumped.
-    pub(super) frozen: Option<(usize, usize)>,
     /// At which the clock starts anew.
     pub(super) restarts: Option<(usize, usize)>,
     /// Between two gaps, and left out.
@@ -62,38 +60,6 @@ impl Found {
         }
         rows.sort_by(|a, b| time(*a).total_cmp(&time(*b)));
         rows
-    }
-
-    /// `rows` without those at which the clock stood still: many of one stamp, as usual before
-    /// the first of them, and with a jump behind the last that makes up for them. When each of
-    /// them was measured is not known.
-    pub(super) fn without_frozen(
-        &mut self,
-        rows: Vec<usize>,
-        times: &[f64],
-        typical: &Typical,
-    ) -> Vec<usize> {
-        if typical.grain_s > 0.0 {
-            return rows;
-        }
-        let time = |row: &usize| times.get(*row).copied().unwrap_or(f64::NAN);
-        #[expect(clippy::float_cmp, reason = "whether a stamp is repeated")]
-        let groups: Vec<&[usize]> = rows.chunk_by(|a, b| time(a) == time(b)).collect();
-        let at = |index: usize| Some(time(groups.get(index)?.first()?));
-        let step = |from: Option<usize>, to: usize| Some((at(to)? - at(from?)?) / typical.seconds);
-        let mut kept = Vec::with_capacity(rows.len());
-        for (index, group) in groups.iter().enumerate() {
-            let makes_up = |step: f64| step > 0.5 * group.len() as f64;
-            let is_frozen = group.len() > LOOK_AHEAD
-                && step(index.checked_sub(1), index).is_none_or(|step| step <= JUMP)
-                && step(Some(index), index + 1).is_none_or(makes_up);
-            let (first, others) = group.split_at(if is_frozen { 1 } else { group.len() });
-            kept.extend_from_slice(first);
-            for row in others {
-                count(&mut self.frozen, *row);
-            }
-        }
-        kept
     }
 
     /// `rows` without those that are there twice: a row at the time of the one before it,

@@ -1,7 +1,6 @@
 //! The joints of a log: cells checked, trials cut and put on a uniform grid.
 
 use super::Log;
-use super::missing::Missing;
 use crate::experiment::error::ReadError;
 use crate::experiment::gaps::{gap_with_all_steps_s, unlogged};
 use crate::experiment::grid::{Grid, Piece, Repair, Signals};
@@ -39,25 +38,15 @@ impl Log<'_> {
         let (layout, unread) = self.with_readable_covariates(layout);
         let layout = &layout;
         self.check_one_series(layout)?;
-        let (missing, mut notes) = self.missing(layout, options)?;
-        let own = match &missing {
-            Missing::Filled => None,
-            Missing::Between { longest_s } => {
-                let options = Repair { fill_s: Some(*longest_s), ..options };
-                Some(self.grids(self.rows.as_deref(), options)?.0)
-            }
-            Missing::LeftOut { measured } => {
-                let (own, clock) = self.grids(Some(measured), options)?;
-                let named = |note| format!("joint `{}`: {note}", layout.name);
-                notes.extend(clock.into_iter().map(named));
-                Some(own)
-            }
+        let (longest_s, mut notes) = self.missing(layout, options)?;
+        let own = match longest_s {
+            None => None,
+            Some(_) => Some(self.grids(Repair { fill_s: longest_s, ..options })?.0),
         };
         notes.extend(self.coarse_notes(layout));
         notes.extend(unread);
-        let is_slow = matches!(missing, Missing::Between { .. });
         let grids = own.as_deref().unwrap_or(grids);
-        let (joint, split) = self.on_grids(layout, grids, is_slow)?;
+        let (joint, split) = self.on_grids(layout, grids, longest_s.is_some())?;
         notes.extend(shown(&joint.name, split));
         Ok((joint, notes))
     }
@@ -115,7 +104,7 @@ impl Log<'_> {
         }
         let gap_s = gap_with_all_steps_s(read)?;
         let options = Repair { fill_s: Some(gap_s), ..self.options };
-        let (grids, _) = self.grids(self.rows.as_deref(), options).ok()?;
+        let (grids, _) = self.grids(options).ok()?;
         let samples: usize = grids.iter().map(Grid::samples).sum();
         if samples > LONGEST * output.len() {
             return None;

@@ -3,10 +3,7 @@
 //! A cell is missing where it is empty or NaN, as it was read or as a repair left it. A missing input is
 //! the one before it, since a logger may note it where it changes. A missing output lies on the line
 //! between those around it, where these are near one another: how near depends on whether most rows have
-//! one, or the sensor has a clock of its own. [`Grid`](crate::experiment::grid::Grid) fills them so. A
-//! further signal stays missing.
-
-use std::ops::Range;
+//! one, or the sensor has a clock of its own. A grid fills them so. A further signal stays missing.
 
 use super::{Log, Times};
 use crate::experiment::error::ReadError;
@@ -14,18 +11,9 @@ use crate::experiment::grid::Repair;
 use crate::experiment::layout::JointLayout;
 use crate::numerics::median;
 
-/// What becomes of missing outputs of a joint.
-pub(super) enum Missing {
-    /// A line takes their place in short gaps, and longer ones part the trial.
-    Filled,
-    /// The sensor is slower than the log: lines between what it measured, up to so many seconds.
-    Between { longest_s: f64 },
-    /// Rows of one time complement one another: those with an output, of each trial, are the samples.
-    LeftOut { measured: Vec<Vec<usize>> },
-}
-
 impl Log<'_> {
-    /// What becomes of the missing outputs of a joint, and what is said of its missing cells.
+    /// Up to how many seconds an output of a joint is interpolated, where its sensor is slower than the log,
+    /// and what is said of missing cells. Of other outputs the gaps are filled that are filled in a clock.
     ///
     /// # Errors
     /// [`ReadError::Missing`] where nothing may be filled.
@@ -33,13 +21,14 @@ impl Log<'_> {
         &self,
         layout: &JointLayout,
         options: Repair,
-    ) -> Result<(Missing, Vec<String>), ReadError> {
+    ) -> Result<(Option<f64>, Vec<String>), ReadError> {
         if options.as_it_stands && options.fill_s.is_none() {
             self.check_whole(layout)?;
         }
-        let output = self.column(layout.output.column).map_or(&[][..], |column| &column.values);
-        let slow = self.is_sparse(output, options).then(|| self.of_slow_sensor(layout, output));
-        Ok(slow.flatten().unwrap_or_else(|| (Missing::Filled, self.filled_notes(layout))))
+        Ok(match self.slow_sensor(layout).filter(|_| options.is_free()) {
+            Some((longest_s, note)) => (Some(longest_s), vec![note]),
+            None => (None, self.filled_notes(layout)),
+        })
     }
 
     /// Refuses the first missing cell.
@@ -59,56 +48,33 @@ impl Log<'_> {
         }
     }
 
-    /// Whether so many rows have no output that its sensor must have a clock of its own.
-    fn is_sparse(&self, output: &[f64], options: Repair) -> bool {
-        /// Part of the rows without an output, at least (chosen).
+    /// How far apart outputs may be that are joined by a line, where so many rows have none that the sensor
+    /// must have a clock of its own: steps of the input keep their times.
+    fn slow_sensor(&self, layout: &JointLayout) -> Option<(f64, String)> {
+        /// Part of the rows without an output, at least, and times the usual distance of two outputs beyond
+        /// which nothing is known between them (chosen).
         const SPARSE: f64 = 0.3;
-        let missing = output.iter().filter(|value| value.is_nan()).count() as f64;
-        options.is_free()
-            && matches!(self.times, Times::Stamps(_))
-            && missing > SPARSE * output.len() as f64
-    }
-
-    /// Where each row has a time of its own, steps of the input keep theirs: the output is interpolated.
-    fn of_slow_sensor(
-        &self,
-        layout: &JointLayout,
-        output: &[f64],
-    ) -> Option<(Missing, Vec<String>)> {
-        /// Times the usual distance of two outputs beyond which nothing is known between them (chosen).
         const LONGEST: f64 = 3.0;
         let Times::Stamps(times) = &self.times else { return None };
+        let output = &self.column(layout.output.column)?.values;
         let is_measured = |row: &usize| output.get(*row).is_some_and(|value| !value.is_nan());
-        let spans = self.spans().into_iter();
-        let measured: Vec<Vec<usize>> =
-            spans.map(|rows| rows.filter(is_measured).collect()).collect();
-        let count: usize = measured.iter().map(Vec::len).sum();
-        let start = format!(
-            "joint `{}`: {count} of {} rows have an output",
+        let (mut count, mut apart) = (0, Vec::new());
+        for rows in self.spans() {
+            let measured: Vec<f64> =
+                rows.filter(is_measured).filter_map(|row| times.get(row).copied()).collect();
+            count += measured.len();
+            apart.extend(measured.windows(2).map(|pair| pair[1] - pair[0]));
+        }
+        let all = output.len();
+        let usual_s = median(&apart).filter(|_| (all - count) as f64 > SPARSE * all as f64)?;
+        let note = format!(
+            "joint `{}`: {count} of {all} rows have an output, which is interpolated between them, so that \
+             steps of the input keep their times; what follows from its noise, as intervals, takes all \
+             samples for measured, and `lag-aware` the lines between them for a lag; models are held \
+             against those that are measured",
             layout.name,
-            self.table.rows.len()
         );
-        let increase = |rows: Range<usize>| {
-            times.get(rows).is_some_and(|part| part.is_sorted_by(|a, b| a < b))
-        };
-        let apart = |pair: &[usize]| Some(times.get(pair[1])? - times.get(pair[0])?);
-        let pairs = measured.iter().flat_map(|rows| rows.windows(2));
-        let usual_s = median(&pairs.filter_map(apart).collect::<Vec<_>>());
-        Some(match usual_s.filter(|_| self.spans().into_iter().all(increase)) {
-            Some(usual_s) => {
-                let note = format!(
-                    "{start}, which is interpolated between them, so that steps of the input keep their \
-                     times; what follows from its noise, as intervals, takes all samples for measured, and \
-                     `lag-aware` the lines between them for a lag; models are held against those that are \
-                     measured"
-                );
-                (Missing::Between { longest_s: LONGEST * usual_s }, vec![note])
-            }
-            None => {
-                let note = format!("{start}, and are taken as its samples; the input is held");
-                (Missing::LeftOut { measured }, vec![note])
-            }
-        })
+        Some((LONGEST * usual_s, note))
     }
 
     /// A line on cells that are missing in the input and the output of a joint.

@@ -31,8 +31,6 @@ pub(super) struct Log<'a> {
     pub(super) options: Repair,
     pub(super) times: Times,
     pub(super) trials: Vec<TrialRows>,
-    /// The rows of each trial that count, where not all do.
-    pub(super) rows: Option<Vec<Vec<usize>>>,
     /// The columns of outputs that wrapped.
     pub(super) unwrapped: Vec<usize>,
     /// What a reader of the log should know.
@@ -75,21 +73,8 @@ impl<'a> Log<'a> {
         (options, stem): (Repair, Option<&str>),
     ) -> Self {
         let trials = named(&table, stem);
-        let (times, rows) = (Times::Stamps(Vec::new()), None);
-        let (unwrapped, notes) = (Vec::new(), Vec::new());
-        Self {
-            head,
-            layout,
-            numeric,
-            table,
-            budget,
-            options,
-            times,
-            trials,
-            rows,
-            unwrapped,
-            notes,
-        }
+        let (times, unwrapped, notes) = (Times::Stamps(Vec::new()), Vec::new(), Vec::new());
+        Self { head, layout, numeric, table, budget, options, times, trials, unwrapped, notes }
     }
 
     /// The outputs of all joints, each column once.
@@ -118,32 +103,11 @@ impl<'a> Log<'a> {
         self.spans().into_iter().map(|rows| values.get(rows)).collect()
     }
 
-    /// The rows of a trial, or those of it that are in `some`.
-    pub(super) fn rows_of(&self, trial: usize, some: Option<&[Vec<usize>]>) -> Vec<usize> {
-        match (some, self.trials.get(trial)) {
-            (Some(some), _) => some.get(trial).cloned().unwrap_or_default(),
-            (None, Some(trial)) => (trial.start..trial.end).collect(),
-            (None, None) => Vec::new(),
-        }
-    }
-
-    /// The times of the rows of a trial, or of those of it that are in `some`; none where rows have no time.
-    pub(super) fn times_of(
-        &self,
-        trial: usize,
-        some: Option<&[Vec<usize>]>,
-    ) -> Option<Cow<'_, [f64]>> {
+    /// The times of the rows of a trial; none where rows have no time.
+    pub(super) fn times_of(&self, trial: usize) -> Option<&[f64]> {
         let Times::Stamps(times) = &self.times else { return None };
-        match some {
-            Some(some) => {
-                let rows = some.get(trial)?.iter();
-                Some(rows.filter_map(|row| times.get(*row).copied()).collect())
-            }
-            None => {
-                let rows = self.trials.get(trial)?;
-                times.get(rows.start..rows.end).map(Cow::Borrowed)
-            }
-        }
+        let rows = self.trials.get(trial)?;
+        times.get(rows.start..rows.end)
     }
 
     /// Takes the memory of `count` values of `size` bytes each.

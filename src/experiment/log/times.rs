@@ -1,7 +1,5 @@
 //! The times of a log: how its clock counts, its grids, and what is odd about them.
 
-use std::borrow::Cow;
-
 use super::unit_change::unit_change;
 use super::{Log, Times};
 use crate::experiment::clock::{self, Fault};
@@ -38,7 +36,7 @@ impl Log<'_> {
     /// The grid of each trial over the rows that count, which are said to the reader with what is odd
     /// about their times.
     pub(in crate::experiment) fn main_grids(&mut self) -> Result<Vec<Grid>, ReadError> {
-        let (grids, notes) = self.grids(self.rows.as_deref(), self.options)?;
+        let (grids, notes) = self.grids(self.options)?;
         self.check_periods(&grids)?;
         let notes = notes.into_iter().chain(self.origin_note()).chain(self.rate_note(&grids));
         let notes: Vec<String> = notes.map(|note| self.named(&note)).collect();
@@ -46,33 +44,21 @@ impl Log<'_> {
         Ok(grids)
     }
 
-    /// The grid of each trial over all its rows, or over those in `some`, and what was done to lay it.
-    pub(super) fn grids(
-        &self,
-        some: Option<&[Vec<usize>]>,
-        options: Repair,
-    ) -> Result<(Vec<Grid>, Vec<String>), ReadError> {
+    /// The grid of each trial, and what was done to lay it.
+    pub(super) fn grids(&self, options: Repair) -> Result<(Vec<Grid>, Vec<String>), ReadError> {
         if let Times::Rows(period) = self.times {
             let grid = |trial: &TrialRows| Grid::of_rows(trial.end - trial.start, period, options);
             return Ok((self.trials.iter().map(grid).collect(), Vec::new()));
         }
         let trials = 0..self.trials.len();
-        let times = trials.map(|trial| self.times_of(trial, some).unwrap_or_default());
-        let times: Vec<Cow<'_, [f64]>> = times.collect();
-        let index = |trial: usize, row: usize| match some {
-            Some(some) => some.get(trial).and_then(|rows| rows.get(row)).copied(),
-            None => self.trials.get(trial).map(|rows| rows.start + row),
+        let times: Vec<&[f64]> = trials.filter_map(|trial| self.times_of(trial)).collect();
+        let number = |trial: usize, row: usize| {
+            self.trials.get(trial).map_or(0, |rows| self.row(rows.start + row))
         };
-        let number = |trial: usize, row: usize| index(trial, row).map_or(0, |row| self.row(row));
-        let (grids, notes) = clock::grids(&times, options, &number).map_err(|(trial, fault)| {
-            let times = times.get(trial).map_or(&[][..], AsRef::as_ref);
+        clock::grids(&times, options, &number).map_err(|(trial, fault)| {
+            let times = times.get(trial).copied().unwrap_or_default();
             self.time_error(fault, trial, times, &|row| number(trial, row))
-        })?;
-        let Some(some) = some else { return Ok((grids, notes)) };
-        let of_some = |((grid, rows), trial): ((Grid, &Vec<usize>), &TrialRows)| {
-            grid.of_some(&rows.iter().map(|row| row - trial.start).collect::<Vec<_>>())
-        };
-        Ok((grids.into_iter().zip(some).zip(&self.trials).map(of_some).collect(), notes))
+        })
     }
 
     /// The first time, as it stands in the log.

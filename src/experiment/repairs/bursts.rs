@@ -32,24 +32,20 @@ pub(super) struct Bursts {
 }
 
 impl Repair for Bursts {
-    fn detect(log: &Log<'_>) -> Vec<Self> {
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
         let trials = 0..log.trials.len();
-        let of = |trial: usize| {
-            let times = log.times_of(trial, log.rows.as_deref())?;
-            let times = if is_even(&times) { None } else { spread(&times) };
+        let of = move |trial: usize| {
+            let times = log.times_of(trial)?;
+            let times = if is_even(times) { None } else { spread(times) };
             Some(Self { trial, times: times? })
         };
-        trials.filter_map(of).collect()
+        trials.filter_map(of)
     }
 
     fn apply(self, log: &mut Log<'_>) -> Option<String> {
-        let rows = log.rows_of(self.trial, log.rows.as_deref());
+        let rows = log.trials.get(self.trial)?;
         let Times::Stamps(times) = &mut log.times else { return None };
-        for (row, spread) in rows.into_iter().zip(self.times) {
-            if let Some(time) = times.get_mut(row) {
-                *time = spread;
-            }
-        }
+        times.get_mut(rows.start..rows.end)?.copy_from_slice(&self.times);
         let note = log.named(
             "rows come in bursts, as packets bring them: those of each are spread evenly over the time \
              since the one before",

@@ -1,21 +1,15 @@
 //! Times of day, which begin anew at midnight.
 
+use super::Repair;
 use super::wrap::Wrap;
-use super::{Options, Repair};
 use crate::experiment::log::{Log, Times};
 
 pub(super) struct Midnight;
 
 impl Repair for Midnight {
-    /// Rows behind midnight say nothing new of those before it.
-    fn is_allowed(_: Options) -> bool {
-        true
-    }
-
-    fn detect(log: &Log<'_>) -> Vec<Self> {
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
         let column = log.layout.time.column().and_then(|column| log.column(column));
-        let is_of_day = column.is_some_and(|column| column.are_dates || column.are_of_day);
-        if is_of_day { vec![Self] } else { Vec::new() }
+        column.filter(|column| column.are_dates || column.are_of_day).map(|_| Self)
     }
 
     fn apply(self, log: &mut Log<'_>) -> Option<String> {

@@ -4,10 +4,10 @@
 //! stamps are read: in [`super::clock`].
 
 mod bursts;
-mod copies;
 mod midnight;
 mod newest_first;
 mod rezeroed;
+mod same_time;
 mod single_rows;
 mod slow_sensor;
 mod split_stamp;
@@ -17,10 +17,10 @@ use super::error::ReadError;
 use super::grid::Repair as Options;
 use super::log::Log;
 use bursts::Bursts;
-use copies::Copies;
 use midnight::Midnight;
 use newest_first::NewestFirst;
 use rezeroed::Rezeroed;
+use same_time::SameTime;
 use single_rows::SingleRows;
 use slow_sensor::SlowSensor;
 use split_stamp::SplitStamp;
@@ -28,49 +28,55 @@ use wrap::Wrapped;
 
 /// A fault that logs of some kind have, as it was found in one.
 trait Repair: Sized {
-    /// Whether it may be mended. What depends on rows that a growing log does not have yet may not.
-    fn is_allowed(options: Options) -> bool {
-        !options.as_it_stands
-    }
-
     /// Where the fault is.
-    fn detect(log: &Log<'_>) -> Vec<Self>;
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self>;
 
     /// Mends it, and says what was done where a reader of the log should know.
     fn apply(self, log: &mut Log<'_>) -> Option<String>;
 }
 
-type Step = fn(&mut Log<'_>) -> Result<(), ReadError>;
+/// When something is mended, and how.
+type Step = (fn(Options) -> bool, fn(&mut Log<'_>) -> Result<(), ReadError>);
 
 /// In this order: the rows before their times, the times before the signals.
 const IN_ORDER: [Step; 10] = [
-    mend::<SplitStamp>,
-    mend::<NewestFirst>,
-    |log| log.read_times(),
-    mend::<Midnight>,
-    mend::<SingleRows>,
-    mend::<Copies>,
-    mend::<Bursts>,
-    mend::<SlowSensor>,
+    (always, mend::<SplitStamp>),
+    (once_whole, mend::<NewestFirst>),
+    (always, |log| log.read_times()),
+    (always, mend::<Midnight>),
+    (always, mend::<SingleRows>),
+    (once_whole, mend::<SameTime>),
+    (once_whole, mend::<Bursts>),
+    (Options::is_free, mend::<SlowSensor>),
     // A turn is a jump, too: what it leaves over may be a sensor whose zero was set anew.
-    mend::<Wrapped>,
-    mend::<Rezeroed>,
+    (once_whole, mend::<Wrapped>),
+    (once_whole, mend::<Rezeroed>),
 ];
+
+fn always(_: Options) -> bool {
+    true
+}
+
+/// What depends on rows that a growing log does not have yet is not mended in one.
+fn once_whole(options: Options) -> bool {
+    !options.as_it_stands
+}
 
 /// Mends everything in `log` that may be.
 ///
 /// # Errors
 /// [`ReadError`] where its times cannot be read.
 pub(super) fn mend_all(log: &mut Log<'_>) -> Result<(), ReadError> {
-    IN_ORDER.iter().try_for_each(|step| step(log))
+    let options = log.options;
+    let mut steps = IN_ORDER.iter().filter(|(is_done, _)| is_done(options));
+    steps.try_for_each(|(_, step)| step(log))
 }
 
 fn mend<R: Repair>(log: &mut Log<'_>) -> Result<(), ReadError> {
-    if R::is_allowed(log.options) {
-        for found in R::detect(log) {
-            let note = found.apply(log);
-            log.notes.extend(note);
-        }
+    let found: Vec<R> = R::detect(log).into_iter().collect();
+    for fault in found {
+        let note = fault.apply(log);
+        log.notes.extend(note);
     }
     Ok(())
 }

@@ -6,9 +6,9 @@ use crate::experiment::log::Log;
 pub(super) struct NewestFirst;
 
 impl Repair for NewestFirst {
-    fn detect(log: &Log<'_>) -> Vec<Self> {
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
         let times = log.layout.time_column().and_then(|column| log.column(column));
-        times.filter(|times| falls(&times.values)).map(|_| Self).into_iter().collect()
+        times.filter(|times| falls(&times.values)).map(|_| Self)
     }
 
     fn apply(self, log: &mut Log<'_>) -> Option<String> {

@@ -16,8 +16,8 @@ pub(super) struct Rezeroed {
 impl Repair for Rezeroed {
     /// Rows behind a gap lie as far apart as the joint moved there, and where the clock starts anew so
     /// does the record. Of what wraps it is not known.
-    fn detect(log: &Log<'_>) -> Vec<Self> {
-        let of = |output: Output| {
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
+        let of = move |output: Output| {
             let (inputs, outputs) = (log.parts(output.input)?, log.parts(output.column)?);
             let signals = inputs.into_iter().zip(&outputs).map(|(input, output)| [input, output]);
             let shifts = Shifts::of(&signals.collect::<Vec<_>>())?;
@@ -26,7 +26,7 @@ impl Repair for Rezeroed {
             are_near.then_some(Self { output, shifts })
         };
         let outputs = log.outputs().filter(|output| !log.unwrapped.contains(&output.column));
-        outputs.filter_map(of).collect()
+        outputs.filter_map(of)
     }
 
     fn apply(self, log: &mut Log<'_>) -> Option<String> {

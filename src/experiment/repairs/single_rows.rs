@@ -1,6 +1,6 @@
 //! Trials of one row, from which no period follows, as where a counter of trials is late by a row.
 
-use super::{Options, Repair};
+use super::Repair;
 use crate::experiment::log::Log;
 use crate::experiment::table::TrialRows;
 
@@ -11,14 +11,10 @@ fn is_long(trial: &TrialRows) -> bool {
 }
 
 impl Repair for SingleRows {
-    fn is_allowed(_: Options) -> bool {
-        true
-    }
-
     /// None where all trials are of one row: that is an error of the log.
-    fn detect(log: &Log<'_>) -> Vec<Self> {
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
         let some_are_long = log.trials.iter().any(is_long);
-        if some_are_long && !log.trials.iter().all(is_long) { vec![Self] } else { Vec::new() }
+        (some_are_long && !log.trials.iter().all(is_long)).then_some(Self)
     }
 
     fn apply(self, log: &mut Log<'_>) -> Option<String> {

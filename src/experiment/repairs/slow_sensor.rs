@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Options, Repair};
+use super::Repair;
 use crate::experiment::log::{Log, Output};
 use crate::numerics::quantile;
 
@@ -19,16 +19,12 @@ pub(super) struct SlowSensor {
 }
 
 impl Repair for SlowSensor {
-    fn is_allowed(options: Options) -> bool {
-        options.is_free()
-    }
-
-    fn detect(log: &Log<'_>) -> Vec<Self> {
-        let of = |output: Output| {
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
+        let of = move |output: Output| {
             let rows = rows_of_a_reading(&log.column(output.column)?.values, &log.spans())?;
             Some(Self { output, rows })
         };
-        log.outputs().filter_map(of).collect()
+        log.outputs().filter_map(of)
     }
 
     fn apply(self, log: &mut Log<'_>) -> Option<String> {

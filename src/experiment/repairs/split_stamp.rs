@@ -1,6 +1,6 @@
 //! Stamps in two columns, whole seconds and what they leave over, as those of ROS are.
 
-use super::{Options, Repair};
+use super::Repair;
 use crate::experiment::log::Log;
 
 /// The column of whole seconds, that of the rest, and the unit of the rest in seconds.
@@ -11,14 +11,9 @@ pub(super) struct SplitStamp {
 }
 
 impl Repair for SplitStamp {
-    fn is_allowed(_: Options) -> bool {
-        true
-    }
-
-    fn detect(log: &Log<'_>) -> Vec<Self> {
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
         let columns = log.layout.time.column().zip(log.layout.time_rest);
-        let found = columns.map(|(whole, (rest, unit_s))| Self { whole, rest, unit_s });
-        found.into_iter().collect()
+        columns.map(|(whole, (rest, unit_s))| Self { whole, rest, unit_s })
     }
 
     /// Where the second column holds more than parts of a second, each says the time by itself.

@@ -18,13 +18,13 @@ pub(super) struct Wrapped {
 }
 
 impl Repair for Wrapped {
-    fn detect(log: &Log<'_>) -> Vec<Self> {
-        let of = |output: Output| {
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
+        let of = move |output: Output| {
             let trials = log.parts(output.column)?;
             let wrap = Wrap::of(&trials, output.unit.as_deref())?;
             Some(Self { output, wrap })
         };
-        log.outputs().filter_map(of).collect()
+        log.outputs().filter_map(of)
     }
 
     fn apply(self, log: &mut Log<'_>) -> Option<String> {
