@@ -1,7 +1,5 @@
 //! The grids of a log whose clock is not uniform, and what its reader should know of them.
 
-use std::cmp::Reverse;
-
 use super::run::Run;
 use super::{Clock, Evenness, Fault, filled_s};
 use crate::experiment::grid::{Grid, Part, Repair};
@@ -61,26 +59,38 @@ pub(in crate::experiment) fn grids(
     Ok((grids, findings.lines()))
 }
 
-/// The period of each trial's grid: trials of one rate share that of the longest, a round number where that
-/// puts no row at another place. Even clocks come first, since their periods are known best.
+/// The period of each trial's grid: trials of one rate share their mean, each counting by its rows, as a round
+/// number where that puts no row at another place. Even clocks come first, since their periods are known best:
+/// uneven ones near them take theirs.
 fn common_periods(clocks: &[Clock]) -> Vec<f64> {
     let is_uneven = |clock: &Clock| clock.evenness == Evenness::Uneven;
     let mut order: Vec<(usize, &Clock)> = clocks.iter().enumerate().collect();
-    order.sort_by_key(|(_, clock)| (is_uneven(clock), Reverse(clock.longest())));
-    let mut rates: Vec<f64> = Vec::new();
-    let mut periods = vec![0.0; clocks.len()];
+    order.sort_by(|(_, a), (_, b)| {
+        is_uneven(a).cmp(&is_uneven(b)).then(a.period.total_cmp(&b.period))
+    });
+    let mut groups: Vec<Vec<(usize, &Clock)>> = Vec::new();
     for (trial, clock) in order {
-        let by_a_row = (ROUNDING / clock.longest().max(1) as f64).min(2.0 * ONE_RATE);
-        let (one_rate, rounding) = match clock.evenness {
-            Evenness::Uneven => (ONE_UNEVEN_RATE, ROUND_RELATIVE),
-            Evenness::Jitters | Evenness::Rounded { .. } => (ONE_RATE, by_a_row),
+        let one_rate = if is_uneven(clock) { ONE_UNEVEN_RATE } else { ONE_RATE };
+        let is_near = |group: &&mut Vec<(usize, &Clock)>| {
+            (clock.period / group[0].1.period - 1.0).abs() <= one_rate
         };
-        let is_near = |rate: &f64| (rate / clock.period - 1.0).abs() <= one_rate;
-        let known = rates.iter().copied().find(is_near);
-        periods[trial] = known.unwrap_or_else(|| rounded(clock.period, rounding));
-        if known.is_none() {
-            rates.push(periods[trial]);
+        match groups.iter_mut().find(is_near) {
+            Some(group) => group.push((trial, clock)),
+            None => groups.push(vec![(trial, clock)]),
         }
+    }
+    let mut periods = vec![0.0; clocks.len()];
+    for group in groups {
+        let is_guess = is_uneven(group[0].1);
+        let (mut rows, mut sum, mut longest) = (0.0, 0.0, 1);
+        for (_, clock) in group.iter().filter(|(_, clock)| is_uneven(clock) == is_guess) {
+            let count = clock.runs.iter().map(|run| run.rows.len()).sum::<usize>() as f64;
+            (rows, sum) = (rows + count, sum + count * clock.period);
+            longest = longest.max(clock.longest());
+        }
+        let by_a_row = (ROUNDING / longest as f64).min(2.0 * ONE_RATE);
+        let period = rounded(sum / rows, if is_guess { ROUND_RELATIVE } else { by_a_row });
+        group.iter().for_each(|(trial, _)| periods[*trial] = period);
     }
     periods
 }

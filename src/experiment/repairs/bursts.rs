@@ -8,6 +8,9 @@ use crate::numerics::median;
 /// Usual steps beyond which one is a pause.
 const JUMP: f64 = 1.5;
 
+/// Pauses, at least: one or two part a record.
+const FEWEST: usize = 5;
+
 /// Rows between two pauses, at most, where they are not at once; and usual steps that a usual pause
 /// lasts, at least (chosen).
 const LONGEST: usize = 25;
@@ -75,6 +78,9 @@ fn spread(times: &[f64]) -> Option<Vec<f64>> {
     let is_pause = |step: f64| step > JUMP * middle;
     let pauses: Vec<f64> = forward.iter().copied().filter(|step| is_pause(*step)).collect();
     let usual = median(&pauses).filter(|usual| *usual >= PAUSE * middle)?;
+    if pauses.len() < FEWEST {
+        return None;
+    }
     let known = || forward.iter().copied().filter(|step| *step <= BREAK * usual);
     let (all, in_pauses) =
         (known().sum::<f64>(), known().filter(|step| is_pause(*step)).sum::<f64>());
@@ -138,6 +144,8 @@ mod tests {
         assert_eq!(spread(&jitters), None);
         let parts = (0..3000).map(|k| 0.01 * f64::from(k) + 5.0 * f64::from(k / 300));
         assert_eq!(spread(&parts.collect::<Vec<_>>()), None, "three seconds at a time");
+        let pause = [0.0, 0.01, 0.02, 1000.0, 1000.01, 1000.02, 2000.0, 2000.01];
+        assert_eq!(spread(&pause), None, "two pauses");
         let rounded = (0..3000).map(|k| (0.02 * f64::from(k) * 10.0).floor() / 10.0);
         assert_eq!(spread(&rounded.collect::<Vec<_>>()), None, "of one stamp");
     }

@@ -72,6 +72,10 @@ pub(super) fn mend_all(log: &mut Log<'_>) -> Result<(), ReadError> {
     steps.try_for_each(|(_, step)| step(log))
 }
 
+#[expect(
+    clippy::unnecessary_wraps,
+    reason = "the times may not be read, and are a step like the others"
+)]
 fn mend<R: Repair>(log: &mut Log<'_>) -> Result<(), ReadError> {
     let found: Vec<R> = R::detect(log).into_iter().collect();
     for fault in found {
