@@ -13,6 +13,7 @@ mod error;
 mod format;
 mod gaps;
 mod grid;
+mod grids;
 mod growing;
 mod handed;
 mod joint;

@@ -21,7 +21,7 @@ const DRIFT: f64 = 0.01;
 
 /// What became of the rows of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Evenness {
+pub(in crate::experiment) enum Evenness {
     /// The stamps jitter about an even grid.
     Jitters,
     /// The stamps are rounded to so many seconds, which is more than half a period.

@@ -7,18 +7,17 @@
 
 mod evenness;
 mod fault;
-mod grids;
 mod period;
 mod rows;
 mod run;
 
-use self::evenness::{Deviations, Evenness};
+use self::evenness::Deviations;
 use self::period::{least_squares_period, typical_period};
 use self::rows::{Found, between_restarts, count, is_even_once_sorted, parted, short_gaps};
-use self::run::Run;
 
+pub(super) use self::evenness::Evenness;
 pub(super) use self::fault::Fault;
-pub(super) use self::grids::grids;
+pub(super) use self::run::Run;
 
 /// A gap is filled up to so many periods: one row of Algorithm 1's Φ at its usual β.
 const FILLED_PERIODS: f64 = 5.0;
@@ -28,26 +27,26 @@ const FILLED_S: f64 = 0.05;
 
 /// The clock of a trial.
 #[derive(Clone, Debug, PartialEq)]
-struct Clock {
-    runs: Vec<Run>,
+pub(super) struct Clock {
+    pub(super) runs: Vec<Run>,
     /// Least-squares period of all runs, seconds.
-    period: f64,
-    evenness: Evenness,
+    pub(super) period: f64,
+    pub(super) evenness: Evenness,
     /// Standard deviation of the jitter, in periods.
-    jitter: f64,
+    pub(super) jitter: f64,
     /// Largest jitter, in periods, and its row.
-    largest: (f64, usize),
+    pub(super) largest: (f64, usize),
     /// Largest drift from the even grid, in periods.
-    drift: f64,
+    pub(super) drift: f64,
     /// Short gaps: how many, the longest in periods, and the row behind the first.
-    gaps: Option<(usize, usize, usize)>,
-    found: Found,
+    pub(super) gaps: Option<(usize, usize, usize)>,
+    pub(super) found: Found,
 }
 
 impl Clock {
     /// Reads the stamps `times`, in seconds; gaps up to `fill_s` do not part a run, nor those
     /// that are filled unasked where it is none.
-    fn read(times: &[f64], fill_s: Option<f64>) -> Result<Self, Fault> {
+    pub(super) fn read(times: &[f64], fill_s: Option<f64>) -> Result<Self, Fault> {
         let typical = typical_period(times)?;
         let mut found = Found::default();
         let mut runs = Vec::new();
@@ -89,7 +88,7 @@ impl Clock {
     }
 
     /// Rows of its longest run.
-    fn longest(&self) -> usize {
+    pub(super) fn longest(&self) -> usize {
         self.runs.iter().map(|run| run.rows.len()).max().unwrap_or_default()
     }
 }
@@ -112,7 +111,7 @@ mod tests {
         (0..rows).map(time).collect()
     }
 
-    fn read(times: &[f64]) -> Clock {
+    pub(super) fn read(times: &[f64]) -> Clock {
         Clock::read(times, None).unwrap()
     }
 

@@ -42,13 +42,13 @@ pub(super) fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usi
 
 /// How many rows of a kind were found on the way, and the first of them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Found {
-    pub(super) twice: Option<(usize, usize)>,
-    pub(super) disordered: Option<(usize, usize)>,
+pub(in crate::experiment) struct Found {
+    pub(in crate::experiment) twice: Option<(usize, usize)>,
+    pub(in crate::experiment) disordered: Option<(usize, usize)>,
     /// At which the clock starts anew.
-    pub(super) restarts: Option<(usize, usize)>,
+    pub(in crate::experiment) restarts: Option<(usize, usize)>,
     /// Between two gaps, and left out.
-    pub(super) alone: Option<(usize, usize)>,
+    pub(in crate::experiment) alone: Option<(usize, usize)>,
 }
 
 impl Found {

@@ -8,16 +8,16 @@ pub(super) const LOST_SHARE: f64 = 0.1;
 
 /// Rows that follow one another without a long gap.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Run {
+pub(in crate::experiment) struct Run {
     /// Rows in the order of their time.
-    pub(super) rows: Vec<usize>,
+    pub(in crate::experiment) rows: Vec<usize>,
     /// Their places on an even grid; the first is 0.
-    pub(super) places: Vec<usize>,
+    pub(in crate::experiment) places: Vec<usize>,
 }
 
 impl Run {
     /// When its places begin, on a grid of `period`: the least-squares offset.
-    pub(super) fn start_s(&self, times: &[f64], period: f64) -> f64 {
+    pub(in crate::experiment) fn start_s(&self, times: &[f64], period: f64) -> f64 {
         let offsets = self.points(times).map(|(place, time)| time - place * period);
         offsets.sum::<f64>() / self.rows.len().max(1) as f64
     }

@@ -1,6 +1,6 @@
 //! The joints of a log: cells checked, trials cut and put on a uniform grid.
 
-use super::Log;
+use super::cells::Log;
 use crate::experiment::error::ReadError;
 use crate::experiment::gaps::{gap_with_all_steps_s, unlogged};
 use crate::experiment::grid::{Grid, Piece, Repair, Signals};

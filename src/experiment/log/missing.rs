@@ -5,7 +5,7 @@
 //! between those around it, where these are near one another: how near depends on whether most rows have
 //! one, or the sensor has a clock of its own. A grid fills them so. A further signal stays missing.
 
-use super::{Log, Times};
+use super::cells::{Log, Times};
 use crate::experiment::error::ReadError;
 use crate::experiment::grid::Repair;
 use crate::experiment::layout::JointLayout;

@@ -1,11 +1,12 @@
 //! The times of a log: how its clock counts, its grids, and what is odd about them.
 
+use super::cells::{Log, Times};
 use super::unit_change::unit_change;
-use super::{Log, Times};
-use crate::experiment::clock::{self, Fault};
+use crate::experiment::clock::Fault;
 use crate::experiment::error::ReadError;
 use crate::experiment::format::date_of_seconds;
 use crate::experiment::grid::{Grid, Repair};
+use crate::experiment::grids::grids;
 use crate::experiment::origin::{Counting, origin_s};
 use crate::experiment::period::is_period;
 use crate::experiment::table::{Column, TrialRows};
@@ -55,7 +56,7 @@ impl Log<'_> {
         let number = |trial: usize, row: usize| {
             self.trials.get(trial).map_or(0, |rows| self.row(rows.start + row))
         };
-        clock::grids(&times, options, &number).map_err(|(trial, fault)| {
+        grids(&times, options, &number).map_err(|(trial, fault)| {
             let times = times.get(trial).copied().unwrap_or_default();
             self.time_error(fault, trial, times, &|row| number(trial, row))
         })

@@ -1,7 +1,7 @@
 //! Rows that come in bursts, as packets over a network bring them: their stamps say when a packet came,
 //! and not when each row was measured.
 
-use super::Repair;
+use super::repair::Repair;
 use crate::experiment::log::{Log, Times};
 use crate::numerics::median;
 

@@ -1,6 +1,6 @@
 //! Times of day, which begin anew at midnight.
 
-use super::Repair;
+use super::repair::Repair;
 use super::wrap::Wrap;
 use crate::experiment::log::{Log, Times};
 

@@ -6,6 +6,7 @@
 mod bursts;
 mod midnight;
 mod newest_first;
+mod repair;
 mod rezeroed;
 mod same_time;
 mod single_rows;
@@ -19,21 +20,13 @@ use super::log::Log;
 use bursts::Bursts;
 use midnight::Midnight;
 use newest_first::NewestFirst;
+use repair::Repair;
 use rezeroed::Rezeroed;
 use same_time::SameTime;
 use single_rows::SingleRows;
 use slow_sensor::SlowSensor;
 use split_stamp::SplitStamp;
 use wrap::Wrapped;
-
-/// A fault that logs of some kind have, as it was found in one.
-trait Repair: Sized {
-    /// Where the fault is.
-    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self>;
-
-    /// Mends it, and says what was done where a reader of the log should know.
-    fn apply(self, log: &mut Log<'_>) -> Option<String>;
-}
 
 /// When something is mended, and how.
 type Step = (fn(Options) -> bool, fn(&mut Log<'_>) -> Result<(), ReadError>);

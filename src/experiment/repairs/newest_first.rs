@@ -1,6 +1,6 @@
 //! Tables whose newest row is the first, as some data bases write them.
 
-use super::Repair;
+use super::repair::Repair;
 use crate::experiment::log::Log;
 
 pub(super) struct NewestFirst;

@@ -1,7 +1,7 @@
 //! Rows of one time that say the same, or complete one another: those of a logger that is faster than its
 //! bus, and of a table that has a row for each sensor. They are one row.
 
-use super::Repair;
+use super::repair::Repair;
 use crate::experiment::log::{Log, Times, repeats};
 
 /// Part of the rows that repeat a time, at least: of fewer the clock says what they are.

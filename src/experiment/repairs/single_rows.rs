@@ -1,6 +1,6 @@
 //! Trials of one row, from which no period follows, as where a counter of trials is late by a row.
 
-use super::Repair;
+use super::repair::Repair;
 use crate::experiment::log::Log;
 use crate::experiment::table::TrialRows;
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::Repair;
+use super::repair::Repair;
 use crate::experiment::log::{Log, Output};
 use crate::numerics::quantile;
 

@@ -1,6 +1,6 @@
 //! Stamps in two columns, whole seconds and what they leave over, as those of ROS are.
 
-use super::Repair;
+use super::repair::Repair;
 use crate::experiment::log::Log;
 
 /// The column of whole seconds, that of the rest, and the unit of the rest in seconds.

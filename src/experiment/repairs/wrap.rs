@@ -7,7 +7,7 @@
 mod turn;
 
 use self::turn::{RANGE, powers_of_two, seen, turns};
-use super::Repair;
+use super::repair::Repair;
 use crate::experiment::log::{Log, Output};
 use crate::numerics::{quantile, to_decimals};
 

@@ -1,8 +1,7 @@
 //! The grids of a log whose clock is not uniform, and what its reader should know of them.
 
-use super::run::Run;
-use super::{Clock, Evenness, Fault, filled_s};
-use crate::experiment::grid::{Grid, Part, Repair};
+use super::clock::{Clock, Evenness, Fault, Run, filled_s};
+use super::grid::{Grid, Part, Repair};
 use crate::numerics::as_written;
 use crate::units::SamplePeriod;
 
@@ -21,7 +20,7 @@ const ROUND_RELATIVE: f64 = 0.03;
 /// The grids of all trials, whose rows have the times `trials`; and a line on each thing that
 /// was found, which calls a row of a trial by `number`. Where something cannot be mended it comes back with
 /// its trial.
-pub(in crate::experiment) fn grids(
+pub(super) fn grids(
     trials: &[&[f64]],
     repair: Repair,
     number: &dyn Fn(usize, usize) -> u64,
