@@ -89,7 +89,9 @@ fn common_periods(clocks: &[Clock]) -> Vec<f64> {
         }
         let by_a_row = (ROUNDING / longest as f64).min(2.0 * ONE_RATE);
         let period = rounded(sum / rows, if is_guess { ROUND_RELATIVE } else { by_a_row });
-        group.iter().for_each(|(trial, _)| periods[*trial] = period);
+        for (trial, _) in group {
+            periods[trial] = period;
+        }
     }
     periods
 }

@@ -243,7 +243,9 @@ impl RowNumbers {
     /// The numbers of some rows.
     pub(super) fn of_some(&self, rows: &[usize]) -> Self {
         let mut some = Self::default();
-        rows.iter().for_each(|row| some.push(self.number(*row)));
+        for row in rows {
+            some.push(self.number(*row));
+        }
         some
     }
 
@@ -286,7 +288,6 @@ impl Column {
     }
 
     /// A column that holds `kind`.
-    #[cfg(any(feature = "mat", feature = "parquet"))]
     pub(super) fn not_numbers(kind: &str) -> Self {
         Self { error: Some((0, BadCell::Kind(kind.to_owned()))), ..Self::default() }
     }
@@ -326,7 +327,7 @@ impl Column {
 
     /// A column that holds texts.
     pub(super) fn text() -> Self {
-        Self { error: Some((0, BadCell::Kind("text".to_owned()))), ..Self::default() }
+        Self::not_numbers("text")
     }
 
     /// Adds the number of the next row, counted from 1.

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use crate::experiment::error::ReadError;
 use crate::experiment::grid::Repair;
-use crate::experiment::layout::{JointLayout, Layout};
+use crate::experiment::layout::Layout;
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{BadCell, Column, Head, Table, TrialRows};
 use crate::units::SamplePeriod;
@@ -150,18 +150,6 @@ impl<'a> Log<'a> {
             BadCell::Infinite => ReadError::Infinite { path, row, column },
             BadCell::TooLarge(value) => ReadError::BeyondPrecision { path, row, column, value },
         })
-    }
-
-    /// Refuses an output that has several series at each time, as in a table with a row for each joint.
-    pub(super) fn check_one_series(&self, layout: &JointLayout) -> Result<(), ReadError> {
-        match self.series_in(layout.output.column) {
-            Some(size) => Err(ReadError::SeveralSeries {
-                path: self.head.path.clone(),
-                column: self.header(layout.output.column),
-                size,
-            }),
-            None => Ok(()),
-        }
     }
 }
 

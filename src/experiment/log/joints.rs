@@ -13,10 +13,6 @@ use crate::numerics::to_digits_by;
 /// what is made of it until its delays are known.
 const SAMPLE_SIZE: usize = 8 * size_of::<f64>();
 
-/// Memory of a trial of a joint beside its samples and its label: itself, what its vector has to
-/// spare, its allocations, and what is kept of its delays.
-const TRIAL_SIZE: usize = 2 * size_of::<Trial>() + 640;
-
 impl Log<'_> {
     /// A joint on `grids`, and what should be known of how it was read.
     pub(in crate::experiment) fn joint(
@@ -37,7 +33,7 @@ impl Log<'_> {
         self.check_joint(layout)?;
         let (layout, unread) = self.with_readable_covariates(layout);
         let layout = &layout;
-        self.check_one_series(layout)?;
+        self.check_one_series(layout.output.column)?;
         let (longest_s, mut notes) = self.missing(layout, options)?;
         let own = match longest_s {
             None => None,
@@ -46,18 +42,18 @@ impl Log<'_> {
         notes.extend(self.coarse_notes(layout));
         notes.extend(unread);
         let grids = own.as_deref().unwrap_or(grids);
-        let (joint, split) = self.on_grids(layout, grids, longest_s.is_some())?;
+        let (joint, split) = self.on_grids(layout, grids, longest_s)?;
         notes.extend(shown(&joint.name, split));
         Ok((joint, notes))
     }
 
-    /// The joint on `grids`, and a line on each trial that is split; what is filled of an output that
-    /// `is_slow` counts as not measured.
+    /// The joint on `grids`, and a line on each trial that is split. What is filled of an output counts as not
+    /// measured where that is interpolated over up to `slow_s` seconds.
     fn on_grids(
         &self,
         layout: &JointLayout,
         grids: &[Grid],
-        is_slow: bool,
+        slow_s: Option<f64>,
     ) -> Result<(Joint, Vec<String>), ReadError> {
         let origin_s = self.origin_s();
         let mut joint = Joint {
@@ -75,10 +71,9 @@ impl Log<'_> {
             if pieces.len() > 1 {
                 split.push(self.split_note(&joint.name, rows, &pieces, grid));
             }
-            self.take(pieces.len(), TRIAL_SIZE + rows.label.len())?;
             let labels = part_labels(&rows.label, pieces.len(), &self.trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
-                let filled = if is_slow { piece.filled.clone() } else { Vec::new() };
+                let filled = if slow_s.is_some() { piece.filled.clone() } else { Vec::new() };
                 let trial = self.trial(layout, label, grid, piece)?;
                 joint.trials.push(trial.counted_from(origin_s).with_interpolated(filled));
             }

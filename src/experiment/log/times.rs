@@ -251,32 +251,37 @@ impl Log<'_> {
         }
     }
 
-    /// How many series an output has at each time, where these are several: all groups of rows of one time
-    /// are of one size, and values of one time lie far apart beside values of one series.
-    pub(super) fn series_in(&self, output: usize) -> Option<usize> {
+    /// Refuses an output that has several series at each time, as in a table with a row for each joint: all
+    /// groups of rows of one time are of one size, and values of one time lie far apart beside values of one
+    /// series.
+    pub(super) fn check_one_series(&self, output: usize) -> Result<(), ReadError> {
         /// Part of the rows in groups of one size, and how far apart values of one time must lie (chosen):
         /// of stamps that are rounded all of them follow one another.
         const ALIKE: f64 = 0.9;
         const APART: f64 = 10.0;
-        let times = self.column(self.layout.time.column()?)?;
-        let output = &self.column(output)?.values;
+        let (path, column) = (self.head.path.clone(), self.header(output));
+        let times = self.layout.time.column().and_then(|column| self.column(column));
+        let Some((times, output)) = times.zip(self.column(output)) else { return Ok(()) };
         let repeats = repeats(&times.values, &self.trials);
         let rows: usize = self.trials.iter().map(|trial| trial.end - trial.start).sum();
         let groups = rows - repeats.len();
         // Rounded to the nearest.
-        let size = (2 * rows + groups).checked_div(2 * groups)?;
+        let size = (2 * rows + groups).checked_div(2 * groups).unwrap_or(1);
         let odd = (rows as f64 - (size * groups) as f64).abs();
         if size < 2 || odd > (1.0 - ALIKE) * rows as f64 {
-            return None;
+            return Ok(());
         }
         let usual = |before: usize| {
             let distance = |row: &usize| {
-                let pair = output.get(*row).zip(output.get(row.checked_sub(before)?));
+                let pair = output.values.get(*row).zip(output.values.get(row.checked_sub(before)?));
                 pair.map(|(value, before)| (value - before).abs()).filter(|apart| !apart.is_nan())
             };
             median(&repeats.iter().filter_map(distance).collect::<Vec<_>>()).unwrap_or_default()
         };
-        (usual(1) > APART * usual(size)).then_some(size)
+        if usual(1) > APART * usual(size) {
+            return Err(ReadError::SeveralSeries { path, column, size });
+        }
+        Ok(())
     }
 }
 

@@ -23,7 +23,9 @@ impl Repair for SameTime {
             return None;
         }
         let mut is_repeat = vec![false; times.len()];
-        repeats.iter().for_each(|row| is_repeat[*row] = true);
+        for row in &repeats {
+            is_repeat[*row] = true;
+        }
         let mut are_copies = true;
         let mut columns = Vec::new();
         for column in &log.table.columns {

@@ -50,7 +50,9 @@ fn keep_first(values: &mut [f64], trials: &[Range<usize>], rows: usize) {
             let later = run.iter().enumerate().filter(|(at, _)| !is_first(*at));
             others.extend(later.map(|(_, row)| *row));
         }
-        others.into_iter().for_each(|row| values[row] = f64::NAN);
+        for row in others {
+            values[row] = f64::NAN;
+        }
     }
 }
 
