@@ -102,14 +102,9 @@ impl GrowingLog {
         if table.rows.is_empty() {
             return Err(ReadError::HeaderOnly { path: path() });
         }
-        let mut table = Cow::Borrowed(table);
-        let place = layout.place_of_time(&numeric);
-        if !self.options.repair.as_it_stands && table.is_newest_first(place) {
-            table.to_mut().oldest_first(place, &self.path);
-        }
         let budget = Budget::new(self.options.memory);
-        let log = Log { head, numeric: &numeric, table: &table, budget: &budget };
-        found.add_log(&log, &layout, None, self.options.repair)?;
+        let (table, how) = (Cow::Borrowed(table), (self.options.repair, None));
+        found.add_log(Log::new(head, &layout, &numeric, table, &budget, how))?;
         Ok(found)
     }
 

@@ -1,5 +1,6 @@
 //! Logs that a program already has in memory.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest as _, Sha256};
@@ -179,10 +180,9 @@ fn read(
     let column = |place: &usize| log.columns.get_mut(*place).map(|column| column.values.column());
     let columns = numeric.iter().filter_map(column).collect();
     let (rows, trials) = (RowNumbers::counted(rows), labels.runs());
-    let mut table = Table { source, rows, columns, trials, notes: Vec::new() };
-    table.oldest_first(layout.place_of_time(&numeric), &head.path);
-    let log = Log { head: &head, numeric: &numeric, table: &table, budget };
-    found.add_log(&log, &layout, stem, options.repair)?;
+    let table = Cow::Owned(Table { source, rows, columns, trials, notes: Vec::new() });
+    let how = (options.repair, stem);
+    found.add_log(Log::new(&head, &layout, &numeric, table, budget, how))?;
     Ok(found)
 }
 

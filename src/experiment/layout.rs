@@ -210,11 +210,6 @@ impl Layout {
         self.time.column().or(self.unused_time)
     }
 
-    /// Where the times are among the `numeric` columns.
-    pub(super) fn place_of_time(&self, numeric: &[usize]) -> Option<usize> {
-        self.time_column().and_then(|column| numeric.binary_search(&column).ok())
-    }
-
     fn add_mapped_joints(
         &mut self,
         columns: &Columns<'_>,

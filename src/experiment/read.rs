@@ -1,5 +1,6 @@
 //! Logs into an [`Experiment`]; what cannot be read is listed beside what can.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -8,16 +9,17 @@ use serde::Serialize;
 use super::columns::{ColumnMap, JointColumns};
 use super::error::ReadError;
 use super::format::{self, is_named_like_a_log};
+use super::grid::Repair;
 use super::joint::{Joint, Trial};
 use super::layout::{JointLayout, Layout};
 use super::log::Log;
 use super::memory::{Budget, MemoryLimit};
 use super::names::on_one_line;
 use super::period::is_period;
-use super::sampling::Repair;
+use super::repairs::mend_all;
 use super::source::{Source, source_of};
 use super::survey::{Survey, further_joint};
-use super::table::{Head, OpenTable, Table, TrialRows};
+use super::table::{Head, OpenTable};
 use super::time_column::{find_time_column, note_on_times};
 use crate::units::SamplePeriod;
 
@@ -293,19 +295,6 @@ fn read_log(
     Ok(found)
 }
 
-/// Adds to whole seconds what stands in a column of its own.
-fn add_rest_of_times(table: &mut Table, head: &Head, layout: &Layout, numeric: &[usize]) {
-    let place = |column: usize| numeric.binary_search(&column).ok();
-    let name = |column: usize| head.headers.get(column).map_or("", |header| &header.text);
-    let of = |time: usize| {
-        let (rest, unit_s) = layout.time_rest?;
-        Some(((place(time)?, place(rest)?), unit_s, [name(time), name(rest)]))
-    };
-    if let Some((places, unit_s, names)) = layout.time.column().and_then(of) {
-        table.add_to_times(places, unit_s, names, &head.path);
-    }
-}
-
 /// What every column means, and the joints that are not to be had.
 pub(super) fn laid_out(
     head: &Head,
@@ -407,56 +396,26 @@ impl Experiment {
             return Ok(());
         }
         let numeric = layout.numeric_columns();
-        let mut table = table.read(&numeric, layout.trial, layout.time_column(), layout.clock())?;
-        add_rest_of_times(&mut table, &head, layout, &numeric);
-        if !repair.as_it_stands {
-            table.oldest_first(layout.place_of_time(&numeric), &head.path);
-        }
-        if repair.is_free() {
-            let outputs = layout.joints.iter().filter_map(|joint| {
-                Some((&*joint.name, numeric.binary_search(&joint.output.column).ok()?))
-            });
-            table.readings_once(outputs, &head.path);
-        }
-        let log = Log { head: &head, numeric: &numeric, table: &table, budget };
-        self.add_log(&log, layout, stem, repair)
+        let table = table.read(&numeric, layout.trial, layout.time_column(), layout.clock())?;
+        let table = Cow::Owned(table);
+        self.add_log(Log::new(&head, layout, &numeric, table, budget, (repair, stem)))
     }
 
-    /// Adds the joints of `layout` with the numbers of `log`.
-    pub(super) fn add_log(
-        &mut self,
-        log: &Log<'_>,
-        layout: &Layout,
-        stem: Option<&str>,
-        repair: Repair,
-    ) -> Result<(), ReadError> {
-        log.check_times_agree(layout.time, &layout.time_again)?;
-        let (trials, alone) = with_a_period(log.trials(stem));
-        self.notes.extend(alone.first().map(|first| {
-            let (path, label) = (log.head.path.display(), &first.label);
-            match alone.len() {
-                1 => format!("{path}: trial `{label}` has one row only and is left out"),
-                count => format!(
-                    "{path}: {count} trials have one row only and are left out, the first is `{label}`"
-                ),
-            }
-        }));
-        let (grids, notes) = log.grids(layout.time, &trials, repair)?;
-        self.notes.extend(notes.iter().map(|note| format!("{}: {note}", log.head.path.display())));
-        for joint in &layout.joints {
-            match log.joint(joint, &trials, &grids, layout.time, repair) {
-                Ok(read) => {
-                    let with_gaps =
-                        log.joint_with_gaps(&read.0, joint, &trials, layout.time, repair);
-                    let (joint, notes) = with_gaps.unwrap_or(read);
+    /// Adds the joints of `log`, which is mended before.
+    pub(super) fn add_log(&mut self, mut log: Log<'_>) -> Result<(), ReadError> {
+        mend_all(&mut log)?;
+        let grids = log.main_grids()?;
+        self.notes.append(&mut log.notes);
+        for joint in &log.layout.joints {
+            match log.joint(joint, &grids) {
+                Ok((joint, notes)) => {
                     self.notes.extend(notes);
                     self.joints.push(joint);
                 }
                 Err(error) => self.failures.push(failed((joint.name.clone(), error))),
             }
         }
-        let others = layout.others.iter();
-        let others = others.map(|joint| log.joint(joint, &trials, &grids, layout.time, repair));
+        let others = log.layout.others.iter().map(|joint| log.joint(joint, &grids));
         self.others.extend(others.filter_map(Result::ok).map(|(joint, _)| joint));
         self.notes.extend(log.table.notes.iter().cloned());
         if self.sources.is_empty() {
@@ -464,15 +423,6 @@ impl Experiment {
         }
         Ok(())
     }
-}
-
-/// The trials that have two rows or more, and the others, where there are any such.
-fn with_a_period(trials: Vec<TrialRows>) -> (Vec<TrialRows>, Vec<TrialRows>) {
-    let is_long = |trial: &TrialRows| trial.end > trial.start + 1;
-    if !trials.iter().any(is_long) {
-        return (trials, Vec::new());
-    }
-    trials.into_iter().partition(is_long)
 }
 
 fn sample_period(path: &Path, map: &ColumnMap) -> Result<Option<SamplePeriod>, ReadError> {

@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 use super::error::ReadError;
 use super::memory::Budget;
 use super::names::{listed, on_one_line, shown};
-use super::readings::keep_readings;
 use super::source::Source;
 #[cfg(any(feature = "mat", feature = "parquet"))]
 use super::source::source_of;
@@ -172,17 +171,8 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Whether a program wrote the newest row first: the numbers in the column of times, the `time`-th,
-    /// fall.
-    pub(super) fn is_newest_first(&self, time: Option<usize>) -> bool {
-        time.and_then(|time| self.columns.get(time)).is_some_and(Column::falls)
-    }
-
-    /// Turns the table of the log at `path` round where the newest row is first.
-    pub(super) fn oldest_first(&mut self, time: Option<usize>, path: &Path) {
-        if !self.is_newest_first(time) {
-            return;
-        }
+    /// Turns the rows round: the last is the first.
+    pub(super) fn turn(&mut self) {
         let rows = self.rows.len();
         self.rows.turn();
         // What ends at a bad cell is refused anyhow.
@@ -192,53 +182,6 @@ impl Table {
         self.trials.reverse();
         for trial in &mut self.trials {
             (trial.start, trial.end) = (rows - trial.end, rows - trial.start);
-        }
-        let note = "the newest row is first: the rows are read from the last to the first";
-        self.notes.push(format!("{}: {note}", path.display()));
-    }
-
-    /// Adds to the whole seconds in the column at `time` those at `rest`, which are parts of one in units of
-    /// `unit_s` seconds; nothing where they are more, so that each says the
-    /// time by itself.
-    pub(super) fn add_to_times(
-        &mut self,
-        (time, rest): (usize, usize),
-        unit_s: f64,
-        names: [&str; 2],
-        path: &Path,
-    ) {
-        let Some(rest) = self.columns.get(rest).map(|column| column.values.clone()) else { return };
-        let Some(column) = self.columns.get_mut(time) else { return };
-        let is_part = |rest: &f64| rest.is_nan() || (0.0..1.0).contains(&(unit_s * rest));
-        let is_whole = |value: &f64| value.is_nan() || value.fract() == 0.0;
-        let are_two = rest.iter().all(is_part) && column.values.iter().all(is_whole);
-        if are_two {
-            column.values.iter_mut().zip(rest).for_each(|(value, rest)| *value += unit_s * rest);
-        }
-        let [whole, part] = names;
-        let and =
-            if are_two { format!(" and `{part}`") } else { format!("; `{part}` is not used") };
-        self.notes.push(format!("{}: the times are those in `{whole}`{and}", path.display()));
-    }
-
-    /// Leaves each reading of the `outputs` of joints, by their names and columns, in one row, where a
-    /// sensor is slower than the log at `path`.
-    pub(super) fn readings_once<'a>(
-        &mut self,
-        outputs: impl Iterator<Item = (&'a str, usize)>,
-        path: &Path,
-    ) {
-        for (joint, column) in outputs {
-            let Some(column) = self.columns.get_mut(column) else { continue };
-            let spans: Vec<_> = self.trials.iter().map(|trial| trial.start..trial.end).collect();
-            let whole = 0..column.values.len();
-            let spans = if spans.is_empty() { vec![whole] } else { spans };
-            let Some(rows) = keep_readings(&mut column.values, &spans) else { continue };
-            self.notes.push(format!(
-                "{}: joint `{joint}`: each reading of the output stands in {rows} rows, and counts in the \
-                 first of them",
-                path.display()
-            ));
         }
     }
 
@@ -297,6 +240,15 @@ impl RowNumbers {
         self.turned = !self.turned;
     }
 
+    /// The numbers of some rows.
+    pub(super) fn of_some(&self, rows: &[usize]) -> Self {
+        let mut some = Self::default();
+        for row in rows {
+            some.push(self.number(*row));
+        }
+        some
+    }
+
     /// What messages call the row with this index.
     pub(super) fn number(&self, index: usize) -> u64 {
         let index = if self.turned { (self.count - 1).saturating_sub(index) } else { index };
@@ -336,7 +288,6 @@ impl Column {
     }
 
     /// A column that holds `kind`.
-    #[cfg(any(feature = "mat", feature = "parquet"))]
     pub(super) fn not_numbers(kind: &str) -> Self {
         Self { error: Some((0, BadCell::Kind(kind.to_owned()))), ..Self::default() }
     }
@@ -353,16 +304,6 @@ impl Column {
             column.error = Some((row as u64 + 1, bad));
         }
         column
-    }
-
-    /// Whether each of its numbers but a few is smaller than the one before it.
-    fn falls(&self) -> bool {
-        /// Part of the rows that may be out of order, and how many show an order (chosen).
-        const OUT_OF_ORDER: f64 = 0.1;
-        const FEWEST: usize = 3;
-        let falling = self.values.windows(2).filter(|pair| pair[1] < pair[0]).count();
-        let rising = self.values.windows(2).filter(|pair| pair[1] > pair[0]).count();
-        falling >= FEWEST && rising as f64 <= OUT_OF_ORDER * falling as f64
     }
 
     /// Its largest number, where that is too small to be squared and is not zero.
@@ -386,7 +327,7 @@ impl Column {
 
     /// A column that holds texts.
     pub(super) fn text() -> Self {
-        Self { error: Some((0, BadCell::Kind("text".to_owned()))), ..Self::default() }
+        Self::not_numbers("text")
     }
 
     /// Adds the number of the next row, counted from 1.
@@ -511,32 +452,24 @@ mod tests {
     }
 
     #[test]
-    fn a_table_with_its_newest_row_first_is_turned_round() {
-        let times = |values: &[f64]| Column { values: values.to_vec(), ..Column::default() };
+    fn a_table_that_is_turned_keeps_the_numbers_of_its_rows() {
+        let column = |values: &[f64]| Column { values: values.to_vec(), ..Column::default() };
         let trial = |label: &str, start, end| TrialRows { label: label.to_owned(), start, end };
         let mut rows = RowNumbers::default();
         for row in [3, 4, 6, 7] {
             rows.push(row);
         }
-        let table = |values: &[f64]| Table {
+        let mut table = Table {
             source: Source { path: PathBuf::new(), bytes: 0, sha256: String::new() },
-            rows: rows.clone(),
-            columns: vec![times(values), times(&[1.0, 2.0, 3.0, 4.0])],
+            rows,
+            columns: vec![column(&[1.0, 2.0, 3.0, 4.0])],
             trials: vec![trial("b", 0, 1), trial("a", 1, 4)],
             notes: Vec::new(),
         };
-        let mut newest_first = table(&[3.0, 2.0, 1.0, 0.0]);
-        newest_first.oldest_first(Some(0), Path::new("log.csv"));
-        assert_eq!(newest_first.columns[1].values, [4.0, 3.0, 2.0, 1.0]);
-        assert_eq!(newest_first.trials, [trial("a", 0, 3), trial("b", 3, 4)]);
-        assert_eq!([0, 1, 2, 3].map(|row| newest_first.rows.number(row)), [7, 6, 4, 3]);
-        assert_eq!(newest_first.notes.len(), 1);
-        // One that restarts or stands still is no such table.
-        for values in [[0.0, 1.0, 0.0, 1.0], [0.0; 4], [0.0, 1.0, 2.0, 1.5]] {
-            let mut other = table(&values);
-            other.oldest_first(Some(0), Path::new("log.csv"));
-            assert_eq!((other.columns[0].values.as_slice(), other.notes.len()), (&values[..], 0));
-        }
+        table.turn();
+        assert_eq!(table.columns[0].values, [4.0, 3.0, 2.0, 1.0]);
+        assert_eq!(table.trials, [trial("a", 0, 3), trial("b", 3, 4)]);
+        assert_eq!([0, 1, 2, 3].map(|row| table.rows.number(row)), [7, 6, 4, 3]);
     }
 
     #[test]

@@ -3,9 +3,9 @@
 use super::text_table::TextTable;
 use crate::experiment::{Role, Survey, SurveyedColumn};
 
-/// A row per column: what it is taken for and why; what is open; and the mapping as `options`,
-/// where there are some.
-pub(crate) fn columns_table(survey: &Survey, options: &str) -> String {
+/// A row per column: what it is taken for and why; what is open; the mapping as `options`, where there are
+/// some; and what is `mended` in the log.
+pub(crate) fn columns_table(survey: &Survey, options: &str, mended: &[String]) -> String {
     let mut table = TextTable::new(["column", "taken for", "unit", "why"], &[]);
     for column in &survey.columns {
         let unit = column.unit.clone().unwrap_or_default();
@@ -14,7 +14,8 @@ pub(crate) fn columns_table(survey: &Survey, options: &str) -> String {
     let mut text = format!("{table}\n");
     let open = survey.open.iter().cloned();
     let options = (!options.is_empty()).then(|| format!("as options: {options}"));
-    for line in open.chain(options) {
+    let mended = mended.iter().map(|what| format!("where it is read: {what}"));
+    for line in open.chain(options).chain(mended) {
         text += &line;
         text.push('\n');
     }

@@ -281,3 +281,33 @@ fn steps_that_lie_in_gaps_have_delays_without_an_option() {
     let median = joint["delay_s"]["median"].as_f64().unwrap();
     assert!((median - 0.2).abs() < 0.02, "{median}");
 }
+
+#[test]
+fn columns_says_what_is_mended_in_the_log() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.csv");
+    // The newest row is first, the slewing joint turns more than once, and one of its samples is missing.
+    let mut text = "time_s,slew.input [V],slew.output [deg]\n".to_owned();
+    for k in (0..3000).rev() {
+        let level = [0.0, 3.0, 0.0, -2.0][(k / 200) % 4];
+        let angle = (700.0 * (k as f64 / 500.0).sin()).rem_euclid(360.0);
+        let angle = if k == 1234 { String::new() } else { format!("{angle:.3}") };
+        text += &format!("{:.2},{level},{angle}\n", 0.01 * k as f64);
+    }
+    std::fs::write(&path, text).unwrap();
+    let path = path.to_str().unwrap();
+    let table = printed(&tauscope(&["columns", path]).output().unwrap());
+    let json = printed(&tauscope(&["columns", path, "--format", "json"]).output().unwrap());
+    let json: Value = serde_json::from_str(&json).unwrap();
+    let mended: Vec<&str> =
+        json["mended"].as_array().unwrap().iter().flat_map(Value::as_str).collect();
+    let expected =
+        ["the newest row is first", "wraps at a turn of 360 deg", "1 cell is empty or NaN"];
+    assert_eq!(mended.len(), expected.len(), "{mended:?}");
+    for (line, says) in mended.iter().zip(expected) {
+        assert!(
+            line.contains(says) && table.contains(&format!("where it is read: {line}")),
+            "{table}"
+        );
+    }
+}

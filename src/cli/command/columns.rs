@@ -10,13 +10,14 @@ use crate::cli::args::{MemoryArgs, RunArgs};
 use crate::cli::exit::Completion;
 use crate::cli::output::{check_outputs, write_file};
 use crate::cli::typed::mapping_options;
-use crate::experiment::{ColumnMap, Survey};
+use crate::experiment::{ColumnMap, Experiment, MemoryLimit, ReadOptions, Survey};
 use crate::report::{ColumnsJson, columns_table};
 
 /// Say what each column of a log is taken for, and why
 ///
 /// Names and data tell which column is the time, which drives a joint, and which follows.
-/// With `-w` the mapping is written as a file for `--columns`, to be corrected by hand.
+/// With `-w` the mapping is written as a file for `--columns`, to be corrected by hand. What is mended in
+/// the log where it is read so is said, too.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
     /// The log
@@ -51,11 +52,25 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     }
     let map = &survey.map;
     let options = mapping_options([map.time.as_deref(), map.trial.as_deref()], &map.named_joints());
+    let mended = mended(&survey, args.memory.limit());
     let text = || {
         let joints = if survey.map.joints.is_empty() { "" } else { options.as_str() };
-        columns_table(&survey, joints)
+        columns_table(&survey, joints, &mended)
     };
-    args.run.print(text, || ColumnsJson::new(&survey, &options))?;
+    args.run.print(text, || ColumnsJson::new(&survey, &options, &mended))?;
     let told = !survey.map.joints.is_empty();
     Ok(if told { Completion::Whole } else { Completion::Partial })
+}
+
+/// What is mended in the log where its columns are read as `survey` takes them, or why it cannot be read so;
+/// nothing where that does not say what to read.
+fn mended(survey: &Survey, memory: MemoryLimit) -> Vec<String> {
+    if survey.map.joints.is_empty() || survey.map.time.is_none() {
+        return Vec::new();
+    }
+    let columns = survey.map.clone();
+    let options = ReadOptions { columns, memory, ..ReadOptions::default() };
+    let read = Experiment::read(std::slice::from_ref(&survey.path), &options);
+    let failures = read.failures.iter().map(|failure| failure.error.to_string());
+    read.notes.into_iter().chain(failures).collect()
 }

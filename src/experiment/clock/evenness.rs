@@ -1,6 +1,6 @@
 //! How far stamps are from an even grid, and what that makes of the clock.
 
-use super::fault::ClockFault;
+use super::fault::Fault;
 use super::period::Typical;
 use super::run::{LOST_SHARE, Run};
 use crate::numerics::{median, quantile};
@@ -87,7 +87,7 @@ impl Deviations {
         runs: &[Run],
         typical: &Typical,
         period: f64,
-    ) -> Result<Evenness, ClockFault> {
+    ) -> Result<Evenness, Fault> {
         let sizes: Vec<f64> = self.jitter.iter().map(|(jitter, _)| jitter.abs()).collect();
         let within = |limit: f64| quantile(&sizes, KEPT_SHARE).is_some_and(|size| size <= limit);
         let rows: usize = runs.iter().map(|run| run.rows.len()).sum();
@@ -106,7 +106,7 @@ impl Deviations {
         }
         if typical.grain_s > 2.0 * period {
             let (_, row) = self.largest();
-            return Err(ClockFault::TooCoarse { row, grain_s: typical.grain_s, period });
+            return Err(Fault::Coarse { row, grain_s: typical.grain_s, period });
         }
         Ok(if steady && within(KEPT) { Evenness::Jitters } else { Evenness::Uneven })
     }

@@ -5,7 +5,6 @@
 //! slow drift `d_k` and a jitter `j_k`. Lost rows show as a jump that the rows behind it keep;
 //! a stamp that is only late is made good by the next ones.
 
-mod bursts;
 mod evenness;
 mod fault;
 mod period;
@@ -14,12 +13,10 @@ mod run;
 
 use self::evenness::Deviations;
 use self::period::{least_squares_period, typical_period};
-use self::rows::{Found, between_restarts, is_even_once_sorted, parted, short_gaps};
+use self::rows::{Found, between_restarts, count, is_even_once_sorted, parted, short_gaps};
 
-pub(super) use self::bursts::spread;
 pub(super) use self::evenness::Evenness;
-pub(super) use self::fault::ClockFault;
-pub(super) use self::period::rate_changes;
+pub(super) use self::fault::Fault;
 pub(super) use self::run::Run;
 
 /// A gap is filled up to so many periods: one row of Algorithm 1's Φ at its usual β.
@@ -43,23 +40,16 @@ pub(super) struct Clock {
     pub(super) drift: f64,
     /// Short gaps: how many, the longest in periods, and the row behind the first.
     pub(super) gaps: Option<(usize, usize, usize)>,
-    /// Rows that are there twice: how many, and the first.
-    pub(super) twice: Option<(usize, usize)>,
-    /// Rows that came out of order: how many, and the first.
-    pub(super) disordered: Option<(usize, usize)>,
-    /// Rows during which the clock stood still before it jumped: how many, and the first.
-    pub(super) frozen: Option<(usize, usize)>,
-    /// Rows that stand alone between two gaps, and are left out.
-    pub(super) alone: usize,
+    pub(super) found: Found,
 }
 
 impl Clock {
     /// Reads the stamps `times`, in seconds; gaps up to `fill_s` do not part a run, nor those
     /// that are filled unasked where it is none.
-    pub(super) fn read(times: &[f64], fill_s: Option<f64>) -> Result<Self, ClockFault> {
+    pub(super) fn read(times: &[f64], fill_s: Option<f64>) -> Result<Self, Fault> {
         let typical = typical_period(times)?;
         let mut found = Found::default();
-        let (mut runs, mut alone) = (Vec::new(), 0);
+        let mut runs = Vec::new();
         let longest = fill_s.unwrap_or_else(|| filled_s(typical.seconds)) / typical.seconds;
         let parts = between_restarts(times, typical.seconds).or_else(|fault| {
             // Rows of one even clock, each of which has a time of its own, can be sorted.
@@ -71,14 +61,16 @@ impl Clock {
         })?;
         for (index, rows) in parts.into_iter().enumerate() {
             let rows = found.in_order(rows, times);
-            let rows = found.without_frozen(rows, times, &typical);
             let rows = found.once(rows, times, &typical);
-            let mut parts = parted(&rows, times, &typical, longest.max(1.0));
-            if let Some(first) = parts.first_mut() {
-                first.restarts = index > 0;
+            if let Some(first) = rows.iter().min().filter(|_| index > 0) {
+                count(&mut found.restarts, *first);
             }
-            alone += parts.iter().filter(|run| run.rows.len() < 2).count();
-            runs.extend(parts.into_iter().filter(|run| run.rows.len() > 1));
+            for run in parted(&rows, times, &typical, longest.max(1.0)) {
+                match run.rows.as_slice() {
+                    [row] => count(&mut found.alone, *row),
+                    _ => runs.push(run),
+                }
+            }
         }
         let period = least_squares_period(&runs, times, &typical)?;
         let deviations = Deviations::of(&runs, times, period, &typical);
@@ -91,10 +83,7 @@ impl Clock {
             jitter: deviations.deviation(),
             largest: deviations.largest(),
             drift: deviations.drift,
-            twice: found.twice,
-            disordered: found.disordered,
-            frozen: found.frozen,
-            alone,
+            found,
         })
     }
 
@@ -122,7 +111,7 @@ mod tests {
         (0..rows).map(time).collect()
     }
 
-    fn read(times: &[f64]) -> Clock {
+    pub(super) fn read(times: &[f64]) -> Clock {
         Clock::read(times, None).unwrap()
     }
 
@@ -197,7 +186,7 @@ mod tests {
         let to_even = stamps(6000, |k| (0.01 * k as f64).round_ties_even());
         assert_eq!(read(&to_even).evenness, Evenness::Rounded { to_s: 1.0 });
         let few = Clock::read(&coarse(1.7e9, 4000), None);
-        assert_eq!(few, Err(ClockFault::FewStamps { stamps: 3, grain_s: 128.0 }));
+        assert_eq!(few, Err(Fault::FewStamps { stamps: 3, grain_s: 128.0 }));
     }
 
     #[test]
@@ -225,7 +214,10 @@ mod tests {
         // Rows 50 to 60 were held up and come all at once.
         let late = |k: usize| if (50..60).contains(&k) { 60.0 + 1e-3 * k as f64 } else { k as f64 };
         let clock = read(&stamps(400, |k| 0.01 * late(k)));
-        assert_eq!((clock.gaps, clock.twice, clock.evenness), (None, None, Evenness::Jitters));
+        assert_eq!(
+            (clock.gaps, clock.found.twice, clock.evenness),
+            (None, None, Evenness::Jitters)
+        );
         assert!(clock.largest.0 > 9.0);
     }
 
@@ -238,16 +230,15 @@ mod tests {
         });
         let clock = read(&times);
         assert_eq!(sizes(&clock), [100, 100, 100]);
-        let restarts: Vec<bool> = clock.runs.iter().map(|run| run.restarts).collect();
-        assert_eq!(restarts, [false, false, true]);
+        assert_eq!(clock.found.restarts, Some((1, 200)));
     }
 
     #[test]
     fn a_row_that_is_there_twice_is_left_out() {
         let clock = read(&stamps(200, |k| 0.01 * (if k < 80 { k } else { k - 1 }) as f64));
-        assert_eq!((clock.twice, sizes(&clock)), (Some((1, 80)), vec![199]));
+        assert_eq!((clock.found.twice, sizes(&clock)), (Some((1, 80)), vec![199]));
         let rounded = read(&stamps(200, |k| 0.01 * (if k == 80 { 79 } else { k }) as f64));
-        assert_eq!((rounded.twice, sizes(&rounded)), (None, vec![200]));
+        assert_eq!((rounded.found.twice, sizes(&rounded)), (None, vec![200]));
     }
 
     #[test]
@@ -258,13 +249,13 @@ mod tests {
             _ => k,
         };
         let clock = read(&stamps(100, |k| 0.01 * swapped(k) as f64));
-        assert_eq!(clock.disordered, Some((1, 41)));
+        assert_eq!(clock.found.disordered, Some((1, 41)));
         assert_eq!(clock.runs[0].rows[40..42], [41, 40]);
         for (wrong, row) in [(0.01, 60), (99.0, 61)] {
             let times = stamps(100, |k| if k == 60 { wrong } else { 0.01 * k as f64 });
-            assert_eq!(Clock::read(&times, None), Err(ClockFault::Garbage { row }));
+            assert_eq!(Clock::read(&times, None), Err(Fault::NotIncreasing { row }));
         }
-        assert_eq!(Clock::read(&[1.0; 5], None), Err(ClockFault::StandsStill));
-        assert_eq!(Clock::read(&[1.0], None), Err(ClockFault::SingleRow));
+        assert_eq!(Clock::read(&[1.0; 5], None), Err(Fault::NotIncreasing { row: 1 }));
+        assert_eq!(Clock::read(&[1.0], None), Err(Fault::SingleRow));
     }
 }

@@ -1,6 +1,6 @@
-//! The period of a clock: a first guess, the least-squares period, and where it changes.
+//! The period of a clock: a first guess, and the least-squares period.
 
-use super::fault::ClockFault;
+use super::fault::Fault;
 use super::run::{JUMP, LOST_SHARE, Run};
 use crate::numerics::median;
 
@@ -23,13 +23,13 @@ impl Typical {
 }
 
 /// The mean of the steps that are no jumps. Stamps that are rounded may stand still.
-pub(super) fn typical_period(times: &[f64]) -> Result<Typical, ClockFault> {
+pub(super) fn typical_period(times: &[f64]) -> Result<Typical, Fault> {
     let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
     let forward: Vec<f64> = steps.clone().filter(|step| *step > 0.0).collect();
     if times.len() < 2 {
-        return Err(ClockFault::SingleRow);
+        return Err(Fault::SingleRow);
     }
-    let middle = median(&forward).ok_or(ClockFault::StandsStill)?;
+    let middle = median(&forward).ok_or(Fault::NotIncreasing { row: 1 })?;
     if let Some(found) = rounded_period(times, &forward) {
         return Ok(found);
     }
@@ -82,11 +82,11 @@ pub(super) fn least_squares_period(
     runs: &[Run],
     times: &[f64],
     typical: &Typical,
-) -> Result<f64, ClockFault> {
+) -> Result<f64, Fault> {
     let stamps: usize = runs.iter().map(|run| known_to_a_period(run, times, typical).count()).sum();
     if typical.is_coarse() && stamps < FEWEST_STAMPS {
         let grain_s = typical.grain_s;
-        return Err(ClockFault::FewStamps { stamps: stamps + runs.len(), grain_s });
+        return Err(Fault::FewStamps { stamps: stamps + runs.len(), grain_s });
     }
     let (mut products, mut squares) = (0.0, 0.0);
     for run in runs {
@@ -100,7 +100,7 @@ pub(super) fn least_squares_period(
         }
     }
     let period = products / squares;
-    if period.is_finite() && period > 0.0 { Ok(period) } else { Err(ClockFault::SingleRow) }
+    if period.is_finite() && period > 0.0 { Ok(period) } else { Err(Fault::SingleRow) }
 }
 
 /// Places and stamps of the rows of `run` whose stamps say when they were measured.
@@ -116,39 +116,4 @@ fn known_to_a_period<'a>(
         let changes = before.replace(*time).is_some_and(|before: f64| before < *time);
         !is_coarse || changes
     })
-}
-
-/// The rows at which the sampling goes over to another rate for good: the first of them, the
-/// period before and behind it, and how many there are.
-pub(in crate::experiment) fn rate_changes(
-    run: &Run,
-    times: &[f64],
-) -> Option<(usize, [f64; 2], usize)> {
-    /// Steps on either side whose medians are compared.
-    const STEPS: usize = 20;
-    /// Part by which they must differ.
-    const OTHER: f64 = 0.1;
-    let stamps: Vec<f64> = run.rows.iter().filter_map(|row| times.get(*row).copied()).collect();
-    let steps: Vec<f64> = stamps.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let mut found: Option<(usize, [f64; 2], usize)> = None;
-    let mut index = STEPS;
-    while let (Some(before), Some(behind)) =
-        (steps.get(index.saturating_sub(STEPS)..index), steps.get(index..index + STEPS))
-    {
-        index += 1;
-        let Some((before, behind)) = median(before).zip(median(behind)) else { continue };
-        if (behind / before - 1.0).abs() <= OTHER {
-            continue;
-        }
-        let is_new = |step: &&f64| (**step - behind).abs() < (**step - before).abs();
-        let later = steps.iter().skip(index - 1).take_while(|step| !is_new(step)).count();
-        let first = run.rows.get(index + later).copied().unwrap_or_default();
-        // Behind the change, and not across it.
-        let own = steps.iter().skip(index - 1 + later).take(STEPS).copied();
-        let behind = median(&own.collect::<Vec<_>>()).unwrap_or(behind);
-        let (first, periods, count) = found.unwrap_or((first, [before, behind], 0));
-        found = Some((first, periods, count + 1));
-        index += later + STEPS;
-    }
-    found
 }

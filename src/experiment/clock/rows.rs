@@ -1,6 +1,6 @@
 //! Which rows follow one another: in order, each once, and parted where the clock jumps.
 
-use super::fault::ClockFault;
+use super::fault::Fault;
 use super::period::Typical;
 use super::run::{JUMP, Run};
 use crate::numerics::median;
@@ -18,7 +18,7 @@ pub(super) fn is_even_once_sorted(times: &[f64]) -> bool {
 }
 
 /// Runs of rows between the places where time jumps back for good.
-pub(super) fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usize>>, ClockFault> {
+pub(super) fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usize>>, Fault> {
     let at = |row: usize| times.get(row).copied();
     let mut runs = vec![Vec::new()];
     for row in 0..times.len() {
@@ -29,7 +29,7 @@ pub(super) fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usi
             let returns = before.is_some_and(|before| later.clone().any(|time| time > before));
             let spike = row.checked_sub(2).and_then(at).zip(at(row)).is_some_and(|(a, b)| b > a);
             if returns || spike {
-                return Err(ClockFault::Garbage { row });
+                return Err(Fault::NotIncreasing { row });
             }
             runs.push(Vec::new());
         }
@@ -40,12 +40,15 @@ pub(super) fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usi
     Ok(runs)
 }
 
-/// What was found on the way.
-#[derive(Default)]
-pub(super) struct Found {
-    pub(super) twice: Option<(usize, usize)>,
-    pub(super) disordered: Option<(usize, usize)>,
-    pub(super) frozen: Option<(usize, usize)>,
+/// How many rows of a kind were found on the way, and the first of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::experiment) struct Found {
+    pub(in crate::experiment) twice: Option<(usize, usize)>,
+    pub(in crate::experiment) disordered: Option<(usize, usize)>,
+    /// At which the clock starts anew.
+    pub(in crate::experiment) restarts: Option<(usize, usize)>,
+    /// Between two gaps, and left out.
+    pub(in crate::experiment) alone: Option<(usize, usize)>,
 }
 
 impl Found {
@@ -57,38 +60,6 @@ impl Found {
         }
         rows.sort_by(|a, b| time(*a).total_cmp(&time(*b)));
         rows
-    }
-
-    /// `rows` without those at which the clock stood still: many of one stamp, as usual before
-    /// the first of them, and with a jump behind the last that makes up for them. When each of
-    /// them was measured is not known.
-    pub(super) fn without_frozen(
-        &mut self,
-        rows: Vec<usize>,
-        times: &[f64],
-        typical: &Typical,
-    ) -> Vec<usize> {
-        if typical.grain_s > 0.0 {
-            return rows;
-        }
-        let time = |row: &usize| times.get(*row).copied().unwrap_or(f64::NAN);
-        #[expect(clippy::float_cmp, reason = "whether a stamp is repeated")]
-        let groups: Vec<&[usize]> = rows.chunk_by(|a, b| time(a) == time(b)).collect();
-        let at = |index: usize| Some(time(groups.get(index)?.first()?));
-        let step = |from: Option<usize>, to: usize| Some((at(to)? - at(from?)?) / typical.seconds);
-        let mut kept = Vec::with_capacity(rows.len());
-        for (index, group) in groups.iter().enumerate() {
-            let makes_up = |step: f64| step > 0.5 * group.len() as f64;
-            let is_frozen = group.len() > LOOK_AHEAD
-                && step(index.checked_sub(1), index).is_none_or(|step| step <= JUMP)
-                && step(Some(index), index + 1).is_none_or(makes_up);
-            let (first, others) = group.split_at(if is_frozen { 1 } else { group.len() });
-            kept.extend_from_slice(first);
-            for row in others {
-                count(&mut self.frozen, *row);
-            }
-        }
-        kept
     }
 
     /// `rows` without those that are there twice: a row at the time of the one before it,
@@ -127,7 +98,8 @@ impl Found {
     }
 }
 
-fn count(found: &mut Option<(usize, usize)>, row: usize) {
+/// Counts a row of a kind.
+pub(super) fn count(found: &mut Option<(usize, usize)>, row: usize) {
     let (many, first) = found.unwrap_or((0, row));
     *found = Some((many + 1, first.min(row)));
 }
@@ -145,7 +117,7 @@ pub(super) fn parted(rows: &[usize], times: &[f64], typical: &Typical, longest: 
                 run.rows.push(row);
                 run.places.push(place);
             }
-            _ => runs.push(Run { rows: vec![row], places: vec![0], restarts: false }),
+            _ => runs.push(Run { rows: vec![row], places: vec![0] }),
         }
     }
     runs

@@ -13,8 +13,6 @@ pub(in crate::experiment) struct Run {
     pub(in crate::experiment) rows: Vec<usize>,
     /// Their places on an even grid; the first is 0.
     pub(in crate::experiment) places: Vec<usize>,
-    /// Whether the clock starts anew here, and not behind a gap.
-    pub(in crate::experiment) restarts: bool,
 }
 
 impl Run {

@@ -1,31 +1,106 @@
-//! A table that was read, and how its columns, rows and cells are spoken of.
+//! A table that was read, with what is needed to mend it and to speak of its columns, rows and cells.
+
+use std::borrow::Cow;
+use std::collections::HashSet;
+use std::ops::Range;
 
 use crate::experiment::error::ReadError;
+use crate::experiment::grid::Repair;
+use crate::experiment::layout::Layout;
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{BadCell, Column, Head, Table, TrialRows};
+use crate::units::SamplePeriod;
 
-/// A table that was read, with what is needed to speak of its cells.
+/// A table that was read, with what is needed to mend it and to speak of its cells.
 pub(in crate::experiment) struct Log<'a> {
     pub(in crate::experiment) head: &'a Head,
-    pub(in crate::experiment) numeric: &'a [usize],
-    pub(in crate::experiment) table: &'a Table,
-    pub(in crate::experiment) budget: &'a Budget,
+    pub(in crate::experiment) layout: &'a Layout,
+    /// The columns that were read, by their places among the headers.
+    numeric: &'a [usize],
+    /// A copy of its own where anything is mended in one that grows.
+    pub(in crate::experiment) table: Cow<'a, Table>,
+    budget: &'a Budget,
+    /// What may be done to it.
+    pub(in crate::experiment) options: Repair,
+    pub(in crate::experiment) times: Times,
+    pub(in crate::experiment) trials: Vec<TrialRows>,
+    /// The columns of outputs that wrapped.
+    pub(in crate::experiment) unwrapped: Vec<usize>,
+    /// What a reader of the log should know.
+    pub(in crate::experiment) notes: Vec<String>,
 }
 
-impl Log<'_> {
-    /// The trials' rows, named: the whole file is trial `1` unless it says otherwise.
-    pub(in crate::experiment) fn trials(&self, stem: Option<&str>) -> Vec<TrialRows> {
-        let mut trials = self.table.trials.clone();
-        if trials.is_empty() {
-            let label = stem.unwrap_or("1").to_owned();
-            return vec![TrialRows { label, start: 0, end: self.table.rows.len() }];
-        }
-        for trial in &mut trials {
-            if let Some(stem) = stem {
-                trial.label = format!("{stem}/{}", trial.label);
-            }
-        }
-        trials
+/// Times of the rows in seconds, or the period between rows that have none.
+#[derive(Debug)]
+pub(in crate::experiment) enum Times {
+    Stamps(Vec<f64>),
+    Rows(SamplePeriod),
+}
+
+/// The output of a joint among the columns.
+pub(in crate::experiment) struct Output {
+    pub(in crate::experiment) column: usize,
+    /// The column of the joint's input.
+    pub(in crate::experiment) input: usize,
+    pub(in crate::experiment) unit: Option<String>,
+    joint: String,
+    is_wanted: bool,
+}
+
+impl Output {
+    /// `text` of its joint, where that is among the results.
+    pub(in crate::experiment) fn note(&self, text: &str) -> Option<String> {
+        self.is_wanted.then(|| format!("joint `{}`: {text}", self.joint))
+    }
+}
+
+impl<'a> Log<'a> {
+    /// The log with the columns `numeric` in `table`, as it stands; a file without labels is one trial, named
+    /// `1` or by its `stem`.
+    pub(in crate::experiment) fn new(
+        head: &'a Head,
+        layout: &'a Layout,
+        numeric: &'a [usize],
+        table: Cow<'a, Table>,
+        budget: &'a Budget,
+        (options, stem): (Repair, Option<&str>),
+    ) -> Self {
+        let trials = named(&table, stem);
+        let (times, unwrapped, notes) = (Times::Stamps(Vec::new()), Vec::new(), Vec::new());
+        Self { head, layout, numeric, table, budget, options, times, trials, unwrapped, notes }
+    }
+
+    /// The outputs of all joints, each column once.
+    pub(in crate::experiment) fn outputs(&self) -> impl Iterator<Item = Output> {
+        let mut seen = HashSet::new();
+        let wanted = self.layout.joints.iter().map(|joint| (joint, true));
+        let others = self.layout.others.iter().map(|joint| (joint, false));
+        let outputs = wanted.chain(others).map(|(joint, is_wanted)| Output {
+            column: joint.output.column,
+            input: joint.input.column,
+            unit: joint.output.signal.unit.clone(),
+            joint: joint.name.clone(),
+            is_wanted,
+        });
+        outputs.filter(move |output| seen.insert(output.column))
+    }
+
+    /// The rows of each trial.
+    pub(in crate::experiment) fn spans(&self) -> Vec<Range<usize>> {
+        self.trials.iter().map(|trial| trial.start..trial.end).collect()
+    }
+
+    /// The numbers in a column, trial by trial; none where it ends at a bad cell.
+    pub(in crate::experiment) fn parts(&self, column: usize) -> Option<Vec<&[f64]>> {
+        let values = &self.column(column)?.values;
+        self.spans().into_iter().map(|rows| values.get(rows)).collect()
+    }
+
+    /// The times of the rows of a trial; none where rows have no time.
+    pub(in crate::experiment) fn times_of(&self, trial: usize) -> Option<&[f64]> {
+        let Times::Stamps(times) = &self.times else { return None };
+        let rows = self.trials.get(trial)?;
+        times.get(rows.start..rows.end)
     }
 
     /// Takes the memory of `count` values of `size` bytes each.
@@ -34,17 +109,33 @@ impl Log<'_> {
         taken.map_err(|error| error.refuse(&self.head.path))
     }
 
-    pub(super) fn column(&self, index: usize) -> Option<&Column> {
-        let place = self.numeric.binary_search(&index).ok()?;
-        self.table.columns.get(place)
+    pub(in crate::experiment) fn column(&self, index: usize) -> Option<&Column> {
+        self.table.columns.get(self.numeric.binary_search(&index).ok()?)
     }
 
+    pub(in crate::experiment) fn column_mut(&mut self, index: usize) -> Option<&mut Column> {
+        let place = self.numeric.binary_search(&index).ok()?;
+        self.table.to_mut().columns.get_mut(place)
+    }
+
+    /// The name of a column.
     pub(super) fn header(&self, column: usize) -> String {
         self.head.headers.get(column).map(|header| header.name.clone()).unwrap_or_default()
     }
 
-    pub(super) fn row(&self, index: usize) -> u64 {
+    /// The header of a column as it stands in the file.
+    pub(in crate::experiment) fn cell_of_header(&self, column: usize) -> &str {
+        self.head.headers.get(column).map_or("", |header| &header.text)
+    }
+
+    /// What messages call a row.
+    pub(in crate::experiment) fn row(&self, index: usize) -> u64 {
         self.table.rows.number(index)
+    }
+
+    /// `note` behind the name of the file.
+    pub(in crate::experiment) fn named(&self, note: &str) -> String {
+        format!("{}: {note}", self.head.path.display())
     }
 
     /// The first bad cell of a column.
@@ -60,4 +151,19 @@ impl Log<'_> {
             BadCell::TooLarge(value) => ReadError::BeyondPrecision { path, row, column, value },
         })
     }
+}
+
+/// The trials' rows, named: the whole file is trial `1` unless it says otherwise.
+fn named(table: &Table, stem: Option<&str>) -> Vec<TrialRows> {
+    let mut trials = table.trials.clone();
+    if trials.is_empty() {
+        let label = stem.unwrap_or("1").to_owned();
+        return vec![TrialRows { label, start: 0, end: table.rows.len() }];
+    }
+    for trial in &mut trials {
+        if let Some(stem) = stem {
+            trial.label = format!("{stem}/{}", trial.label);
+        }
+    }
+    trials
 }

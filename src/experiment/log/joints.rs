@@ -1,87 +1,78 @@
 //! The joints of a log: cells checked, trials cut and put on a uniform grid.
 
-use std::ops::Range;
-
 use super::cells::Log;
-use super::times::Clock;
 use crate::experiment::error::ReadError;
 use crate::experiment::gaps::{gap_with_all_steps_s, unlogged};
+use crate::experiment::grid::{Grid, Piece, Repair, Signals};
 use crate::experiment::joint::{Joint, Signal, Trial};
 use crate::experiment::layout::JointLayout;
-use crate::experiment::sampling::{Grid, Piece, Repair, Signals};
 use crate::experiment::table::{Coarse, TrialRows};
-use crate::experiment::time_column::TimeSource;
-use crate::numerics::{median, to_digits_by};
+use crate::numerics::to_digits_by;
 
 /// Memory of a sample of a signal: the number as it was read, on its grid and in its trial, and
 /// what is made of it until its delays are known.
 const SAMPLE_SIZE: usize = 8 * size_of::<f64>();
 
-/// Memory of a trial of a joint beside its samples and its label: itself, what its vector has to
-/// spare, its allocations, and what is kept of its delays.
-const TRIAL_SIZE: usize = 2 * size_of::<Trial>() + 640;
-
-/// Grids of a joint, where they are not those of its log, and what should be known of them.
-type OwnGrids = (Option<Vec<Grid>>, Vec<String>);
-
 impl Log<'_> {
-    /// A joint, and what should be known of how it was read.
+    /// A joint on `grids`, and what should be known of how it was read.
     pub(in crate::experiment) fn joint(
         &self,
         layout: &JointLayout,
-        trials: &[TrialRows],
         grids: &[Grid],
-        time: TimeSource,
-        repair: Repair,
     ) -> Result<(Joint, Vec<String>), ReadError> {
-        self.check_joint(layout, repair)?;
+        let read = self.joint_on(layout, grids, self.options)?;
+        Ok(self.joint_with_gaps(&read.0, layout).unwrap_or(read))
+    }
+
+    fn joint_on(
+        &self,
+        layout: &JointLayout,
+        grids: &[Grid],
+        options: Repair,
+    ) -> Result<(Joint, Vec<String>), ReadError> {
+        self.check_joint(layout)?;
         let (layout, unread) = self.with_readable_covariates(layout);
         let layout = &layout;
-        self.check_one_series(layout, trials, time)?;
-        let mut is_interpolated = false;
-        let (own, mut notes) = match self.sparse_rows(layout, trials, repair) {
-            Some(rows) => match self.filled_grids(layout, trials, &rows, time, repair)? {
-                Some(own) => {
-                    is_interpolated = true;
-                    own
-                }
-                None => self.sparse_grids(layout, trials, rows, time)?,
-            },
-            None => (None, self.missing_notes(layout)),
+        self.check_one_series(layout.output.column)?;
+        let (longest_s, mut notes) = self.missing(layout, options)?;
+        let own = match longest_s {
+            None => None,
+            Some(_) => Some(self.grids(Repair { fill_s: longest_s, ..options })?.0),
         };
         notes.extend(self.coarse_notes(layout));
         notes.extend(unread);
         let grids = own.as_deref().unwrap_or(grids);
-        let origin_s = self.origin_s(time);
+        let (joint, split) = self.on_grids(layout, grids, longest_s)?;
+        notes.extend(shown(&joint.name, split));
+        Ok((joint, notes))
+    }
+
+    /// The joint on `grids`, and a line on each trial that is split. What is filled of an output counts as not
+    /// measured where that is interpolated over up to `slow_s` seconds.
+    fn on_grids(
+        &self,
+        layout: &JointLayout,
+        grids: &[Grid],
+        slow_s: Option<f64>,
+    ) -> Result<(Joint, Vec<String>), ReadError> {
+        let origin_s = self.origin_s();
         let covariates: Vec<Signal> = layout.covariates.iter().map(|c| c.signal.clone()).collect();
-        let mut made: Vec<Trial> = Vec::new();
-        let mut continuous = self.continuous(layout, trials, time, repair);
-        let mut split: Vec<(&TrialRows, Range<usize>)> = Vec::new();
+        let (mut trials, mut split) = (Vec::new(), Vec::new());
         let size = (2 + covariates.len()) * SAMPLE_SIZE;
-        for (rows, grid) in trials.iter().zip(grids) {
+        for (rows, grid) in self.trials.iter().zip(grids) {
             self.take(grid.samples(), size)?;
-            let mut signals = self.signals(layout, rows);
-            continuous.make(rows, &mut signals.output);
-            // What was measured is what is there on the grid without being filled.
-            signals.covariates.extend(is_interpolated.then(|| signals.output.clone()));
-            let pieces = grid.pieces(signals);
+            let pieces = grid.pieces(self.signals(layout, rows));
             if pieces.len() > 1 {
-                let first = made.len();
-                split.push((rows, first..first + pieces.len()));
+                split.push(self.split_note(&layout.name, rows, &pieces, grid));
             }
-            self.take(pieces.len(), TRIAL_SIZE + rows.label.len())?;
-            let labels = part_labels(&rows.label, pieces.len(), trials);
+            let labels = part_labels(&rows.label, pieces.len(), &self.trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
-                let mut piece = piece;
-                let measured = if is_interpolated { piece.signals.covariates.pop() } else { None };
-                let trial = self.trial(layout, label, grid, piece, origin_s)?;
-                made.push(match measured {
-                    Some(measured) => trial.with_interpolated(missing_ranges(&measured)),
-                    None => trial,
-                });
+                let filled = if slow_s.is_some() { piece.filled.clone() } else { Vec::new() };
+                let trial = self.trial(layout, label, grid, piece)?;
+                trials.push(trial.counted_from(origin_s).with_interpolated(filled));
             }
         }
-        if made.is_empty() {
+        if trials.is_empty() {
             let (path, joint) = (self.head.path.clone(), layout.name.clone());
             return Err(ReadError::NoSamples { path, joint });
         }
@@ -90,40 +81,31 @@ impl Log<'_> {
             input_unit: layout.input.signal.unit.clone(),
             output_unit: layout.output.signal.unit.clone(),
             covariates,
-            trials: made.into(),
+            trials: trials.into(),
         };
-        notes.extend(self.split_notes(&joint, layout, &split, time));
-        notes.extend(continuous.note(&joint, |row| self.row(row)));
-        Ok((joint, notes))
+        Ok((joint, split))
     }
 
     /// The joint once more, where its input changes in gaps alone: these are filled, so that its
     /// steps are those at their ends. `None` where it does not, or where the user says what is to
     /// be filled.
-    pub(in crate::experiment) fn joint_with_gaps(
-        &self,
-        read: &Joint,
-        layout: &JointLayout,
-        trials: &[TrialRows],
-        time: TimeSource,
-        repair: Repair,
-    ) -> Option<(Joint, Vec<String>)> {
+    fn joint_with_gaps(&self, read: &Joint, layout: &JointLayout) -> Option<(Joint, Vec<String>)> {
         /// Samples to a row, at most: beyond it gaps are not what is missing from a record.
         const LONGEST: usize = 100;
         let output = &self.column(layout.output.column)?.values;
         // Where outputs are missing, the reaction may be among them.
         let is_whole = !output.iter().any(|value| value.is_nan());
-        if !repair.joins_steps || repair.fill_s.is_some() || !is_whole {
+        if !self.options.joins_steps || self.options.fill_s.is_some() || !is_whole {
             return None;
         }
         let gap_s = gap_with_all_steps_s(read)?;
-        let repair = Repair { fill_s: Some(gap_s), ..repair };
-        let (grids, _) = self.grids(time, trials, repair).ok()?;
+        let options = Repair { fill_s: Some(gap_s), ..self.options };
+        let (grids, _) = self.grids(options).ok()?;
         let samples: usize = grids.iter().map(Grid::samples).sum();
         if samples > LONGEST * output.len() {
             return None;
         }
-        let (mut joint, mut notes) = self.joint(layout, trials, &grids, time, repair).ok()?;
+        let (mut joint, mut notes) = self.joint_on(layout, &grids, options).ok()?;
         let marked = joint.trials.into_iter().map(|whole| {
             let gaps = unlogged(&whole, &read.trials);
             whole.with_unlogged(gaps)
@@ -144,12 +126,10 @@ impl Log<'_> {
         label: String,
         grid: &Grid,
         piece: Piece,
-        origin_s: f64,
     ) -> Result<Trial, ReadError> {
         let Signals { input, output, covariates } = piece.signals;
         let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
-            .and_then(|trial| trial.with_covariates(covariates))
-            .map(|trial| trial.counted_from(origin_s));
+            .and_then(|trial| trial.with_covariates(covariates));
         trial.map_err(|source| ReadError::Trial {
             path: self.head.path.clone(),
             joint: layout.name.clone(),
@@ -157,174 +137,24 @@ impl Log<'_> {
         })
     }
 
-    /// The rows of each trial that hold the joint's output, where that is so seldom that the
-    /// table must be one of several clocks.
-    fn sparse_rows(
-        &self,
-        layout: &JointLayout,
-        trials: &[TrialRows],
-        repair: Repair,
-    ) -> Option<Vec<Vec<usize>>> {
-        /// Part of the rows without an output above which it has a clock of its own.
-        const SPARSE: f64 = 0.3;
-        let output = &self.column(layout.output.column)?.values;
-        let missing = output.iter().filter(|value| value.is_nan()).count() as f64;
-        let measured = |trial: &TrialRows| {
-            let rows = trial.start..trial.end;
-            rows.filter(|&row| output.get(row).is_some_and(|value| !value.is_nan())).collect()
+    /// A line on a trial that was split in `pieces` at gaps, the longest of which it names.
+    fn split_note(&self, name: &str, trial: &TrialRows, pieces: &[Piece], grid: &Grid) -> String {
+        let period = grid.period().seconds();
+        let gap = |pair: &[Piece]| {
+            let last_s = pair[0].start_s + (pair[0].signals.output.len() - 1) as f64 * period;
+            (pair[1].start_s - last_s, self.row(trial.start + pair[1].first_row))
         };
-        let is_sparse = repair.is_free() && missing > SPARSE * output.len() as f64;
-        is_sparse.then(|| trials.iter().map(measured).collect())
-    }
-
-    /// Grids of all rows, between which an output that only `rows` have is interpolated, so that steps
-    /// of the input keep their times. `None` where rows of one time complete one another.
-    fn filled_grids(
-        &self,
-        layout: &JointLayout,
-        trials: &[TrialRows],
-        rows: &[Vec<usize>],
-        time: TimeSource,
-        repair: Repair,
-    ) -> Result<Option<OwnGrids>, ReadError> {
-        /// Times the usual distance of two outputs beyond which nothing is known between them (chosen).
-        const LONGEST: f64 = 3.0;
-        let Clock::Stamps(times) = self.times(time)? else { return Ok(None) };
-        let of_trials = trials.iter().filter_map(|trial| times.get(trial.start..trial.end));
-        let increase = |times: &[f64]| times.windows(2).all(|pair| pair[0] < pair[1]);
-        if !of_trials.into_iter().all(increase) {
-            return Ok(None);
-        }
-        let apart = |pair: &[usize]| Some(times.get(pair[1])? - times.get(pair[0])?);
-        let apart: Vec<f64> =
-            rows.iter().flat_map(|rows| rows.windows(2).filter_map(apart)).collect();
-        let Some(usual_s) = median(&apart) else { return Ok(None) };
-        let repair = Repair { fill_s: Some(LONGEST * usual_s), ..repair };
-        let (grids, _) = self.grids(time, trials, repair)?;
-        let count: usize = rows.iter().map(Vec::len).sum();
-        let note = format!(
-            "joint `{}`: {count} of {} rows have an output, which is interpolated between them, so that \
-             steps of the input keep their times; what follows from its noise, as intervals, takes all \
-             samples for measured, and `lag-aware` the lines between them for a lag; models are held \
-             against those that are measured",
-            layout.name,
-            self.table.rows.len()
-        );
-        Ok(Some((Some(grids), vec![note])))
-    }
-
-    /// Grids of the rows with an output, each trial's own.
-    fn sparse_grids(
-        &self,
-        layout: &JointLayout,
-        trials: &[TrialRows],
-        rows: Vec<Vec<usize>>,
-        time: TimeSource,
-    ) -> Result<OwnGrids, ReadError> {
-        let Clock::Stamps(times) = self.times(time)? else {
-            return Ok((None, self.missing_notes(layout)));
-        };
-        let name = &layout.name;
-        let (grids, clock) = self.grids_of(&times, &rows, trials, Repair::default())?;
-        let count: usize = rows.iter().map(Vec::len).sum();
-        let mut notes = vec![format!(
-            "joint `{name}`: {count} of {} rows have an output, and are taken as its samples; the \
-             input is held",
-            self.table.rows.len()
-        )];
-        notes.extend(clock.into_iter().map(|note| format!("joint `{name}`: {note}")));
-        let in_trial = |(rows, trial): (Vec<usize>, &TrialRows)| {
-            rows.into_iter().map(|row| row - trial.start).collect()
-        };
-        let rows = rows.into_iter().zip(trials).map(in_trial);
-        let grids = grids.into_iter().zip(rows).map(|(grid, rows)| grid.of_some(rows));
-        Ok((Some(grids.collect()), notes))
-    }
-
-    /// A line on cells that are missing in the input and the output of a joint.
-    fn missing_notes(&self, layout: &JointLayout) -> Vec<String> {
-        let input = self.column(layout.input.column).map_or(&[][..], |column| &column.values);
-        let is_late = input.first().is_some_and(|value| value.is_nan());
-        let kinds = [
-            (layout.output.column, "short gaps are filled in a line, longer ones part the trial"),
-            (
-                layout.input.column,
-                if is_late {
-                    "the last value is held, and the first one is taken before it: what the input was \
-                     there is not known, nor a step to it"
-                } else {
-                    "the last value is held"
-                },
-            ),
-        ];
-        let note = |(column, what): (usize, &str)| {
-            let values = &self.column(column)?.values;
-            let missing = values.iter().filter(|value| value.is_nan()).count();
-            let first = values.iter().position(|value| value.is_nan())?;
-            let (name, column, row) = (&layout.name, self.header(column), self.row(first));
-            let cells = if missing == 1 { "cell is" } else { "cells are" };
-            Some(format!(
-                "joint `{name}`: {missing} {cells} empty or NaN in `{column}` (first at row \
-                 {row}): {what}"
-            ))
-        };
-        kinds.into_iter().filter_map(note).collect()
-    }
-
-    /// A line on each trial of `joint` that was `split` at gaps, with the places of its parts.
-    fn split_notes(
-        &self,
-        joint: &Joint,
-        layout: &JointLayout,
-        split: &[(&TrialRows, Range<usize>)],
-        time: TimeSource,
-    ) -> Vec<String> {
-        /// Notes of one kind that are all shown.
-        const SHOWN: usize = 3;
-        let name = &joint.name;
-        let times = if split.is_empty() { None } else { self.times(time).ok() };
-        let note = |(trial, places): &(&TrialRows, Range<usize>)| {
-            let parts = joint.trials.get(places.clone()).unwrap_or_default();
-            let gap = times.as_ref().and_then(|it| self.longest_gap(parts, layout, trial, it));
-            let gap = gap.map_or_else(String::new, |(seconds, row)| {
-                let one = if parts.len() == 2 { "of" } else { "the longest of" };
+        let longest = pieces.windows(2).map(gap).max_by(|a, b| a.0.total_cmp(&b.0));
+        let (label, count) = (&trial.label, pieces.len());
+        let one = if count == 2 { "of" } else { "the longest of" };
+        // Where the clock starts anew no time passes.
+        let gap = match longest.filter(|(seconds, _)| *seconds > 0.0) {
+            Some((seconds, row)) => {
                 format!(" ({one} {} s, before row {row})", to_three_digits(seconds))
-            });
-            let (label, count) = (&trial.label, places.len());
-            format!("joint `{name}`: trial `{label}` is split in {count} at long gaps{gap}")
+            }
+            None => String::new(),
         };
-        let mut notes: Vec<String> = split.iter().take(SHOWN).map(note).collect();
-        if let Some(more) = split.len().checked_sub(SHOWN).filter(|more| *more > 0) {
-            notes.push(format!("joint `{name}`: {more} more trials are split at long gaps"));
-        }
-        notes
-    }
-
-    /// The longest time between two `parts` of a trial, and the row behind it.
-    fn longest_gap(
-        &self,
-        parts: &[Trial],
-        layout: &JointLayout,
-        trial: &TrialRows,
-        times: &Clock,
-    ) -> Option<(f64, u64)> {
-        let end = |part: &Trial| part.time_s(part.len());
-        let gaps = parts.windows(2).map(|pair| (pair[1].time_s(1) - end(&pair[0]), &pair[1]));
-        let (gap, behind) =
-            gaps.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gap, _)| *gap > 0.0)?;
-        let half = 0.5 * behind.period().seconds();
-        let output = &self.column(layout.output.column)?.values;
-        let time = |row: usize| match times {
-            Clock::Stamps(times) => times.get(row).copied(),
-            Clock::Rows(period) => Some((row - trial.start) as f64 * period.seconds()),
-        };
-        let begins = |row: &usize| {
-            let is_measured = output.get(*row).is_some_and(|value| !value.is_nan());
-            is_measured
-                && time(*row).is_some_and(|time| (time - behind.logged_time_s(1)).abs() <= half)
-        };
-        let row = (trial.start..trial.end).find(begins)?;
-        Some((gap, self.row(row)))
+        format!("joint `{name}`: trial `{label}` is split in {count} at long gaps{gap}")
     }
 
     /// The signals whose offset is so large that double precision does not hold their motion.
@@ -357,51 +187,34 @@ impl Log<'_> {
         (readable, notes)
     }
 
-    /// Refuses bad cells, and missing ones where they may not be filled.
-    fn check_joint(&self, layout: &JointLayout, repair: Repair) -> Result<(), ReadError> {
+    /// Refuses bad cells, and signals without a number that can be reckoned with.
+    fn check_joint(&self, layout: &JointLayout) -> Result<(), ReadError> {
         let needed = [layout.input.column, layout.output.column];
         if let Some(error) = needed.into_iter().find_map(|column| self.bad_cell(column)) {
             return Err(error);
         }
-        let empty = |column: &usize| {
-            self.column(*column).is_some_and(|c| c.values.iter().all(|value| value.is_nan()))
-        };
-        if let Some(column) = needed.into_iter().find(empty) {
-            let (path, column) = (self.head.path.clone(), self.header(column));
-            return Err(ReadError::NeverMeasured { path, column });
+        for index in needed {
+            let Some(column) = self.column(index) else { continue };
+            let (path, name) = (self.head.path.clone(), self.header(index));
+            if column.values.iter().all(|value| value.is_nan()) {
+                return Err(ReadError::NeverMeasured { path, column: name });
+            }
+            if let Some(largest) = column.too_small() {
+                return Err(ReadError::BelowPrecision { path, column: name, largest });
+            }
         }
-        let too_small = |column: usize| Some((column, self.column(column)?.too_small()?));
-        if let Some((column, largest)) = needed.into_iter().find_map(too_small) {
-            let (path, column) = (self.head.path.clone(), self.header(column));
-            return Err(ReadError::BelowPrecision { path, column, largest });
-        }
-        if !repair.as_it_stands || repair.fill_s.is_some() {
-            return Ok(());
-        }
-        let first_missing = |column: usize| {
-            let values = &self.column(column)?.values;
-            values.iter().position(|value| value.is_nan()).map(|index| (index, column))
-        };
-        match needed.into_iter().filter_map(first_missing).min() {
-            Some((index, column)) => Err(ReadError::Missing {
-                path: self.head.path.clone(),
-                row: self.row(index),
-                column: self.header(column),
-            }),
-            None => Ok(()),
-        }
+        Ok(())
     }
 
     fn signals(&self, layout: &JointLayout, rows: &TrialRows) -> Signals {
-        let cut = |column: usize| {
-            let values = self.column(column).map_or(&[][..], |column| &column.values);
-            values.get(rows.start..rows.end).unwrap_or_default().to_vec()
-        };
+        let column = |column: usize| self.column(column).map_or(&[][..], |column| &column.values);
+        let cut =
+            |place: usize| column(place).get(rows.start..rows.end).unwrap_or_default().to_vec();
         // A logger that notes an input when it changes does not note it anew where a trial begins.
         let mut input = cut(layout.input.column);
         if let Some(first) = input.first_mut().filter(|first| first.is_nan()) {
-            let column = self.column(layout.input.column).map_or(&[][..], |column| &column.values);
-            let mut before = column.get(..rows.start).unwrap_or_default().iter().rev();
+            let mut before =
+                column(layout.input.column).get(..rows.start).unwrap_or_default().iter().rev();
             *first = before.find(|value| !value.is_nan()).copied().unwrap_or(f64::NAN);
         }
         Signals {
@@ -412,16 +225,14 @@ impl Log<'_> {
     }
 }
 
-/// The samples that are not there.
-fn missing_ranges(values: &[f64]) -> Vec<Range<usize>> {
-    let mut ranges: Vec<Range<usize>> = Vec::new();
-    for (index, _) in values.iter().enumerate().filter(|(_, value)| value.is_nan()) {
-        match ranges.last_mut().filter(|range| range.end == index) {
-            Some(range) => range.end = index + 1,
-            None => ranges.push(index..index + 1),
-        }
+/// The first few of notes of one kind.
+fn shown(joint: &str, mut split: Vec<String>) -> Vec<String> {
+    const SHOWN: usize = 3;
+    if let Some(more) = split.len().checked_sub(SHOWN).filter(|more| *more > 0) {
+        split.truncate(SHOWN);
+        split.push(format!("joint `{joint}`: {more} more trials are split at long gaps"));
     }
-    ranges
+    split
 }
 
 /// A length of time to three digits, no longer one shorter: who fills gaps up to it fills this one.

@@ -1,10 +1,10 @@
 //! The numbers of a log as joints: its cells, its times, and the trials of each joint.
 
 mod cells;
-mod continuous;
 mod joints;
-mod repeated;
+mod missing;
 mod times;
 mod unit_change;
 
-pub(super) use cells::Log;
+pub(super) use self::cells::{Log, Output, Times};
+pub(super) use self::times::repeats;

@@ -1,6 +1,6 @@
 //! A column of numbers as a survey sees it, and whether one follows another.
 
-use crate::experiment::sampling::hold;
+use crate::experiment::grid::hold;
 use crate::experiment::table::{BadCell, Column};
 
 /// A column of numbers.

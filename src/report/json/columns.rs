@@ -16,6 +16,7 @@ pub(crate) struct ColumnsJson<'a> {
     joints: Vec<JointJson<'a>>,
     open: &'a [String],
     options: &'a str,
+    mended: &'a [String],
 }
 
 #[derive(Debug, Serialize)]
@@ -34,8 +35,9 @@ struct JointJson<'a> {
 }
 
 impl<'a> ColumnsJson<'a> {
-    /// The JSON of `survey`, with the mapping as `options` on the command line.
-    pub(crate) fn new(survey: &'a Survey, options: &'a str) -> Self {
+    /// The JSON of `survey`, with the mapping as `options` on the command line and what is `mended` in the
+    /// log.
+    pub(crate) fn new(survey: &'a Survey, options: &'a str, mended: &'a [String]) -> Self {
         let column = |column: &'a SurveyedColumn| ColumnJson {
             column: &column.name,
             unit: column.unit.as_deref(),
@@ -54,6 +56,7 @@ impl<'a> ColumnsJson<'a> {
             joints: joints.collect(),
             open: &survey.open,
             options,
+            mended,
         }
     }
 }

@@ -94,18 +94,11 @@ pub(crate) fn jumps() -> Vec<Messy> {
         ),
         messy("out_of_order.csv", plain(&swapped), read(1e-3, "out of order")),
         messy("far_out_of_order.csv", plain(&mixed), read(1e-3, "out of order")),
-        messy(
-            "clock_rests.csv",
-            plain(&still),
-            read(1e9, "30 rows are stamped while the clock stood still"),
-        ),
+        messy("clock_rests.csv", plain(&still), read(1e9, "trial `1` is split in 2 at long gaps")),
         messy(
             "other_rate.csv",
             plain(&slower),
-            read(
-                0.055,
-                "the sample rate changes at row 903, from a sample per 10 ms to one per 20 ms",
-            ),
+            read(0.055, "rows are lost in 449 gaps of up to 2 periods (first before row 903)"),
         ),
         messy(
             "stamp_of_nonsense.csv",
@@ -140,8 +133,17 @@ pub(crate) fn repeated_times() -> Vec<Messy> {
     let doubled = |other: &dyn Fn(Row) -> Row| -> Vec<Row> {
         clean().into_iter().flat_map(|row| [row, other(row)]).collect()
     };
+    let mut of_each_sensor = format!("{HEADER}\n");
+    for Row { time, input, output } in clean() {
+        writeln!(of_each_sensor, "{time},{input},\n{time},,{output}").unwrap();
+    }
     vec![
         unit_changes(),
+        messy(
+            "row_for_each_sensor.csv",
+            of_each_sensor,
+            read(1e-6, "1800 rows complete the row before, which has the same time"),
+        ),
         messy("row_twice.csv", plain(&twice), read(1e-3, "1 row is at the time of the row before")),
         messy(
             "copies.csv",

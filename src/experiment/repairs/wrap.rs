@@ -7,7 +7,38 @@
 mod turn;
 
 use self::turn::{RANGE, powers_of_two, seen, turns};
+use super::repair::Repair;
+use crate::experiment::log::{Log, Output};
 use crate::numerics::{quantile, to_decimals};
+
+/// An output that wraps.
+pub(super) struct Wrapped {
+    output: Output,
+    wrap: Wrap,
+}
+
+impl Repair for Wrapped {
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
+        let of = move |output: Output| {
+            let trials = log.parts(output.column)?;
+            let wrap = Wrap::of(&trials, output.unit.as_deref())?;
+            Some(Self { output, wrap })
+        };
+        log.outputs().filter_map(of)
+    }
+
+    fn apply(self, log: &mut Log<'_>) -> Option<String> {
+        let Self { output, wrap } = self;
+        let spans = log.spans();
+        let values = &mut log.column_mut(output.column)?.values;
+        let mut count = 0;
+        for rows in spans {
+            count += values.get_mut(rows).map_or(0, |part| wrap.unwrap(part));
+        }
+        log.unwrapped.push(output.column);
+        output.note(&wrap.note(count, output.unit.as_deref())).filter(|_| count > 0)
+    }
+}
 
 /// A sensor that wraps after so much, output units.
 #[derive(Clone, Copy, Debug, PartialEq)]

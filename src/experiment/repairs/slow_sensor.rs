@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::repair::Repair;
+use crate::experiment::log::{Log, Output};
 use crate::numerics::quantile;
 
 /// Rows that a reading stands in, at least.
@@ -10,31 +12,54 @@ const FEWEST_ROWS: usize = 3;
 /// Readings that show it.
 const FEWEST: usize = 20;
 
-/// Leaves of each of `values` the first row of each reading alone, and NaN in the others, where a sensor
-/// is read anew every so many rows; the rows of a reading then.
-///
-/// That is seen by changes that come at one interval or at multiples of it, each by as much as the output
-/// moved meanwhile: an output that is rounded coarsely changes by one step at a time.
-pub(super) fn keep_readings(values: &mut [f64], trials: &[Range<usize>]) -> Option<usize> {
-    let rows = rows_of_a_reading(values, trials)?;
-    let mut blank = Vec::new();
+/// An output whose sensor is slower than the log, and the rows that a reading stands in.
+pub(super) struct SlowSensor {
+    output: Output,
+    rows: usize,
+}
+
+impl Repair for SlowSensor {
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
+        let of = move |output: Output| {
+            let rows = rows_of_a_reading(&log.column(output.column)?.values, &log.spans())?;
+            Some(Self { output, rows })
+        };
+        log.outputs().filter_map(of)
+    }
+
+    fn apply(self, log: &mut Log<'_>) -> Option<String> {
+        let Self { output, rows } = self;
+        let spans = log.spans();
+        keep_first(&mut log.column_mut(output.column)?.values, &spans, rows);
+        output.note(&format!(
+            "each reading of the output stands in {rows} rows, and counts in the first of them"
+        ))
+    }
+}
+
+/// Leaves the first row of each reading alone, and NaN in the others.
+fn keep_first(values: &mut [f64], trials: &[Range<usize>], rows: usize) {
     for trial in trials {
-        let Some(values) = values.get(trial.clone()) else { continue };
+        let Some(values) = values.get_mut(trial.clone()) else { continue };
         let known = (0..values.len()).filter(|row| !values[*row].is_nan()).collect::<Vec<_>>();
+        let mut others = Vec::new();
         for run in known.chunk_by(|a, b| (values[*b] - values[*a]).abs() <= 0.0) {
             // A reading may be what the one before was.
             let readings = ((run.len() + rows / 2) / rows).max(1);
             let is_first = |at: usize| at.is_multiple_of(rows) && at / rows < readings;
-            let others = run.iter().enumerate().filter(|(at, _)| !is_first(*at));
-            blank.extend(others.map(|(_, row)| trial.start + row));
+            let later = run.iter().enumerate().filter(|(at, _)| !is_first(*at));
+            others.extend(later.map(|(_, row)| *row));
+        }
+        for row in others {
+            values[row] = f64::NAN;
         }
     }
-    for row in blank {
-        values[row] = f64::NAN;
-    }
-    Some(rows)
 }
 
+/// The rows that a reading stands in, where a sensor is read anew every so many rows.
+///
+/// That is seen by changes that come at one interval or at multiples of it, each by as much as the output
+/// moved meanwhile: an output that is rounded coarsely changes by one step at a time.
 fn rows_of_a_reading(values: &[f64], trials: &[Range<usize>]) -> Option<usize> {
     /// Part of the intervals that are one or a multiple of it, and that are one.
     const MULTIPLES: f64 = 0.95;
@@ -87,6 +112,12 @@ mod tests {
     #[expect(clippy::single_range_in_vec_init, reason = "one trial")]
     fn whole(values: &[f64]) -> [Range<usize>; 1] {
         [0..values.len()]
+    }
+
+    fn keep_readings(values: &mut [f64], trials: &[Range<usize>]) -> Option<usize> {
+        let rows = rows_of_a_reading(values, trials)?;
+        keep_first(values, trials, rows);
+        Some(rows)
     }
 
     #[test]

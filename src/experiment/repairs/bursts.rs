@@ -1,8 +1,15 @@
 //! Rows that come in bursts, as packets over a network bring them: their stamps say when a packet came,
 //! and not when each row was measured.
 
-use super::run::JUMP;
+use super::repair::Repair;
+use crate::experiment::log::{Log, Times};
 use crate::numerics::median;
+
+/// Usual steps beyond which one is a pause.
+const JUMP: f64 = 1.5;
+
+/// Pauses, at least: one or two part a record.
+const FEWEST: usize = 5;
 
 /// Rows between two pauses, at most, where they are not at once; and usual steps that a usual pause
 /// lasts, at least (chosen).
@@ -21,9 +28,46 @@ const SELDOM: usize = 100;
 /// Usual pauses beyond which one parts the record, and no packet came.
 const BREAK: f64 = 5.0;
 
+/// The rows of a trial that come in bursts, and their times once these are spread.
+pub(super) struct Bursts {
+    trial: usize,
+    times: Vec<f64>,
+}
+
+impl Repair for Bursts {
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
+        let trials = 0..log.trials.len();
+        let of = move |trial: usize| {
+            let times = log.times_of(trial)?;
+            let times = if is_even(times) { None } else { spread(times) };
+            Some(Self { trial, times: times? })
+        };
+        trials.filter_map(of)
+    }
+
+    fn apply(self, log: &mut Log<'_>) -> Option<String> {
+        let rows = log.trials.get(self.trial)?;
+        let Times::Stamps(times) = &mut log.times else { return None };
+        times.get_mut(rows.start..rows.end)?.copy_from_slice(&self.times);
+        let note = log.named(
+            "rows come in bursts, as packets bring them: those of each are spread evenly over the time \
+             since the one before",
+        );
+        // Once for all trials.
+        (!log.notes.contains(&note)).then_some(note)
+    }
+}
+
+/// Whether no step is a pause, as of most clocks.
+fn is_even(times: &[f64]) -> bool {
+    let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
+    let (low, high) = steps.fold((f64::MAX, 0.0_f64), |(l, h), s| (l.min(s), h.max(s)));
+    high <= JUMP * low
+}
+
 /// `times` whose rows are spread evenly over the time since the packet before theirs; none where rows do
 /// not come in bursts.
-pub(in crate::experiment) fn spread(times: &[f64]) -> Option<Vec<f64>> {
+fn spread(times: &[f64]) -> Option<Vec<f64>> {
     let forward = times.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0);
     let forward: Vec<f64> = forward.collect();
     let back = times.windows(2).filter(|pair| pair[1] < pair[0]).count();
@@ -34,6 +78,9 @@ pub(in crate::experiment) fn spread(times: &[f64]) -> Option<Vec<f64>> {
     let is_pause = |step: f64| step > JUMP * middle;
     let pauses: Vec<f64> = forward.iter().copied().filter(|step| is_pause(*step)).collect();
     let usual = median(&pauses).filter(|usual| *usual >= PAUSE * middle)?;
+    if pauses.len() < FEWEST {
+        return None;
+    }
     let known = || forward.iter().copied().filter(|step| *step <= BREAK * usual);
     let (all, in_pauses) =
         (known().sum::<f64>(), known().filter(|step| is_pause(*step)).sum::<f64>());
@@ -97,6 +144,8 @@ mod tests {
         assert_eq!(spread(&jitters), None);
         let parts = (0..3000).map(|k| 0.01 * f64::from(k) + 5.0 * f64::from(k / 300));
         assert_eq!(spread(&parts.collect::<Vec<_>>()), None, "three seconds at a time");
+        let pause = [0.0, 0.01, 0.02, 1000.0, 1000.01, 1000.02, 2000.0, 2000.01];
+        assert_eq!(spread(&pause), None, "two pauses");
         let rounded = (0..3000).map(|k| (0.02 * f64::from(k) * 10.0).floor() / 10.0);
         assert_eq!(spread(&rounded.collect::<Vec<_>>()), None, "of one stamp");
     }

@@ -3,6 +3,69 @@
 //! An incremental encoder that is homed again goes on from another value: from one row to the next the
 //! output jumps as it never moves. What follows is taken back by the jump.
 
+use super::repair::Repair;
+use crate::experiment::log::{Log, Output, Times};
+use crate::numerics::{median, to_digits};
+
+/// An output that jumps.
+pub(super) struct Rezeroed {
+    output: Output,
+    shifts: Shifts,
+}
+
+impl Repair for Rezeroed {
+    /// Rows behind a gap lie as far apart as the joint moved there, and where the clock starts anew so
+    /// does the record. Of what wraps it is not known.
+    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
+        let of = move |output: Output| {
+            let (inputs, outputs) = (log.parts(output.input)?, log.parts(output.column)?);
+            let signals = inputs.into_iter().zip(&outputs).map(|(input, output)| [input, output]);
+            let shifts = Shifts::of(&signals.collect::<Vec<_>>())?;
+            let mut trials = log.trials.iter().zip(outputs);
+            let are_near = trials.all(|(rows, output)| are_near(log, rows.start, output, shifts));
+            are_near.then_some(Self { output, shifts })
+        };
+        let outputs = log.outputs().filter(|output| !log.unwrapped.contains(&output.column));
+        outputs.filter_map(of)
+    }
+
+    fn apply(self, log: &mut Log<'_>) -> Option<String> {
+        let Self { output, shifts } = self;
+        let spans = log.spans();
+        let values = &mut log.column_mut(output.column)?.values;
+        let mut jumps = Vec::new();
+        for rows in spans {
+            let Some(part) = values.get_mut(rows.clone()) else { continue };
+            jumps.extend(shifts.put_back(part).into_iter().map(|(row, by)| (rows.start + row, by)));
+        }
+        let (row, by) = jumps.first()?;
+        let unit = output.unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+        let (row, by) = (log.row(*row), to_digits(*by, 3));
+        let more = match jumps.len() {
+            1 => String::new(),
+            2 => ", and once more".to_owned(),
+            count => format!(", and {} times more", count - 1),
+        };
+        output.note(&format!(
+            "the output jumps by {by}{unit} at row {row}{more}, much farther than it moves \
+             between any other rows: taken for a sensor that was re-zeroed, and later samples are shifted \
+             back by as much"
+        ))
+    }
+}
+
+/// Whether the rows on both sides of each jump in `output`, from the row `start` on, follow one another.
+fn are_near(log: &Log<'_>, start: usize, output: &[f64], shifts: Shifts) -> bool {
+    /// Times the usual distance of rows that two are apart, at most.
+    const NEAR: f64 = 1.5;
+    let Times::Stamps(times) = &log.times else { return true };
+    let Some(times) = times.get(start..start + output.len()) else { return true };
+    let apart: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let Some(usual) = median(&apart) else { return true };
+    let mut jumps = shifts.jumps(output);
+    jumps.all(|row| apart.get(row - 1).is_some_and(|by| (0.0..=NEAR * usual).contains(by)))
+}
+
 /// Jumps of a joint, at most.
 const MOST: usize = 8;
 
@@ -19,14 +82,14 @@ const APART: usize = 50;
 
 /// A change from row to row beyond which an output jumps, output units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Shifts {
+struct Shifts {
     least: f64,
 }
 
 impl Shifts {
     /// That of a joint with the inputs and outputs of its `trials`, not a number where they are missing;
     /// none where its output does not jump.
-    pub(super) fn of(trials: &[[&[f64]; 2]]) -> Option<Self> {
+    fn of(trials: &[[&[f64]; 2]]) -> Option<Self> {
         let changes = |of: usize| {
             let pairs = trials.iter().flat_map(move |trial| trial[of].windows(2));
             pairs.map(|pair| (pair[1] - pair[0]).abs())
@@ -57,14 +120,14 @@ impl Shifts {
     }
 
     /// The indices behind the jumps of an output.
-    pub(super) fn jumps(self, output: &[f64]) -> impl Iterator<Item = usize> {
+    fn jumps(self, output: &[f64]) -> impl Iterator<Item = usize> {
         let pairs = output.windows(2).zip(1..);
         pairs.filter(move |(pair, _)| (pair[1] - pair[0]).abs() >= self.least).map(|(_, row)| row)
     }
 
     /// Takes the jumps out of `output`: the change of the row before is taken for that of the jump's. The
     /// indices behind them, with how far they go.
-    pub(super) fn put_back(self, output: &mut [f64]) -> Vec<(usize, f64)> {
+    fn put_back(self, output: &mut [f64]) -> Vec<(usize, f64)> {
         let rows: Vec<usize> = self.jumps(output).collect();
         let size = |row: usize| {
             let before = if row > 1 { output[row - 1] - output[row - 2] } else { 0.0 };

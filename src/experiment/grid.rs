@@ -1,10 +1,12 @@
-//! From rows with times to a uniform grid: checks, filling, splitting, resampling.
+//! From rows with times to a uniform grid: places, filling, splitting, resampling.
+
+use std::ops::Range;
 
 use serde::Serialize;
 
-use super::clock::filled_s;
+use super::clock::{Fault, filled_s};
 use crate::numerics::median;
-use crate::units::SamplePeriod;
+use crate::units::{SamplePeriod, floor_to_index};
 
 /// What may be done to a log that is not uniform or not complete.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -32,47 +34,45 @@ const UNIFORMITY: f64 = 0.01;
 /// periods: a line drawn over a pause would look like a measurement.
 const RESAMPLE_GAP_PERIODS: f64 = 10.0;
 
-/// Why rows cannot be put on a grid. `row` counts the rows of the trial from 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Fault {
-    NotIncreasing { row: usize },
-    NotUniform { row: usize, step: f64, period: f64 },
-    SingleRow,
-    FewStamps { stamps: usize, grain_s: f64 },
-    Coarse { row: usize, grain_s: f64, period: f64 },
-    TooMany { samples: f64, period: f64 },
-}
+/// Samples of one trial that are still handled: 8 GB as numbers.
+const MOST_SAMPLES: f64 = 1e9;
 
-impl Fault {
-    /// Whether a clock with this fault is put on a grid unasked.
-    pub(super) fn is_mended(self) -> bool {
-        matches!(self, Self::NotIncreasing { .. } | Self::NotUniform { .. })
+impl Repair {
+    /// Seconds up to which a gap is filled.
+    fn longest_gap_s(self, period: f64) -> f64 {
+        self.fill_s.unwrap_or_else(|| filled_s(period))
+    }
+
+    /// Whether nothing was asked for, so that what suits the log is done.
+    pub(super) fn is_free(self) -> bool {
+        let Self { resample, fill_s, as_it_stands, joins_steps: _ } = self;
+        resample.is_none() && fill_s.is_none() && !as_it_stands
     }
 }
 
-/// Times of a trial's rows, checked, and the grid they are put on.
+/// Where the rows of a trial lie on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Grid {
     period: SamplePeriod,
+    parts: Vec<Part>,
+}
+
+/// Rows of a trial that follow one another, in the order of their time.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Part {
+    /// The rows, where they are not simply those of the trial.
+    rows: Option<Vec<usize>>,
     placement: Placement,
+    /// Gaps up to so many seconds are filled, longer ones cut the part.
+    longest_gap_s: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 enum Placement {
-    /// Each row has its own place on the grid; places without a row are gaps, and those
-    /// of `fill` places and less may be filled.
-    Rows { start_s: f64, places: Vec<usize>, fill: f64 },
+    /// Each row has a place on a grid that begins at so many seconds.
+    Places { start_s: f64, places: Vec<usize> },
     /// The grid lies anew over the rows' times.
-    Resampled { times: Vec<f64>, longest_gap_s: f64 },
-    /// Some of the rows have a grid of their own each.
-    Parts(Vec<Part>),
-}
-
-/// Rows of a trial, in the order of their time, and their grid.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Part {
-    pub(super) rows: Vec<usize>,
-    pub(super) grid: Grid,
+    Times(Vec<f64>),
 }
 
 /// The signals of one joint in one trial, a value per row, NaN where missing.
@@ -87,11 +87,16 @@ pub(super) struct Signals {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Piece {
     pub(super) start_s: f64,
+    /// The row of the trial that it starts with.
+    pub(super) first_row: usize,
     pub(super) signals: Signals,
+    /// Samples whose output was not measured.
+    pub(super) filled: Vec<Range<usize>>,
 }
 
 impl Grid {
-    /// Checks `times` (seconds, one per row) and lays the grid.
+    /// Lays the grid over rows at `times`, in seconds, where these are uniform but for rows that are lost
+    /// and may be filled, or another period is asked for.
     pub(super) fn lay(times: &[f64], repair: Repair) -> Result<Self, Fault> {
         let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         if let Some(row) = steps.iter().position(|&step| step <= 0.0 || step.is_nan()) {
@@ -101,62 +106,32 @@ impl Grid {
         if let Some(period) = repair.resample {
             let default_gap = RESAMPLE_GAP_PERIODS * period.seconds().max(median);
             let longest_gap_s = repair.fill_s.unwrap_or(default_gap);
-            let bridged = steps.iter().filter(|step| is_within(**step, longest_gap_s));
-            let samples = bridged.sum::<f64>() / period.seconds();
-            check_size(samples, period.seconds())?;
-            let placement = Placement::Resampled { times: times.to_vec(), longest_gap_s };
-            return Ok(Self { period, placement });
+            return Self::of_parts(period, vec![Part::resampled(times.to_vec(), longest_gap_s)]);
         }
         let places = place_rows(&steps, median, repair)?;
         let start_s = times.first().copied().unwrap_or_default();
         let span = times.last().copied().unwrap_or_default() - start_s;
         let period = span / places.last().copied().unwrap_or(1) as f64;
         let period = SamplePeriod::from_seconds(tidy(period)).ok_or(Fault::SingleRow)?;
-        let fill = repair.fill_periods(period);
-        let gaps = places.windows(2).map(|pair| (pair[1] - pair[0]) as f64);
-        check_size(gaps.filter(|gap| is_within(*gap, fill)).sum(), period.seconds())?;
-        Ok(Self { period, placement: Placement::Rows { start_s, places, fill } })
+        let longest_gap_s = repair.longest_gap_s(period.seconds());
+        Self::of_parts(period, vec![Part::at_places(start_s, places, longest_gap_s)])
     }
 
     /// A grid on which row follows row, where the log has no times.
     pub(super) fn of_rows(rows: usize, period: SamplePeriod, repair: Repair) -> Self {
-        let fill = repair.fill_periods(period);
-        let placement = Placement::Rows { start_s: 0.0, places: (0..rows).collect(), fill };
-        Self { period, placement }
+        let longest_gap_s = repair.longest_gap_s(period.seconds());
+        let part = Part::at_places(0.0, (0..rows).collect(), longest_gap_s);
+        Self { period, parts: vec![part] }
     }
 
-    /// A grid from `start_s` on, in whose `places` the rows are; gaps up to `longest_gap_s`
-    /// are filled.
-    pub(super) fn of_places(
-        start_s: f64,
-        places: Vec<usize>,
-        period: SamplePeriod,
-        longest_gap_s: f64,
-    ) -> Result<Self, Fault> {
-        check_size(places.last().map_or(0.0, |last| *last as f64), period.seconds())?;
-        let fill = (longest_gap_s / period.seconds()).max(1.0);
-        Ok(Self { period, placement: Placement::Rows { start_s, places, fill } })
-    }
-
-    /// A grid that lies anew over rows at `times`, which increase.
-    pub(super) fn resampled(
-        times: Vec<f64>,
-        period: SamplePeriod,
-        longest_gap_s: f64,
-    ) -> Result<Self, Fault> {
-        let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
-        check_size(span / period.seconds(), period.seconds())?;
-        Ok(Self { period, placement: Placement::Resampled { times, longest_gap_s } })
-    }
-
-    /// Grids of `parts` of the rows.
-    pub(super) fn of_parts(period: SamplePeriod, parts: Vec<Part>) -> Self {
-        Self { period, placement: Placement::Parts(parts) }
-    }
-
-    /// This grid, of rows of which only `rows` are looked at.
-    pub(super) fn of_some(self, rows: Vec<usize>) -> Self {
-        Self::of_parts(self.period, vec![Part { rows, grid: self }])
+    /// The grid of some `parts`.
+    ///
+    /// # Errors
+    /// [`Fault::TooMany`] where it would have more samples than can be handled.
+    pub(super) fn of_parts(period: SamplePeriod, parts: Vec<Part>) -> Result<Self, Fault> {
+        let grid = Self { period, parts };
+        let (samples, period) = (grid.length(), period.seconds());
+        if samples > MOST_SAMPLES { Err(Fault::TooMany { samples, period }) } else { Ok(grid) }
     }
 
     pub(super) fn period(&self) -> SamplePeriod {
@@ -165,107 +140,118 @@ impl Grid {
 
     /// Samples that the grid may have, its short gaps filled.
     pub(super) fn samples(&self) -> usize {
-        let bridged = |steps: f64, count: usize| {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 0")]
-            let steps = steps as usize;
-            steps.saturating_add(count)
-        };
-        match &self.placement {
-            Placement::Rows { places, fill, .. } => {
-                let gaps = places.windows(2).map(|pair| (pair[1] - pair[0]) as f64);
-                bridged(gaps.filter(|gap| is_within(*gap, *fill)).sum(), places.len())
-            }
-            Placement::Resampled { times, longest_gap_s } => {
-                let gaps = times.windows(2).map(|pair| pair[1] - pair[0]);
-                let bridges = gaps.filter(|gap| is_within(*gap, *longest_gap_s));
-                bridged(bridges.sum::<f64>() / self.period.seconds(), 1)
-            }
-            Placement::Parts(parts) => parts.iter().map(|part| part.grid.samples()).sum(),
-        }
+        floor_to_index(self.length())
+    }
+
+    fn length(&self) -> f64 {
+        self.parts.iter().map(|part| part.length(self.period.seconds())).sum()
     }
 
     /// The signals of a joint on the grid, cut at its long gaps.
     pub(super) fn pieces(&self, mut signals: Signals) -> Vec<Piece> {
         hold(&mut signals.input);
-        match &self.placement {
-            Placement::Rows { start_s, places, fill } => {
-                let place_s = |place: usize| start_s + place as f64 * self.period.seconds();
-                let measured = measured_rows(&signals);
-                let joined = |&from: &usize, &to: &usize| match (places.get(from), places.get(to)) {
-                    (Some(from), Some(to)) => is_within((to - from) as f64, fill.max(1.0)),
-                    _ => false,
-                };
-                let piece = |rows: &[usize]| {
-                    let (first, last) = (*rows.first()?, *rows.last()?);
-                    let places = places.get(first..=last)?;
-                    let start_s = place_s(*places.first()?);
-                    Some(Piece { start_s, signals: on_grid(&signals, first, places) })
-                };
-                measured.chunk_by(joined).filter_map(piece).collect()
-            }
-            Placement::Resampled { times, longest_gap_s } => {
-                resampled(&signals, times, *longest_gap_s, self.period)
-            }
-            Placement::Parts(parts) => {
-                let pieces = |part: &Part| part.grid.pieces(signals.of_rows(&part.rows));
-                parts.iter().flat_map(pieces).collect()
-            }
-        }
+        self.parts.iter().flat_map(|part| part.pieces(&signals, self.period.seconds())).collect()
     }
 }
 
-impl Repair {
-    /// Periods up to which a gap is filled.
-    fn fill_periods(self, period: SamplePeriod) -> f64 {
-        self.fill_s.unwrap_or_else(|| filled_s(period.seconds())) / period.seconds()
+impl Part {
+    /// Rows in these `places` of a grid that begins at `start_s`.
+    pub(super) fn at_places(start_s: f64, places: Vec<usize>, longest_gap_s: f64) -> Self {
+        Self { rows: None, placement: Placement::Places { start_s, places }, longest_gap_s }
     }
 
-    /// Whether nothing was asked for, so that what suits the log is done.
-    pub(super) fn is_free(self) -> bool {
-        let Self { resample, fill_s, as_it_stands, joins_steps: _ } = self;
-        resample.is_none() && fill_s.is_none() && !as_it_stands
+    /// Rows at these times, which increase, under a grid that lies anew over them.
+    pub(super) fn resampled(times: Vec<f64>, longest_gap_s: f64) -> Self {
+        Self { rows: None, placement: Placement::Times(times), longest_gap_s }
+    }
+
+    /// This part, which consists of these rows of the trial.
+    pub(super) fn of_rows(self, rows: Vec<usize>) -> Self {
+        Self { rows: Some(rows), ..self }
+    }
+
+    /// The time between two rows, seconds.
+    fn apart_s(&self, from: usize, to: usize, period: f64) -> f64 {
+        let apart = match &self.placement {
+            Placement::Places { places, .. } => {
+                let places = places.get(from).zip(places.get(to));
+                places.map(|(from, to)| (to - from) as f64 * period)
+            }
+            Placement::Times(times) => {
+                times.get(from).zip(times.get(to)).map(|(from, to)| to - from)
+            }
+        };
+        apart.unwrap_or(f64::NAN)
+    }
+
+    /// Whether the time between two rows is not a gap that cuts, rounding left aside. Rows in neighbouring
+    /// places are joined however little may be filled.
+    fn joins(&self, from: usize, to: usize, period: f64) -> bool {
+        let least = if matches!(self.placement, Placement::Places { .. }) { period } else { 0.0 };
+        self.apart_s(from, to, period) <= self.longest_gap_s.max(least) * (1.0 + 1e-9)
+    }
+
+    /// Samples that it may have.
+    fn length(&self, period: f64) -> f64 {
+        let rows = match &self.placement {
+            Placement::Places { places, .. } => places.len(),
+            Placement::Times(times) => times.len(),
+        };
+        let to_next = |row: usize| {
+            let is_joined = self.joins(row - 1, row, period);
+            if is_joined { self.apart_s(row - 1, row, period) / period } else { 1.0 }
+        };
+        1.0 + (1..rows).map(to_next).sum::<f64>()
+    }
+
+    fn pieces(&self, all: &Signals, period: f64) -> Vec<Piece> {
+        let own = self.rows.as_ref().map(|rows| all.of_rows(rows));
+        let signals = own.as_ref().unwrap_or(all);
+        let measured: Vec<usize> =
+            (0..signals.output.len()).filter(|row| !signals.output[*row].is_nan()).collect();
+        let mut pieces = Vec::new();
+        for rows in measured.chunk_by(|from, to| self.joins(*from, *to, period)) {
+            let (first, last) = (rows[0], rows[rows.len() - 1]);
+            match &self.placement {
+                Placement::Places { start_s, places } => {
+                    let Some(places) = places.get(first..=last) else { continue };
+                    let start_s = start_s + places[0] as f64 * period;
+                    pieces.push(on_grid(signals, first, start_s, places));
+                }
+                Placement::Times(times) if rows.len() > 1 => {
+                    pieces.push(resampled_piece(signals, times, rows, period));
+                }
+                Placement::Times(_) => {}
+            }
+        }
+        for piece in &mut pieces {
+            let in_trial = self.rows.as_ref().and_then(|rows| rows.get(piece.first_row));
+            piece.first_row = in_trial.copied().unwrap_or(piece.first_row);
+        }
+        pieces
     }
 }
 
 impl Signals {
-    /// The values of some rows, in their order.
-    pub(super) fn of_rows(&self, rows: &[usize]) -> Self {
-        let of = |values: &Vec<f64>| {
-            rows.iter().map(|&row| values.get(row).copied().unwrap_or(f64::NAN)).collect()
-        };
+    /// Each signal made anew.
+    fn map(&self, of: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         Self {
             input: of(&self.input),
             output: of(&self.output),
-            covariates: self.covariates.iter().map(of).collect(),
+            covariates: self.covariates.iter().map(|signal| of(signal)).collect(),
         }
     }
-}
 
-/// Whether rows at `times` are uniform as they stand, no row missing.
-pub(super) fn is_uniform(times: &[f64]) -> bool {
-    Grid::lay(times, Repair::default()).is_ok()
-}
-
-/// Rows with an output.
-fn measured_rows(signals: &Signals) -> Vec<usize> {
-    let rows = signals.output.iter().enumerate().filter(|(_, y)| !y.is_nan());
-    rows.map(|(row, _)| row).collect()
+    /// The values of some rows, in their order.
+    fn of_rows(&self, rows: &[usize]) -> Self {
+        self.map(|values| {
+            rows.iter().map(|&row| values.get(row).copied().unwrap_or(f64::NAN)).collect()
+        })
+    }
 }
 
 /// Places on the grid that are still distinct as floating-point numbers.
 const MOST_PLACES: f64 = 1e12;
-
-/// Samples of one trial that are still handled: 8 GB as numbers.
-const MOST_SAMPLES: f64 = 1e9;
-
-fn check_size(samples: f64, period: f64) -> Result<(), Fault> {
-    if samples > MOST_SAMPLES { Err(Fault::TooMany { samples, period }) } else { Ok(()) }
-}
-
-/// Whether a gap is no longer than the limit, rounding left aside.
-fn is_within(gap: f64, limit: f64) -> bool {
-    gap <= limit * (1.0 + 1e-9)
-}
 
 /// The place of each row on a grid of `period`, from the steps between rows.
 fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, Fault> {
@@ -292,10 +278,10 @@ fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, 
 
 /// The signals of the rows from `first` on at their `places`, gaps between them filled:
 /// output linear, input held.
-fn on_grid(signals: &Signals, first: usize, places: &[usize]) -> Signals {
+fn on_grid(signals: &Signals, first: usize, start_s: f64, places: &[usize]) -> Piece {
     let start = places.first().copied().unwrap_or_default();
     let length = places.last().map_or(0, |last| last + 1 - start);
-    let spread = |values: &Vec<f64>| {
+    let mut grid = signals.map(|values| {
         let mut grid = vec![f64::NAN; length];
         for (value, place) in values.iter().skip(first).zip(places) {
             if let Some(slot) = grid.get_mut(place - start) {
@@ -303,15 +289,10 @@ fn on_grid(signals: &Signals, first: usize, places: &[usize]) -> Signals {
             }
         }
         grid
-    };
-    let mut grid = Signals {
-        input: spread(&signals.input),
-        output: spread(&signals.output),
-        covariates: signals.covariates.iter().map(spread).collect(),
-    };
+    });
     hold(&mut grid.input);
-    interpolate(&mut grid.output);
-    grid
+    let filled = interpolate(&mut grid.output);
+    Piece { start_s, first_row: first, signals: grid, filled }
 }
 
 /// Replaces each NaN by the number before it, the first ones by the first number.
@@ -326,8 +307,9 @@ pub(super) fn hold(values: &mut [f64]) {
     }
 }
 
-/// Replaces each NaN by the line between its neighbours.
-fn interpolate(values: &mut [f64]) {
+/// Replaces each NaN between numbers by the line through its neighbours; what was replaced.
+fn interpolate(values: &mut [f64]) -> Vec<Range<usize>> {
+    let mut filled = Vec::new();
     let mut last: Option<(usize, f64)> = None;
     for index in 0..values.len() {
         let Some(&value) = values.get(index).filter(|value| !value.is_nan()) else {
@@ -338,42 +320,24 @@ fn interpolate(values: &mut [f64]) {
             for (offset, slot) in values[from..index].iter_mut().enumerate() {
                 *slot = start + slope * offset as f64;
             }
+            filled.push(from + 1..index);
         }
         last = Some((index, value));
     }
-}
-
-fn resampled(
-    signals: &Signals,
-    times: &[f64],
-    longest_gap_s: f64,
-    period: SamplePeriod,
-) -> Vec<Piece> {
-    let time = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
-    let joined = |&from: &usize, &to: &usize| is_within(time(to) - time(from), longest_gap_s);
-    measured_rows(signals)
-        .chunk_by(joined)
-        .filter(|rows| rows.len() > 1)
-        .map(|rows| resampled_piece(signals, times, rows, period))
-        .collect()
+    filled
 }
 
 /// One piece: `rows` are those with an output, no long gap between them.
-fn resampled_piece(
-    signals: &Signals,
-    times: &[f64],
-    rows: &[usize],
-    period: SamplePeriod,
-) -> Piece {
+fn resampled_piece(signals: &Signals, times: &[f64], rows: &[usize], period: f64) -> Piece {
     /// Part of a period by which a row may come late and still count as on time.
     const ON_TIME: f64 = 1e-6;
     let time = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
     let start_s = rows.first().map_or(0.0, |&row| time(row));
     let span = rows.last().map_or(0.0, |&row| time(row)) - start_s;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "span ≥ 0")]
-    let count = (span / period.seconds() + ON_TIME) as usize + 1;
-    let grid = (0..count).map(|k| start_s + k as f64 * period.seconds());
-    let late = ON_TIME * period.seconds();
+    let count = (span / period + ON_TIME) as usize + 1;
+    let grid = (0..count).map(|k| start_s + k as f64 * period);
+    let late = ON_TIME * period;
     let (mut row, mut pair) = (0, 0);
     let mut piece =
         Signals { covariates: vec![Vec::new(); signals.covariates.len()], ..Signals::default() };
@@ -399,7 +363,8 @@ fn resampled_piece(
             target.push(between(source));
         }
     }
-    Piece { start_s, signals: piece }
+    let first_row = rows.first().copied().unwrap_or_default();
+    Piece { start_s, first_row, signals: piece, filled: Vec::new() }
 }
 
 /// `seconds` to nine significant digits: 0.01 s out of times that are binary sums.

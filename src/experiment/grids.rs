@@ -1,0 +1,362 @@
+//! The grids of a log whose clock is not uniform, and what its reader should know of them.
+
+use super::clock::{Clock, Evenness, Fault, Run, filled_s};
+use super::grid::{Grid, Part, Repair};
+use crate::numerics::as_written;
+use crate::units::SamplePeriod;
+
+/// Trials whose periods differ by less are of one rate: the tolerance of a uniform clock.
+const ONE_RATE: f64 = 0.01;
+
+/// Tolerance of one rate where the sampling is uneven, so that a period is only a mean.
+const ONE_UNEVEN_RATE: f64 = 0.15;
+
+/// By so many periods a row may be off its time because the period is a round number.
+const ROUNDING: f64 = 0.1;
+
+/// Part by which the period of a grid that is laid anew may be rounded.
+const ROUND_RELATIVE: f64 = 0.03;
+
+/// The grids of all trials, whose rows have the times `trials`; and a line on each thing that
+/// was found, which calls a row of a trial by `number`. Where something cannot be mended it comes back with
+/// its trial.
+pub(super) fn grids(
+    trials: &[&[f64]],
+    repair: Repair,
+    number: &dyn Fn(usize, usize) -> u64,
+) -> Result<(Vec<Grid>, Vec<String>), (usize, Fault)> {
+    let mut uniform = Vec::new();
+    let mut fault = None;
+    for (trial, times) in trials.iter().enumerate() {
+        let grid = Grid::lay(times, repair).map_err(|fault| (trial, fault));
+        fault = fault.or(grid.as_ref().err().copied());
+        uniform.push(grid.ok());
+    }
+    match fault {
+        None => return Ok((uniform.into_iter().flatten().collect(), Vec::new())),
+        Some(fault) if repair.as_it_stands || !fault.1.is_mended() => return Err(fault),
+        Some(_) => {}
+    }
+    let mut clocks = Vec::new();
+    for (trial, times) in trials.iter().enumerate() {
+        clocks.push(Clock::read(times, repair.fill_s).map_err(|fault| (trial, fault))?);
+    }
+    let periods = match repair.resample {
+        Some(period) => vec![period.seconds(); clocks.len()],
+        None => common_periods(&clocks),
+    };
+    let mut grids = Vec::new();
+    for (trial, (clock, period)) in clocks.iter().zip(&periods).enumerate() {
+        let times = trials.get(trial).copied().unwrap_or_default();
+        grids.push(grid(clock, times, *period, repair).map_err(|fault| (trial, fault))?);
+    }
+    let is_uniform = uniform.iter().map(Option::is_some);
+    let laid = clocks.into_iter().zip(periods).zip(is_uniform);
+    let laid = laid.map(|((clock, period), is_uniform)| Laid { clock, period, is_uniform });
+    let is_resampled = repair.resample.is_some();
+    let findings = Findings { trials: laid.collect(), number, is_resampled };
+    Ok((grids, findings.lines()))
+}
+
+/// The period of each trial's grid: trials of one rate share their mean, each counting by its rows, as a round
+/// number where that puts no row at another place. Even clocks come first, since their periods are known best:
+/// uneven ones near them take theirs.
+fn common_periods(clocks: &[Clock]) -> Vec<f64> {
+    let is_uneven = |clock: &Clock| clock.evenness == Evenness::Uneven;
+    let mut order: Vec<(usize, &Clock)> = clocks.iter().enumerate().collect();
+    order.sort_by(|(_, a), (_, b)| {
+        is_uneven(a).cmp(&is_uneven(b)).then(a.period.total_cmp(&b.period))
+    });
+    let mut groups: Vec<Vec<(usize, &Clock)>> = Vec::new();
+    for (trial, clock) in order {
+        let one_rate = if is_uneven(clock) { ONE_UNEVEN_RATE } else { ONE_RATE };
+        let is_near = |group: &&mut Vec<(usize, &Clock)>| {
+            (clock.period / group[0].1.period - 1.0).abs() <= one_rate
+        };
+        match groups.iter_mut().find(is_near) {
+            Some(group) => group.push((trial, clock)),
+            None => groups.push(vec![(trial, clock)]),
+        }
+    }
+    let mut periods = vec![0.0; clocks.len()];
+    for group in groups {
+        let is_guess = is_uneven(group[0].1);
+        let (mut rows, mut sum, mut longest) = (0.0, 0.0, 1);
+        for (_, clock) in group.iter().filter(|(_, clock)| is_uneven(clock) == is_guess) {
+            let count = clock.runs.iter().map(|run| run.rows.len()).sum::<usize>() as f64;
+            (rows, sum) = (rows + count, sum + count * clock.period);
+            longest = longest.max(clock.longest());
+        }
+        let by_a_row = (ROUNDING / longest as f64).min(2.0 * ONE_RATE);
+        let period = rounded(sum / rows, if is_guess { ROUND_RELATIVE } else { by_a_row });
+        for (trial, _) in group {
+            periods[trial] = period;
+        }
+    }
+    periods
+}
+
+/// `period` with as few digits as leave it right to a part `tolerance`.
+fn rounded(period: f64, tolerance: f64) -> f64 {
+    let is_right = |rounded: &f64| (rounded / period - 1.0).abs() <= tolerance;
+    (1..=9).map(|digits| as_written(period, digits)).find(is_right).unwrap_or(period)
+}
+
+/// The grid of a trial.
+fn grid(clock: &Clock, times: &[f64], period: f64, repair: Repair) -> Result<Grid, Fault> {
+    let longest_gap_s = repair.fill_s.unwrap_or_else(|| filled_s(period));
+    let is_even = clock.evenness != Evenness::Uneven && repair.resample.is_none();
+    let part = |run: &Run| {
+        if is_even {
+            let start_s = run.start_s(times, period);
+            Part::at_places(start_s, run.places.clone(), longest_gap_s).of_rows(run.rows.clone())
+        } else {
+            interpolated(run, times, longest_gap_s)
+        }
+    };
+    let parts = clock.runs.iter().map(part).collect();
+    Grid::of_parts(SamplePeriod::from_seconds(period).ok_or(Fault::SingleRow)?, parts)
+}
+
+/// A run on a grid that lies anew over its times.
+fn interpolated(run: &Run, times: &[f64], longest_gap_s: f64) -> Part {
+    let time = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
+    // Of rows with one stamp the last counts, as where the input steps: there is no line between
+    // them.
+    let mut rows: Vec<usize> = Vec::with_capacity(run.rows.len());
+    for &row in &run.rows {
+        match rows.last_mut() {
+            Some(last) if time(row) <= time(*last) => *last = row,
+            _ => rows.push(row),
+        }
+    }
+    let times: Vec<f64> = rows.iter().map(|&row| time(row)).collect();
+    // What the run holds together, the grid does.
+    let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
+    let longest_gap_s = steps.fold(longest_gap_s, f64::max);
+    Part::resampled(times, longest_gap_s).of_rows(rows)
+}
+
+/// The clock of a trial, and the period of its grid.
+struct Laid {
+    clock: Clock,
+    period: f64,
+    /// Whether there is nothing to say of it.
+    is_uniform: bool,
+}
+
+impl Laid {
+    /// Whether nothing is to be said of the clock but where it is cut.
+    fn is_only_cut(&self) -> bool {
+        /// Jitter, in periods, that is rounding.
+        const NONE: f64 = 1e-3;
+        let is_cut = match self.clock.evenness {
+            Evenness::Jitters => true,
+            Evenness::Uneven => self.clock.gaps.is_some(),
+            Evenness::Rounded { .. } => false,
+        };
+        is_cut && self.clock.jitter < NONE
+    }
+}
+
+/// What was found in the clocks of a log.
+struct Findings<'a> {
+    trials: Vec<Laid>,
+    /// What messages call a row of a trial.
+    number: &'a dyn Fn(usize, usize) -> u64,
+    is_resampled: bool,
+}
+
+/// How many rows of a kind there are, and the first.
+type Count = fn(&Clock) -> Option<(usize, usize)>;
+
+impl Findings<'_> {
+    fn lines(&self) -> Vec<String> {
+        const KINDS: [(Count, &str); 3] = [
+            (
+                |clock| clock.found.twice,
+                "at the time of the row before, and one of the two is left out",
+            ),
+            (|clock| clock.found.disordered, "out of order and sorted by time"),
+            (|clock| clock.found.alone, "alone between gaps and left out"),
+        ];
+        let mut lines = self.on_periods();
+        lines.extend(self.on_gaps());
+        for (count, says) in KINDS {
+            if let Some((count, row)) = self.first(count) {
+                let rows = if count == 1 { "row is" } else { "rows are" };
+                lines.push(format!("{count} {rows} {says} (first at row {row})"));
+            }
+        }
+        if let Some((count, row)) = self.first(|clock| clock.found.restarts) {
+            let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
+            lines.push(format!(
+                "the clock starts anew {times} (first at row {row}): a new part begins there"
+            ));
+        }
+        lines
+    }
+
+    /// Rows of a kind in all trials, and the number of the first.
+    fn first(&self, what: Count) -> Option<(usize, u64)> {
+        let found = self.trials.iter().enumerate();
+        let mut found = found.filter_map(|(trial, laid)| Some((trial, what(&laid.clock)?)));
+        let (trial, (count, row)) = found.next()?;
+        let count = found.fold(count, |count, (_, (more, _))| count + more);
+        Some((count, (self.number)(trial, row)))
+    }
+
+    /// A line on each rate and kind of clock.
+    fn on_periods(&self) -> Vec<String> {
+        let mut kinds: Vec<((Evenness, f64), Vec<usize>)> = Vec::new();
+        for (trial, laid) in self.trials.iter().enumerate() {
+            if laid.is_uniform || laid.is_only_cut() {
+                continue;
+            }
+            let kind = (laid.clock.evenness, laid.period);
+            match kinds.iter_mut().find(|(known, _)| *known == kind) {
+                Some((_, trials)) => trials.push(trial),
+                None => kinds.push((kind, vec![trial])),
+            }
+        }
+        let of = |((evenness, period), trials): ((Evenness, f64), Vec<usize>)| {
+            let whose = match self.trials.len() {
+                1 => String::new(),
+                all => format!("{} of {all} trials: ", trials.len()),
+            };
+            whose + &self.on_period(evenness, period, &trials)
+        };
+        kinds.into_iter().map(of).collect()
+    }
+
+    /// What clocks of one kind are like, by the worst of them.
+    fn on_period(&self, evenness: Evenness, period: f64, trials: &[usize]) -> String {
+        let grid = duration(period);
+        if let Evenness::Rounded { to_s } = evenness {
+            let to = duration(to_s);
+            return format!(
+                "the times are rounded to {to}: samples are placed evenly, {grid} apart"
+            );
+        }
+        let what = if !self.is_resampled && evenness == Evenness::Jitters {
+            "samples are placed on a grid of"
+        } else {
+            "samples are interpolated, the input held, on a grid of"
+        };
+        let clocks = trials.iter().map(|trial| (*trial, &self.trials[*trial].clock));
+        let worst = clocks.max_by(|(_, a), (_, b)| a.largest.0.total_cmp(&b.largest.0));
+        let Some((trial, clock)) = worst else { return format!("{what} {grid}") };
+        let (largest, row) = clock.largest;
+        let drift = if clock.drift > 0.5 && evenness == Evenness::Jitters {
+            format!(" and drifts by up to {:.1} periods", clock.drift)
+        } else {
+            String::new()
+        };
+        format!(
+            "the clock jitters by {} % of its period of {} (standard deviation), \
+             largest {} % at row {}{drift}: {what} {grid}",
+            two_digits(100.0 * clock.jitter),
+            duration(clock.period),
+            two_digits(100.0 * largest),
+            (self.number)(trial, row),
+        )
+    }
+
+    /// Rows that are lost; other uneven samples are interpolated anyhow.
+    fn on_gaps(&self) -> Option<String> {
+        let gaps = self.trials.iter().enumerate().filter_map(|(trial, laid)| {
+            let is_even = laid.clock.evenness != Evenness::Uneven;
+            let gaps = laid.clock.gaps.filter(|_| is_even || laid.is_only_cut())?;
+            Some((trial, gaps))
+        });
+        let gaps: Vec<(usize, (usize, usize, usize))> = gaps.collect();
+        let (trial, (_, _, row)) = *gaps.first()?;
+        let row = (self.number)(trial, row);
+        let many: usize = gaps.iter().map(|(_, (many, ..))| many).sum();
+        let longest = gaps.iter().map(|(_, (_, periods, _))| *periods).max()?;
+        let gaps = if many == 1 { "gap" } else { "gaps" };
+        Some(format!(
+            "rows are lost in {many} {gaps} of up to {longest} periods (first before row {row}): \
+             they are filled, the output in a line, the input held"
+        ))
+    }
+}
+
+/// A length of time for people: `10 ms`, `7.753 ms`, `1 s`.
+fn duration(seconds: f64) -> String {
+    let (value, unit) = match seconds {
+        1.0.. => (seconds, "s"),
+        1e-3.. => (seconds * 1e3, "ms"),
+        _ => (seconds * 1e6, "µs"),
+    };
+    format!("{} {unit}", as_written(value, 4))
+}
+
+/// A percentage to two digits: `2.3`, `14`, `0.087`.
+fn two_digits(percent: f64) -> String {
+    as_written(percent, 2).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::grid::Signals;
+
+    fn noise(k: usize) -> f64 {
+        ((k as f64 * 12.9898).sin() * 43_758.545_3).fract()
+    }
+
+    fn jittering(rows: usize, period: f64, size: f64) -> Vec<f64> {
+        (0..rows).map(|k| period * (k as f64 + size * noise(k))).collect()
+    }
+
+    fn laid(trials: &[&[f64]]) -> (Vec<Grid>, Vec<String>) {
+        grids(trials, Repair::default(), &|_, row| row as u64 + 2).unwrap()
+    }
+
+    #[test]
+    fn trials_of_one_rate_share_a_round_period() {
+        let trials = [jittering(400, 0.009_999_7, 0.1), jittering(300, 0.010_000_2, 0.05)];
+        let other = jittering(200, 0.05, 0.1);
+        let (grids, notes) = laid(&[&trials[0], &trials[1], &other]);
+        let periods: Vec<_> = grids.iter().map(|grid| grid.period().to_string()).collect();
+        assert_eq!(periods, ["0.01 s", "0.01 s", "0.05 s"]);
+        assert_eq!(notes.len(), 2, "{notes:?}");
+        assert!(notes[0].starts_with("2 of 3 trials: the clock jitters by "), "{notes:?}");
+        assert!(notes[0].ends_with("samples are placed on a grid of 10 ms"), "{notes:?}");
+    }
+
+    #[test]
+    fn jitter_changes_no_value_and_uneven_samples_are_interpolated() {
+        let signals = |times: &[f64]| Signals {
+            input: vec![1.0; times.len()],
+            output: times.to_vec(),
+            covariates: Vec::new(),
+        };
+        let times = jittering(200, 0.01, 0.1);
+        let (grids, _) = laid(&[&times]);
+        assert_eq!(grids[0].pieces(signals(&times))[0].signals.output, times);
+        let mut now = 0.0;
+        let mut step = |k: usize| {
+            now += 0.01 * (1.0 + 0.5 * noise(k));
+            now
+        };
+        let times: Vec<f64> = (0..500).map(&mut step).collect();
+        let (grids, notes) = laid(&[&times]);
+        assert!(notes[0].contains("interpolated"), "{notes:?}");
+        let piece = &grids[0].pieces(signals(&times))[0];
+        for (k, output) in piece.signals.output.iter().enumerate() {
+            let time = piece.start_s + k as f64 * grids[0].period().seconds();
+            assert!((output - time).abs() < 1e-9, "the output is its time");
+        }
+    }
+
+    #[test]
+    fn lengths_of_time_and_shares_are_short() {
+        assert_eq!(
+            [0.01, 0.007_753_13, 2.0, 2e-5].map(duration),
+            ["10 ms", "7.753 ms", "2 s", "20 µs"]
+        );
+        assert_eq!([2.345, 14.4, 0.0871].map(two_digits), ["2.3", "14", "0.087"]);
+    }
+}
