@@ -32,6 +32,9 @@ const BATCH: u64 = 8192;
 /// Copies of a batch at a time: its own, with what a list that grows has to spare, and those as labels.
 const COPIES: u64 = 8;
 
+/// What is done with some values of a column, and with which of them are missing.
+type Take<'a> = dyn FnMut(&ArrayRef, &[bool]) -> Result<(), ReadError> + 'a;
+
 /// A file whose footer was read.
 struct Unread {
     file: File,
@@ -165,7 +168,7 @@ impl Unread {
         index: usize,
         rows: usize,
         path: &Path,
-        take: &mut dyn FnMut(&ArrayRef, &[bool]) -> Result<(), ReadError>,
+        take: &mut Take<'_>,
     ) -> Result<(), ReadError> {
         let largest = self.check_pages(index, path)?;
         // A long text that many rows share is repeated for each row of a batch.
@@ -231,12 +234,12 @@ impl Unread {
 /// What a column holds instead of numbers.
 fn not_numbers(kind: &DataType) -> Option<String> {
     match kind {
-        DataType::Boolean | DataType::Timestamp(..) | DataType::Duration(_) => None,
-        DataType::Time32(_) | DataType::Time64(_) => None,
-        kind if kind.is_numeric() => None,
         DataType::Dictionary(_, values) => not_numbers(values),
         // Days, which would be read as seconds.
         DataType::Date32 | DataType::Date64 => Some("dates without a time of day".to_owned()),
+        DataType::Interval(_) => Some("intervals of the calendar".to_owned()),
+        DataType::Boolean => None,
+        kind if kind.is_numeric() || kind.is_temporal() => None,
         kind if kind.is_string() => Some("text".to_owned()),
         other => Some(format!("values of the type {other}")),
     }

@@ -30,8 +30,8 @@ type Workbook = Xlsx<BufReader<File>>;
 
 /// Opens the workbook and reads the header of the first sheet with a column of times, else of the first
 /// one with numbers, else of the first one with rows, to say what is wrong with it.
-pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
-    let mut parts = Parts::unpacked(path, &budget)?;
+pub(super) fn open(path: &Path, budget: &Budget) -> Result<OpenTable, ReadError> {
+    let mut parts = Parts::unpacked(path, budget)?;
     // They stay while cells are read that share them.
     budget.take(parts.texts).map_err(|error| error.refuse(path))?;
     let mut workbook: Workbook =
@@ -47,11 +47,11 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
     }
     let (mut numbers, mut rows) = (None, None);
     for name in names {
-        let range = parts.cells(&mut workbook, &name, path, &budget)?;
+        let range = parts.cells(&mut workbook, &name, path, budget)?;
         if range.height() < 2 {
             continue;
         }
-        let found = of_sheet(&range, name, count, path, &budget);
+        let found = of_sheet(&range, name, count, path, budget);
         if !range.rows().any(|row| row.iter().filter(|cell| is_value(cell)).count() > 1) {
             rows = rows.or(Some(found));
         } else if found.as_ref().is_ok_and(|table| find_time_column(&table.head).is_some()) {

@@ -41,9 +41,11 @@ pub(crate) fn of_sheets(sheets: &[&[&[&str]]]) -> Vec<u8> {
                 match *cell {
                     "=" => cells += "<c><f>A1*2</f><v></v></c>",
                     cell if cell.parse::<f64>().is_ok() => {
-                        write!(cells, "<c><v>{cell}</v></c>").unwrap()
+                        write!(cells, "<c><v>{cell}</v></c>").unwrap();
                     }
-                    cell => write!(cells, "<c t=\"inlineStr\"><is><t>{cell}</t></is></c>").unwrap(),
+                    cell => {
+                        write!(cells, "<c t=\"inlineStr\"><is><t>{cell}</t></is></c>").unwrap();
+                    }
                 }
             }
             cells += "</row>";

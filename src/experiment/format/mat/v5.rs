@@ -51,9 +51,9 @@ pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, R
 fn read(mut file: impl Read, budget: &Budget) -> Result<Vec<Variable>, Fault> {
     let mut head = [0; 128];
     file.read_exact(&mut head)?;
-    let big = head.ends_with(b"MI");
+    let bytes = Bytes { data: &[], big: head.ends_with(b"MI"), budget };
     let (mut found, mut number) = (Vec::new(), 1);
-    while next(&mut file, big, budget, &mut found)
+    while next(&mut file, bytes, &mut found)
         .map_err(|fault| fault.within(&format!("variable {number}")))?
     {
         number += 1;
@@ -61,19 +61,15 @@ fn read(mut file: impl Read, budget: &Budget) -> Result<Vec<Variable>, Fault> {
     Ok(found)
 }
 
-/// Reads the next variable, where there is one.
-fn next(
-    file: &mut impl Read,
-    big: bool,
-    budget: &Budget,
-    found: &mut Vec<Variable>,
-) -> Result<bool, Fault> {
+/// Reads the next variable, where there is one, its numbers as `like` has them.
+fn next(file: &mut impl Read, like: Bytes<'_>, found: &mut Vec<Variable>) -> Result<bool, Fault> {
+    let budget = like.budget;
     let (mut tag, mut data) = (Vec::new(), Vec::new());
     file.take(8).read_to_end(&mut tag)?;
     if tag.is_empty() {
         return Ok(false);
     }
-    let mut tag = Bytes { data: &tag, big, budget };
+    let mut tag = Bytes { data: &tag, ..like };
     let (mut kind, size) = (tag.u32()?, u64::from(tag.u32()?));
     file.take(size).read_to_end(&mut data)?;
     if (data.len() as u64) < size {
@@ -85,7 +81,7 @@ fn next(
     }
     let held = data.capacity() as u64;
     budget.take(held)?;
-    let mut data = Bytes { data: &data, big, budget };
+    let mut data = Bytes { data: &data, ..like };
     if is_packed {
         (kind, data) = data.element()?;
     }
@@ -119,7 +115,7 @@ struct Bytes<'a> {
     budget: &'a Budget,
 }
 
-impl<'a> Bytes<'a> {
+impl Bytes<'_> {
     fn take(&mut self, count: usize) -> Result<Self, Fault> {
         let Some((taken, rest)) = self.data.split_at_checked(count) else {
             return fault("it is shorter than it says");
