@@ -163,9 +163,12 @@ impl Bytes<'_> {
 
     /// The next element as whole numbers that are not negative.
     fn counts(&mut self) -> Result<Vec<usize>, Fault> {
-        let numbers = self.numbers()?.into_iter();
+        let numbers = self.numbers()?;
+        if numbers.iter().any(|number| *number < 0.0) {
+            return fault("an array has a negative length");
+        }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
-        Ok(numbers.map(|number| number as usize).collect())
+        Ok(numbers.into_iter().map(|number| number as usize).collect())
     }
 
     /// Each value of `N` bytes, the lowest byte first.
