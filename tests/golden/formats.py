@@ -63,6 +63,8 @@ def parquet(columns):
     for compression in ("zstd", "snappy", "gzip", "lz4", "none"):
         pq.write_table(table, HERE / f"{compression}.parquet", compression=compression,
                        row_group_size=300)
+    # A few rows by a compression that is not read.
+    pq.write_table(table.slice(0, 40), HERE / "brotli.parquet", compression="brotli")
     # As data frames are written: times of the type timestamp, text as a dictionary, 32 bits,
     # a structure per joint, and a column of text.
     bits32 = lambda name: pa.array(columns[name], pa.float32())

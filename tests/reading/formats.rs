@@ -129,6 +129,119 @@ mod parquet {
         assert_eq!(found.joints, read_whole("narrow.csv", &ReadOptions::default()).joints);
     }
 
+    /// A file with these columns of 100 rows, by their names.
+    fn table(folder: &Path, columns: Vec<(&str, ::arrow_array::ArrayRef)>) -> PathBuf {
+        let path = folder.join("log.parquet");
+        let batch = ::arrow_array::RecordBatch::try_from_iter(columns).unwrap();
+        let file = std::fs::File::create(&path).unwrap();
+        let writer = ::parquet::arrow::ArrowWriter::try_new(file, batch.schema(), None);
+        let mut writer = writer.unwrap();
+        writer.write(&batch).unwrap();
+        writer.close().unwrap();
+        path
+    }
+
+    #[test]
+    fn the_type_of_a_column_says_its_unit_and_not_its_name() {
+        use std::sync::Arc;
+
+        use ::arrow_array::{ArrayRef, DurationMicrosecondArray, Float64Array};
+        let folder = tempfile::tempdir().unwrap();
+        let numbers = |of: fn(i32) -> f64| -> ArrayRef {
+            Arc::new(Float64Array::from_iter_values((0..100).map(of)))
+        };
+        let times = DurationMicrosecondArray::from_iter_values((0..100).map(|k| k * 20_000));
+        let path = table(
+            folder.path(),
+            vec![
+                ("time [ms]", Arc::new(times) as ArrayRef),
+                ("a.input", numbers(|k| f64::from(k / 20 % 2))),
+                ("a.output", numbers(f64::from)),
+            ],
+        );
+        let found = read(path, &ReadOptions::default());
+        assert!(
+            (found.joints[0].trials[0].period().seconds() - 0.02).abs() < 1e-12,
+            "{:?}",
+            found.failures
+        );
+    }
+
+    #[test]
+    fn times_of_96_bits_are_read() {
+        use std::sync::Arc;
+
+        use ::parquet::data_type::{DoubleType, Int96, Int96Type};
+        use ::parquet::file::writer::SerializedFileWriter;
+        /// Days from the origin of these times to 1970.
+        const JULIAN: u32 = 2_440_588;
+        let folder = tempfile::tempdir().unwrap();
+        let schema = "message log { optional int96 time; optional double input; optional double \
+                      output; }";
+        let schema = ::parquet::schema::parser::parse_message_type(schema).unwrap();
+        let path = folder.path().join("log.parquet");
+        let file = std::fs::File::create(&path).unwrap();
+        let mut writer = SerializedFileWriter::new(file, schema.into(), Arc::default()).unwrap();
+        let mut group = writer.next_row_group().unwrap();
+        let time = |k: u64| {
+            let mut time = Int96::new();
+            let nanoseconds = k * 20_000_000;
+            time.set_data((nanoseconds & 0xffff_ffff) as u32, (nanoseconds >> 32) as u32, JULIAN);
+            time
+        };
+        let mut column = group.next_column().unwrap().unwrap();
+        let times: Vec<Int96> = (0..100).map(time).collect();
+        column.typed::<Int96Type>().write_batch(&times, Some(&[1; 100]), None).unwrap();
+        column.close().unwrap();
+        for of in [|k: i32| f64::from(k / 20 % 2), f64::from] {
+            let mut column = group.next_column().unwrap().unwrap();
+            let values: Vec<f64> = (0..100).map(of).collect();
+            column.typed::<DoubleType>().write_batch(&values, Some(&[1; 100]), None).unwrap();
+            column.close().unwrap();
+        }
+        group.close().unwrap();
+        writer.close().unwrap();
+        let found = read(path, &mapped(&[("a", "input", "output")]));
+        assert!(
+            (found.joints[0].trials[0].period().seconds() - 0.02).abs() < 1e-12,
+            "{:?}",
+            found.failures
+        );
+    }
+
+    #[test]
+    fn a_compression_that_is_not_built_in_is_named_with_its_column() {
+        let message = refusal(golden("brotli.parquet"), &ReadOptions::default());
+        for part in ["column `time_s` is compressed by brotli", "write it with zstd or snappy"] {
+            assert!(message.contains(part), "{message}");
+        }
+    }
+
+    #[test]
+    fn where_a_structure_is_missing_its_fields_are() {
+        use std::sync::Arc;
+
+        use ::arrow_array::{ArrayRef, Float64Array, StructArray};
+        use ::arrow_schema::{DataType, Field};
+        let folder = tempfile::tempdir().unwrap();
+        let numbers = |of: fn(i32) -> f64| -> ArrayRef {
+            Arc::new(Float64Array::from_iter_values((0..100).map(of)))
+        };
+        let fields = ["input", "output"].map(|name| Field::new(name, DataType::Float64, false));
+        let parts = vec![numbers(|k| f64::from(k / 20 % 2)), numbers(f64::from)];
+        let present: Vec<bool> = (0..100).map(|k| !(50..65).contains(&k)).collect();
+        let joint = StructArray::try_new(fields.to_vec().into(), parts, Some(present.into()));
+        let columns = vec![
+            ("time_s", numbers(|k| 0.02 * f64::from(k))),
+            ("boom", Arc::new(joint.unwrap()) as ArrayRef),
+        ];
+        let found = read(table(folder.path(), columns), &ReadOptions::default());
+        for column in ["boom.input", "boom.output"] {
+            let note = format!("15 cells are empty or NaN in `{column}`");
+            assert!(found.notes.iter().any(|said| said.contains(&note)), "{:?}", found.notes);
+        }
+    }
+
     #[test]
     fn text_in_place_of_numbers_is_named_with_its_column() {
         let options = mapped(&[("boom", "boom.input", "note")]);
@@ -345,6 +458,48 @@ mod mat {
             expected: 4,
         };
         assert!(lengths.to_string().contains("`u` has 3 values but `t` has 4"));
+    }
+}
+
+#[cfg(feature = "xlsx")]
+mod xlsx {
+    use super::*;
+    use crate::hostile::workbook::of_sheets;
+
+    const COVER: &[&[&str]] = &[&["made", "by"], &["some", "body"]];
+    const LEVELS: &[&[&str]] = &[&["No", "Level"], &["1", "0.5"], &["2", "1.5"]];
+    const LOG: &[&[&str]] = &[
+        &["Rig 3"],
+        &["time_s", "boom.input", "boom.output", "arm.input", "arm.output"],
+        &["0", "0", "0", "0", "0"],
+        &["0.1", "0", "0", "1", "="],
+        &["0.2", "1", "1", "1", "="],
+        &["0.3", "1", "2", "1", "="],
+    ];
+
+    fn read_sheets(sheets: &[&[&[&str]]]) -> Experiment {
+        let (_folder, path) = written("log.xlsx", &of_sheets(sheets));
+        read(path, &ReadOptions::default())
+    }
+
+    #[test]
+    fn the_sheet_with_a_column_of_times_is_read_else_one_with_numbers() {
+        let found = read_sheets(&[COVER, LEVELS, LOG]);
+        assert_eq!(found.joints.len(), 1);
+        assert!(found.notes.iter().any(|n| n.contains("the sheet `s3` of 3")), "{:?}", found.notes);
+        let message = read_sheets(&[COVER, LEVELS]).failures[0].error.to_string();
+        assert!(message.contains("Level"), "{message}");
+    }
+
+    #[test]
+    fn a_formula_without_a_value_is_named_with_what_to_do() {
+        let found = read_sheets(&[COVER, LOG]);
+        assert_eq!(found.joints.len(), 1, "{:?}", found.failures);
+        assert_eq!(found.joints[0].name, "boom");
+        let message = found.failures[0].error.to_string();
+        for part in ["`arm.output`", "row 4 of the sheet `s2`", "so that values are stored"] {
+            assert!(message.contains(part), "{message}");
+        }
     }
 }
 

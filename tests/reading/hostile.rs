@@ -6,7 +6,7 @@ use crate::bytes;
 use crate::log_text::log_text;
 mod run;
 #[cfg(feature = "xlsx")]
-mod workbook;
+pub(crate) mod workbook;
 #[cfg(feature = "xlsx")]
 mod workbooks;
 

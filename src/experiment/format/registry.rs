@@ -71,7 +71,7 @@ const FORMATS: [Format; 5] = [
         starts: |start| start.starts_with(b"PK\x03\x04"),
         remedy: "save it again as .xlsx, or as CSV",
         #[cfg(feature = "xlsx")]
-        open: |path, budget| workbook(path, xlsx::open(path, budget)),
+        open: |path, budget| workbook(path, xlsx::open(path, &budget)),
         #[cfg(not(feature = "xlsx"))]
         open: |path, _| workbook(path, left_out(path, "XLSX", "xlsx")),
     },

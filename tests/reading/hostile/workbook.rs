@@ -28,13 +28,63 @@ pub(crate) fn with_empty_sheets(count: usize) -> Vec<u8> {
     workbook(count, "", "")
 }
 
+/// One with these sheets, each with the cells of its rows: numbers, `=` for a formula without a value, or
+/// texts.
+pub(crate) fn of_sheets(sheets: &[&[&[&str]]]) -> Vec<u8> {
+    let mut parts = Vec::new();
+    let (mut names, mut targets) = (String::new(), String::new());
+    for (rows, number) in sheets.iter().zip(1..) {
+        let mut cells = String::new();
+        for row in *rows {
+            cells += "<row>";
+            for cell in *row {
+                match *cell {
+                    "=" => cells += "<c><f>A1*2</f><v></v></c>",
+                    cell if cell.parse::<f64>().is_ok() => {
+                        write!(cells, "<c><v>{cell}</v></c>").unwrap();
+                    }
+                    cell => {
+                        write!(cells, "<c t=\"inlineStr\"><is><t>{cell}</t></is></c>").unwrap();
+                    }
+                }
+            }
+            cells += "</row>";
+        }
+        let sheet =
+            format!("<worksheet xmlns=\"{MAIN}\"><sheetData>{cells}</sheetData></worksheet>");
+        parts.push((format!("xl/worksheets/sheet{number}.xml"), sheet));
+        write!(names, "<sheet name=\"s{number}\" sheetId=\"{number}\" r:id=\"r{number}\"/>")
+            .unwrap();
+        write!(
+            targets,
+            "<Relationship Id=\"r{number}\" Type=\"{OF}/worksheet\" \
+             Target=\"worksheets/sheet{number}.xml\"/>"
+        )
+        .unwrap();
+    }
+    archive(&names, &targets, parts)
+}
+
 /// One with `count` names for the sheet of these rows.
 fn workbook(count: usize, rows: &str, text: &str) -> Vec<u8> {
     let mut sheets = String::new();
     for number in 1..=count {
         write!(sheets, "<sheet name=\"s{number}\" sheetId=\"{number}\" r:id=\"r1\"/>").unwrap();
     }
-    let parts = [
+    let targets = format!(
+        "<Relationship Id=\"r1\" Type=\"{OF}/worksheet\" Target=\"worksheets/sheet1.xml\"/>\
+         <Relationship Id=\"r2\" Type=\"{OF}/sharedStrings\" Target=\"sharedStrings.xml\"/>"
+    );
+    let texts = format!("<sst xmlns=\"{MAIN}\"><si><t>{text}</t></si></sst>");
+    let sheet = format!("<worksheet xmlns=\"{MAIN}\"><sheetData>{rows}</sheetData></worksheet>");
+    let parts = [("xl/sharedStrings.xml", texts), ("xl/worksheets/sheet1.xml", sheet)];
+    let parts = parts.map(|(name, part)| (name.to_owned(), part)).to_vec();
+    archive(&sheets, &targets, parts)
+}
+
+/// One whose list of sheets and of their parts these are, with those parts.
+fn archive(sheets: &str, targets: &str, parts: Vec<(String, String)>) -> Vec<u8> {
+    let heads = [
         (
             "_rels/.rels",
             format!(
@@ -50,21 +100,12 @@ fn workbook(count: usize, rows: &str, text: &str) -> Vec<u8> {
         ),
         (
             "xl/_rels/workbook.xml.rels",
-            format!(
-                "<Relationships xmlns=\"{PACKAGE}\"><Relationship Id=\"r1\" \
-                 Type=\"{OF}/worksheet\" Target=\"worksheets/sheet1.xml\"/><Relationship \
-                 Id=\"r2\" Type=\"{OF}/sharedStrings\" Target=\"sharedStrings.xml\"/>\
-                 </Relationships>"
-            ),
-        ),
-        ("xl/sharedStrings.xml", format!("<sst xmlns=\"{MAIN}\"><si><t>{text}</t></si></sst>")),
-        (
-            "xl/worksheets/sheet1.xml",
-            format!("<worksheet xmlns=\"{MAIN}\"><sheetData>{rows}</sheetData></worksheet>"),
+            format!("<Relationships xmlns=\"{PACKAGE}\">{targets}</Relationships>"),
         ),
     ];
+    let heads = heads.map(|(name, part)| (name.to_owned(), part));
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, part) in parts {
+    for (name, part) in heads.into_iter().chain(parts) {
         archive.start_file(name, SimpleFileOptions::default()).unwrap();
         archive.write_all(part.as_bytes()).unwrap();
     }

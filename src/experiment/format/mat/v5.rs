@@ -1,16 +1,19 @@
 //! MATLAB 5 to 7 (`save -v6`, `save -v7`), after the description "MAT-File Format" of its maker.
 //!
-//! Written here because no crate fits: those that know structures panic on damaged files.
+//! Written here because no crate fits: `matrw` 0.1.4 overflows its stack at cells within cells, unpacks
+//! without a limit, and reads no file of SciPy; `matfile` 0.5 reads no structures.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{BufReader, Read};
 use std::path::Path;
 
 use flate2::read::ZlibDecoder;
 
-use super::variable::{Content, Numbers, Variable, damaged};
+use super::Fault;
+use super::variable::{Content, Variable, object};
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::{Budget, TooLarge};
+use crate::experiment::memory::Budget;
+use crate::experiment::table::LONGEST_NAME;
 
 /// Structures may lie in structures, but not without end.
 const DEEPEST: usize = 32;
@@ -20,20 +23,23 @@ const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 const CELL: u32 = 1;
 const STRUCTURE: u32 = 2;
+const OLD_OBJECT: u32 = 3;
 const CHARACTERS: u32 = 4;
+const SPARSE: u32 = 5;
+const OPAQUE: u32 = 17;
 
 /// The flag of an array whose numbers have an imaginary part.
 const COMPLEX: u32 = 0x800;
 
-/// Letters of a name at most; MATLAB allows 63. Names are repeated with each part of a structure.
-const LONGEST_NAME: usize = 255;
-
 /// Memory of a number: itself, and its copy as a column.
 const NUMBER_SIZE: usize = 2 * size_of::<f64>();
 
-/// Memory of an array within another: itself twice, as a list that grows is copied to one of twice its
-/// size, and its name and its lengths with what the allocator adds to each.
-const ARRAY_SIZE: usize = 2 * size_of::<Array>() + 2 * 48;
+/// Memory of a variable beside its values and its name: itself twice, as a list that grows is copied to one
+/// of twice its size, and what the allocator adds.
+const VARIABLE_SIZE: usize = 2 * size_of::<Variable>() + 2 * 48;
+
+/// Memory of a row of text beside its letters: itself, and what the allocator adds.
+const TEXT_SIZE: usize = size_of::<String>() + 32;
 
 /// The variables of a file, their numbers read.
 pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
@@ -42,110 +48,63 @@ pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, R
     read(BufReader::new(file), budget).map_err(|fault| fault.refuse(path))
 }
 
-/// Why a file is refused.
-#[derive(Debug)]
-enum Fault {
-    /// What is wrong with it.
-    Damaged(String),
-    TooLarge(TooLarge),
-}
-
-impl Fault {
-    fn refuse(self, path: &Path) -> ReadError {
-        match self {
-            Self::Damaged(reason) => damaged(path, &reason),
-            Self::TooLarge(error) => error.refuse(path),
-        }
-    }
-
-    /// Says in what part of the file it is.
-    fn within(self, place: &str) -> Self {
-        match self {
-            Self::Damaged(reason) => Self::Damaged(format!("{place}: {reason}")),
-            Self::TooLarge(_) => self,
-        }
-    }
-}
-
-impl From<io::Error> for Fault {
-    fn from(error: io::Error) -> Self {
-        Self::Damaged(error.to_string())
-    }
-}
-
-impl From<TooLarge> for Fault {
-    fn from(error: TooLarge) -> Self {
-        Self::TooLarge(error)
-    }
-}
-
-fn fault<T>(text: &str) -> Result<T, Fault> {
-    Err(Fault::Damaged(text.to_owned()))
-}
-
 fn read(mut file: impl Read, budget: &Budget) -> Result<Vec<Variable>, Fault> {
     let mut head = [0; 128];
     file.read_exact(&mut head)?;
-    let big = &head[126..] == b"MI";
-    let mut variables = Vec::new();
-    let mut tag = [0; 8];
-    while file.read(&mut tag[..1])? > 0 {
-        let place = variables.last().map_or_else(
-            || "the first variable".to_owned(),
-            |last: &Variable| format!("the variable behind `{}`", last.name),
-        );
-        let ends = |_| Fault::Damaged(format!("the file ends in {place}"));
-        file.read_exact(&mut tag[1..]).map_err(ends)?;
-        let mut tag = Bytes { data: &tag, big, budget };
-        let (kind, size) = (tag.u32()?, u64::from(tag.u32()?));
-        let mut data = Vec::new();
-        file.by_ref().take(size).read_to_end(&mut data)?;
-        let held = data.capacity() as u64;
-        budget.take(held)?;
-        if (data.len() as u64) < size {
-            return Err(Fault::Damaged(format!("the file ends in {place}")));
-        }
-        let within = |fault: Fault| fault.within(&format!("in {place}"));
-        if kind == COMPRESSED {
-            let inside = unpacked(&data, budget).map_err(within)?;
-            let held = inside.capacity() as u64;
-            budget.take(held)?;
-            let (kind, data) = Bytes { data: &inside, big, budget }.element().map_err(within)?;
-            add(kind, Bytes { data, big, budget }, &mut variables).map_err(within)?;
-            budget.give_back(held);
-        } else {
-            add(kind, Bytes { data: &data, big, budget }, &mut variables).map_err(within)?;
-        }
-        budget.give_back(held);
+    let bytes = Bytes { data: &[], big: head.ends_with(b"MI"), budget };
+    let (mut found, mut number) = (Vec::new(), 1);
+    while next(&mut file, bytes, &mut found)
+        .map_err(|fault| fault.within(&format!("variable {number}")))?
+    {
+        number += 1;
     }
-    Ok(variables)
+    Ok(found)
+}
+
+/// Reads the next variable, where there is one, its numbers as `like` has them.
+fn next(file: &mut impl Read, like: Bytes<'_>, found: &mut Vec<Variable>) -> Result<bool, Fault> {
+    let budget = like.budget;
+    let (mut tag, mut data) = (Vec::new(), Vec::new());
+    file.take(8).read_to_end(&mut tag)?;
+    if tag.is_empty() {
+        return Ok(false);
+    }
+    let mut tag = Bytes { data: &tag, ..like };
+    let (mut kind, size) = (tag.u32()?, u64::from(tag.u32()?));
+    file.take(size).read_to_end(&mut data)?;
+    if (data.len() as u64) < size {
+        return fault("it is cut off by the end of the file");
+    }
+    let is_packed = kind == COMPRESSED;
+    if is_packed {
+        data = unpacked(&data, budget)?;
+    }
+    let held = data.capacity() as u64;
+    budget.take(held)?;
+    let mut data = Bytes { data: &data, ..like };
+    if is_packed {
+        (kind, data) = data.element()?;
+    }
+    if kind == MATRIX {
+        array(data, None, 0, found)?;
+    }
+    budget.give_back(held);
+    Ok(true)
 }
 
 /// The bytes that are packed, as they are found to be: what they say is not asked.
 fn unpacked(packed: &[u8], budget: &Budget) -> Result<Vec<u8>, Fault> {
-    const PIECE: u64 = 1 << 20;
-    let mut decoder = ZlibDecoder::new(packed);
-    let mut inside = Vec::new();
     // A vector that grows is copied to one of twice its size.
-    while budget.check(3 * inside.len() as u64 + PIECE).map(|()| true)? {
-        if decoder.by_ref().take(PIECE).read_to_end(&mut inside)? == 0 {
-            break;
-        }
-    }
+    const COPIES: u64 = 3;
+    let mut inside = Vec::new();
+    let most = budget.left() / COPIES + 1;
+    ZlibDecoder::new(packed).take(most).read_to_end(&mut inside)?;
+    budget.check(COPIES * inside.len() as u64)?;
     Ok(inside)
 }
 
-fn add(kind: u32, data: Bytes<'_>, variables: &mut Vec<Variable>) -> Result<(), Fault> {
-    if kind != MATRIX {
-        return Ok(());
-    }
-    let array = Array::read(data, 0)?;
-    // What has no name belongs to MATLAB's objects.
-    if !array.name.is_empty() {
-        let name = array.name.clone();
-        array.flatten(name, data.budget, variables)?;
-    }
-    Ok(())
+fn fault<T>(text: &str) -> Result<T, Fault> {
+    Err(Fault::Damaged(text.to_owned()))
 }
 
 /// Bytes that are read from the front.
@@ -156,290 +115,234 @@ struct Bytes<'a> {
     budget: &'a Budget,
 }
 
-impl<'a> Bytes<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
+impl Bytes<'_> {
+    fn take(&mut self, count: usize) -> Result<Self, Fault> {
         let Some((taken, rest)) = self.data.split_at_checked(count) else {
             return fault("it is shorter than it says");
         };
         self.data = rest;
-        Ok(taken)
+        Ok(Self { data: taken, ..*self })
     }
 
     fn u32(&mut self) -> Result<u32, Fault> {
-        let bytes = self.take(4)?;
-        let bytes = <[u8; 4]>::try_from(bytes).unwrap_or_default();
+        let bytes = self.take(4)?.data.try_into().unwrap_or_default();
         Ok(if self.big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
     }
 
     /// The next data element: its type and its data. Small ones are packed into the tag.
-    fn element(&mut self) -> Result<(u32, &'a [u8]), Fault> {
+    fn element(&mut self) -> Result<(u32, Self), Fault> {
         let kind = self.u32()?;
         if kind >> 16 != 0 {
-            let data = self.take(4)?;
-            let Some(data) = data.get(..(kind >> 16) as usize) else {
-                return fault("a small element is larger than four bytes");
-            };
+            let data = self.take(4)?.take((kind >> 16) as usize)?;
             return Ok((kind & 0xffff, data));
         }
         let size = self.u32()? as usize;
         let data = self.take(size)?;
         // Elements start at multiples of eight bytes; behind the last one nothing need be.
-        let gap = (size.next_multiple_of(8) - size).min(self.data.len());
-        self.take(gap)?;
+        self.take((size.next_multiple_of(8) - size).min(self.data.len()))?;
         Ok((kind, data))
     }
 
-    /// Whether the next element holds zeros alone.
-    fn are_zeros(&mut self) -> Result<bool, Fault> {
-        let (kind, numbers) = self.element()?;
-        Ok(self.inside(numbers).numbers(kind)?.iter().all(|number| *number == 0.0))
-    }
-
-    fn inside(self, data: &'a [u8]) -> Self {
-        Self { data, ..self }
-    }
-
-    /// The numbers of an element of the type `kind`.
-    fn numbers(self, kind: u32) -> Result<Vec<f64>, Fault> {
+    /// The numbers of the next element.
+    fn numbers(&mut self) -> Result<Vec<f64>, Fault> {
+        let (kind, data) = self.element()?;
         match kind {
-            1 => self.each(|[byte]| f64::from(byte.cast_signed())),
-            2 | 16 => self.each(|[byte]| f64::from(byte)),
-            3 => self.each(|bytes| f64::from(i16::from_le_bytes(bytes))),
-            4 | 17 => self.each(|bytes| f64::from(u16::from_le_bytes(bytes))),
-            5 => self.each(|bytes| f64::from(i32::from_le_bytes(bytes))),
-            6 => self.each(|bytes| f64::from(u32::from_le_bytes(bytes))),
-            7 => self.each(|bytes| f64::from(f32::from_le_bytes(bytes))),
-            9 => self.each(f64::from_le_bytes),
-            12 => self.each(|bytes| i64::from_le_bytes(bytes) as f64),
-            13 => self.each(|bytes| u64::from_le_bytes(bytes) as f64),
-            _ => Err(Fault::Damaged(format!("numbers of the unknown type {kind}"))),
+            1 => data.each(|[byte]| f64::from(byte.cast_signed())),
+            2 | 16 => data.each(|[byte]| f64::from(byte)),
+            3 => data.each(|bytes| f64::from(i16::from_le_bytes(bytes))),
+            4 | 17 => data.each(|bytes| f64::from(u16::from_le_bytes(bytes))),
+            5 => data.each(|bytes| f64::from(i32::from_le_bytes(bytes))),
+            6 => data.each(|bytes| f64::from(u32::from_le_bytes(bytes))),
+            7 => data.each(|bytes| f64::from(f32::from_le_bytes(bytes))),
+            9 => data.each(f64::from_le_bytes),
+            12 => data.each(|bytes| i64::from_le_bytes(bytes) as f64),
+            13 => data.each(|bytes| u64::from_le_bytes(bytes) as f64),
+            _ => fault(&format!("numbers of the unknown type {kind}")),
         }
     }
 
-    /// Each number of `N` bytes, the lowest byte first.
-    fn each<const N: usize>(self, number: impl Fn([u8; N]) -> f64) -> Result<Vec<f64>, Fault> {
-        let (numbers, _) = self.data.as_chunks::<N>();
-        self.budget.take_values(numbers.len(), NUMBER_SIZE)?;
+    /// The next element as whole numbers that are not negative.
+    fn counts(&mut self) -> Result<Vec<usize>, Fault> {
+        let numbers = self.numbers()?;
+        if numbers.iter().any(|number| *number < 0.0) {
+            return fault("an array has a negative length");
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
+        Ok(numbers.into_iter().map(|number| number as usize).collect())
+    }
+
+    /// Each value of `N` bytes, the lowest byte first.
+    fn each<const N: usize, T>(self, value: impl Fn([u8; N]) -> T) -> Result<Vec<T>, Fault> {
+        let (values, _) = self.data.as_chunks::<N>();
+        self.budget.take_values(values.len(), NUMBER_SIZE)?;
         let lowest_first = |mut bytes: [u8; N]| {
             if self.big {
                 bytes.reverse();
             }
             bytes
         };
-        Ok(numbers.iter().map(|bytes| number(lowest_first(*bytes))).collect())
-    }
-}
-
-/// An array as it is stored.
-struct Array {
-    name: String,
-    dims: Vec<usize>,
-    value: Value,
-}
-
-enum Value {
-    Numbers(Vec<f64>),
-    Text(String),
-    Cells(Vec<Array>),
-    /// Each element's fields.
-    Structures(Vec<Vec<(String, Array)>>),
-    /// Of this class.
-    Object(String),
-    Other(&'static str),
-}
-
-impl Array {
-    fn read(mut data: Bytes<'_>, depth: usize) -> Result<Self, Fault> {
-        if data.data.is_empty() {
-            return Ok(Self {
-                name: String::new(),
-                dims: vec![0, 0],
-                value: Value::Numbers(Vec::new()),
-            });
-        }
-        if depth > DEEPEST {
-            return fault("structures lie too deep in one another");
-        }
-        let (_, flags) = data.element()?;
-        let flags = data.inside(flags).u32()?;
-        // Objects follow their own order from here on.
-        if flags & 0xff == 17 {
-            return Self::opaque(data);
-        }
-        let (kind, dims) = data.element()?;
-        let dims = data.inside(dims).numbers(kind)?;
-        if dims.iter().any(|length| *length < 0.0) {
-            return fault("an array has a negative length");
-        }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
-        let dims: Vec<usize> = dims.into_iter().map(|length| length as usize).collect();
-        let (_, name) = data.element()?;
-        let name = name_of(name)?;
-        let size = dims.iter().try_fold(1_usize, |size, length| size.checked_mul(*length));
-        let Some(size) = size else { return fault("it is larger than any memory") };
-        let value = Value::read(data, flags, size, depth)
-            .map_err(|fault| fault.within(&format!("array `{name}`")))?;
-        Ok(Self { name, dims, value })
+        Ok(values.iter().map(|bytes| value(lowest_first(*bytes))).collect())
     }
 
-    fn opaque(mut data: Bytes<'_>) -> Result<Self, Fault> {
-        let (_, name) = data.element()?;
-        let name = name_of(name)?;
-        let (_, _system) = data.element()?;
-        let (_, class) = data.element()?;
-        Ok(Self { name, dims: Vec::new(), value: Value::Object(name_of(class)?) })
+    /// The next element as text.
+    fn text(&mut self) -> Result<String, Fault> {
+        let (kind, data) = self.element()?;
+        self.budget.take_values(data.data.len(), 4)?;
+        Ok(match kind {
+            4 | 17 => String::from_utf16_lossy(&data.each(u16::from_le_bytes)?),
+            _ => String::from_utf8_lossy(data.data).into_owned(),
+        })
     }
 
-    /// Adds this array, and what lies in it, under `name`.
-    fn flatten(
-        self,
+    /// The next element, which is an array within another.
+    fn array(
+        &mut self,
         name: String,
-        budget: &Budget,
-        variables: &mut Vec<Variable>,
+        depth: usize,
+        found: &mut Vec<Variable>,
     ) -> Result<(), Fault> {
-        budget.take_values(1, size_of::<Variable>() + 2 * name.len())?;
-        let content = match self.value {
-            Value::Numbers(values) => Content::Numbers(Numbers::Read(values)),
-            Value::Text(text) => match self.dims.as_slice() {
-                [rows, _] if *rows > 1 => Content::Texts(rows_of(&text, *rows)),
-                _ => Content::Other("text"),
-            },
-            Value::Object(class) => Content::Object(class),
-            Value::Other(kind) => Content::Other(kind),
-            Value::Cells(cells) => texts(cells),
-            Value::Structures(elements) => {
-                let one = elements.len() == 1;
-                for (element, number) in elements.into_iter().zip(1..) {
-                    let name = if one { name.clone() } else { format!("{name}({number})") };
-                    for (field, array) in element {
-                        array.flatten(format!("{name}.{field}"), budget, variables)?;
-                    }
-                }
-                return Ok(());
-            }
-        };
-        variables.push(Variable { name, dims: self.dims, content });
-        Ok(())
+        match self.element()? {
+            (MATRIX, data) => array(data, Some(name), depth + 1, found),
+            _ => fault("an array is missing"),
+        }
     }
+}
+
+/// Adds an array, and what lies in it, to those `found`. It is called `name`, or as it says itself.
+fn array(
+    mut data: Bytes<'_>,
+    name: Option<String>,
+    depth: usize,
+    found: &mut Vec<Variable>,
+) -> Result<(), Fault> {
+    if depth > DEEPEST {
+        return fault("structures lie too deep in one another");
+    }
+    let mut dims = vec![0, 0];
+    // An empty array may have no bytes.
+    let (name, content) = if data.data.is_empty() {
+        (name.unwrap_or_default(), Content::Numbers(Vec::new()))
+    } else {
+        let flags = data.element()?.1.u32()?;
+        // Objects have no lengths.
+        if flags & 0xff != OPAQUE {
+            dims = data.counts()?;
+        }
+        let own = data.text()?;
+        let name = name.unwrap_or(own);
+        if name.len() > LONGEST_NAME {
+            return fault("its name is too long");
+        }
+        let content = content(data, flags, &dims, &name, depth, found);
+        match content.map_err(|fault| fault.within(&format!("array `{name}`")))? {
+            Some(content) => (name, content),
+            None => return Ok(()),
+        }
+    };
+    // What has no name belongs to MATLAB's objects.
+    if depth > 0 || !name.is_empty() {
+        data.budget.take_values(1, VARIABLE_SIZE + 2 * name.len())?;
+        found.push(Variable { name, dims, content });
+    }
+    Ok(())
+}
+
+/// What is in an array; nothing is left where it is a structure, whose fields are `found`.
+fn content(
+    mut data: Bytes<'_>,
+    flags: u32,
+    dims: &[usize],
+    name: &str,
+    depth: usize,
+    found: &mut Vec<Variable>,
+) -> Result<Option<Content>, Fault> {
+    let size = dims.iter().try_fold(1_usize, |size, length| size.checked_mul(*length));
+    let Some(size) = size else { return fault("it is larger than any memory") };
+    Ok(Some(match flags & 0xff {
+        CELL => {
+            let before = found.len();
+            for _ in 0..size {
+                data.array(String::new(), depth, found)?;
+            }
+            texts(found.split_off(before))
+        }
+        STRUCTURE => {
+            structures(data, size, name, depth, found)?;
+            return Ok(None);
+        }
+        CHARACTERS => {
+            let (text, rows) = (data.text()?, dims.first().copied().unwrap_or(1));
+            data.budget.take_values(rows.min(text.len()), TEXT_SIZE)?;
+            Content::Texts(rows_of(&text, rows))
+        }
+        SPARSE => Content::Other("a sparse matrix".to_owned()),
+        OPAQUE => {
+            data.element()?;
+            object(&data.text()?)
+        }
+        6..=15 => {
+            let values = data.numbers()?;
+            if values.len() != size {
+                let count = values.len();
+                return fault(&format!("it has {count} values but should have {size}"));
+            }
+            // Those that have no imaginary part at all are real.
+            let is_real = flags & COMPLEX == 0 || data.numbers()?.iter().all(|part| *part == 0.0);
+            if is_real {
+                Content::Numbers(values)
+            } else {
+                Content::Other("complex numbers".to_owned())
+            }
+        }
+        OLD_OBJECT => object(&data.text()?),
+        _ => Content::Other("a value of another kind".to_owned()),
+    }))
+}
+
+/// Adds the fields of an array of `size` structures.
+fn structures(
+    mut data: Bytes<'_>,
+    size: usize,
+    name: &str,
+    depth: usize,
+    found: &mut Vec<Variable>,
+) -> Result<(), Fault> {
+    let length = data.counts()?.first().copied().unwrap_or_default().max(1);
+    let (_, names) = data.element()?;
+    let field = |bytes: &[u8]| {
+        let letters = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
+        String::from_utf8_lossy(letters).into_owned()
+    };
+    let fields: Vec<String> = names.data.chunks(length).map(field).collect();
+    let size = if fields.is_empty() { 0 } else { size };
+    for number in 1..=size {
+        let name = if size == 1 { name.to_owned() } else { format!("{name}({number})") };
+        for field in &fields {
+            data.array(format!("{name}.{field}"), depth, found)?;
+        }
+    }
+    Ok(())
 }
 
 /// The rows of a matrix of characters, which stand column after column, without the blanks that make
 /// them alike long.
 fn rows_of(text: &str, rows: usize) -> Vec<String> {
     let letters: Vec<char> = text.chars().collect();
+    let rows = rows.clamp(1, letters.len().max(1));
     let row = |row: usize| letters.iter().skip(row).step_by(rows).collect::<String>();
     (0..rows).map(|at| row(at).trim_end().to_owned()).collect()
 }
 
-const TOO_LONG: &str = "a name is too long";
-
-fn name_of(bytes: &[u8]) -> Result<String, Fault> {
-    if bytes.len() > LONGEST_NAME {
-        return fault(TOO_LONG);
-    }
-    Ok(String::from_utf8_lossy(bytes).into_owned())
-}
-
-/// The class of objects from before MATLAB 7.6, whose name is not looked for.
-const OBJECT: &str = "an object of MATLAB; save its parts as arrays";
-
-impl Value {
-    fn read(mut data: Bytes<'_>, flags: u32, size: usize, depth: usize) -> Result<Self, Fault> {
-        match flags & 0xff {
-            CELL => {
-                let cells = (0..size).map(|_| data.array(depth)).collect::<Result<_, _>>()?;
-                Ok(Self::Cells(cells))
-            }
-            STRUCTURE => Self::structures(data, size, depth),
-            CHARACTERS => {
-                let (kind, text) = data.element()?;
-                data.budget.take_values(text.len(), 4)?;
-                let text = if matches!(kind, 4 | 17) {
-                    #[expect(
-                        clippy::cast_possible_truncation,
-                        clippy::cast_sign_loss,
-                        reason = "it was one"
-                    )]
-                    let units: Vec<u16> = data
-                        .inside(text)
-                        .numbers(kind)?
-                        .into_iter()
-                        .map(|unit| unit as u16)
-                        .collect();
-                    String::from_utf16_lossy(&units)
-                } else {
-                    String::from_utf8_lossy(text).into_owned()
-                };
-                Ok(Self::Text(text))
-            }
-            6..=15 => {
-                let (kind, numbers) = data.element()?;
-                let values = data.inside(numbers).numbers(kind)?;
-                if values.len() == size {
-                    let is_real = flags & COMPLEX == 0 || data.are_zeros()?;
-                    return Ok(if is_real {
-                        Self::Numbers(values)
-                    } else {
-                        Self::Other("complex numbers")
-                    });
-                }
-                Err(Fault::Damaged(format!(
-                    "it has {} values but should have {size}",
-                    values.len()
-                )))
-            }
-            5 => Ok(Self::Other("a sparse matrix")),
-            _ => Ok(Self::Other(OBJECT)),
-        }
-    }
-
-    fn structures(mut data: Bytes<'_>, size: usize, depth: usize) -> Result<Self, Fault> {
-        let (kind, length) = data.element()?;
-        let length = data.inside(length).numbers(kind)?.first().copied().unwrap_or_default();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
-        let length = (length as usize).max(1);
-        let (_, names) = data.element()?;
-        let name = |bytes: &[u8]| {
-            let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
-            String::from_utf8_lossy(bytes.get(..end).unwrap_or_default()).into_owned()
-        };
-        let names: Vec<String> = names.chunks(length).map(name).collect();
-        if names.iter().any(|name| name.len() > LONGEST_NAME) {
-            return fault(TOO_LONG);
-        }
-        let budget = data.budget;
-        let mut element = |_| {
-            budget.take_values(names.len(), size_of::<Array>() + LONGEST_NAME)?;
-            let field = |name: &String| Ok((name.clone(), data.array(depth)?));
-            names.iter().map(field).collect::<Result<Vec<_>, Fault>>()
-        };
-        if names.is_empty() {
-            return Ok(Self::Structures(Vec::new()));
-        }
-        Ok(Self::Structures((0..size).map(&mut element).collect::<Result<_, _>>()?))
-    }
-}
-
-impl Bytes<'_> {
-    /// The next element, which is an array.
-    fn array(&mut self, depth: usize) -> Result<Array, Fault> {
-        let (kind, data) = self.element()?;
-        if kind != MATRIX {
-            return fault("an array is missing");
-        }
-        self.budget.take_values(1, ARRAY_SIZE)?;
-        Array::read(Self { data, ..*self }, depth + 1)
-    }
-}
-
 /// A cell array of texts is a column; any other is not.
-fn texts(cells: Vec<Array>) -> Content {
-    let text = |cell: Array| match cell.value {
-        Value::Text(text) => Some(text),
-        _ => None,
-    };
-    let texts: Option<Vec<String>> = cells.into_iter().map(text).collect();
-    texts.map_or(Content::Other("a cell array"), Content::Texts)
+fn texts(cells: Vec<Variable>) -> Content {
+    let mut texts = Vec::new();
+    for cell in cells {
+        match cell.content {
+            Content::Texts(text) if text.len() == 1 => texts.extend(text),
+            _ => return Content::Other("a cell array".to_owned()),
+        }
+    }
+    Content::Texts(texts)
 }
 
 #[cfg(test)]
@@ -491,7 +394,7 @@ mod tests {
     fn an_array_is_read_with_its_name_and_shape() {
         let found = of(&file("u", [3, 1], &[1.0, 2.0, -3.0])).unwrap();
         assert_eq!((found[0].name.as_str(), found[0].shape()), ("u", (3, 1)));
-        let Content::Numbers(Numbers::Read(values)) = &found[0].content else { panic!() };
+        let Content::Numbers(values) = &found[0].content else { panic!() };
         assert_eq!(values, &[1.0, 2.0, -3.0]);
     }
 
@@ -500,7 +403,8 @@ mod tests {
         let bytes = [2, 0, 2, 0, 7, 9, 0, 0];
         let mut data =
             Bytes { data: &bytes, big: false, budget: &Budget::new(MemoryLimit::default()) };
-        assert_eq!(data.element().unwrap(), (2, &[7, 9][..]));
+        let (kind, inside) = data.element().unwrap();
+        assert_eq!((kind, inside.data), (2, &[7, 9][..]));
         assert!(data.data.is_empty());
     }
 
@@ -509,7 +413,7 @@ mod tests {
         let whole = file("u", [3, 1], &[1.0, 2.0, -3.0]);
         for end in 129..whole.len() {
             let fault = of(&whole[..end]).map(|_| ()).unwrap_err();
-            assert!(reason(fault).contains(": the file ends in the first variable;"));
+            assert!(reason(fault).contains(": variable 1: "));
         }
         let lies = file("u", [4, 1], &[1.0, 2.0, -3.0]);
         let fault = of(&lies).map(|_| ()).unwrap_err();

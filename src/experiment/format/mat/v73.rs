@@ -5,18 +5,17 @@
 
 use std::path::Path;
 
-use hdf5_pure::{AttrValue, Chunk, DType, Dataset, Error, Group};
+use hdf5_pure::{AttrValue, Chunk, DType, Dataset, Group};
 
-use super::variable::{Content, Numbers, Variable, damaged};
+use super::Fault;
+use super::variable::{Content, Variable, object};
 use super::watched::{Reads, open};
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::{Budget, TooLarge};
+use crate::experiment::memory::Budget;
+use crate::experiment::table::LONGEST_NAME;
 
 /// Structures may lie in structures, but not without end.
 const DEEPEST: usize = 32;
-
-/// Letters of a name at most; MATLAB allows 63. Names are repeated with each part of a structure.
-const LONGEST_NAME: usize = 255;
 
 /// Numbers that a structure, or the file itself, may hold beside one another: each is looked up among
 /// all of them, and no log has so many signals.
@@ -33,33 +32,8 @@ const FEW_OBJECTS: u64 = 256;
 /// of one.
 const LARGEST_RATIO: u64 = 1100;
 
-/// Why a file is refused.
-#[derive(Debug)]
-enum Fault {
-    /// What is wrong with it.
-    Damaged(String),
-    TooLarge(TooLarge),
-}
-
-impl From<Error> for Fault {
-    fn from(error: Error) -> Self {
-        Self::Damaged(error.to_string())
-    }
-}
-
-impl From<TooLarge> for Fault {
-    fn from(error: TooLarge) -> Self {
-        Self::TooLarge(error)
-    }
-}
-
-impl Fault {
-    fn refuse(self, path: &Path) -> ReadError {
-        match self {
-            Self::Damaged(reason) => damaged(path, &reason),
-            Self::TooLarge(error) => error.refuse(path),
-        }
-    }
+fn fault<T>(text: String) -> Result<T, Fault> {
+    Err(Fault::Damaged(text))
 }
 
 /// A file whose variables are being listed.
@@ -76,17 +50,18 @@ struct Listing<'a> {
 
 /// The variables of a file, their numbers still stored.
 pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
-    let list = || {
-        let (file, reads) = open(path)?;
-        let size = file.file_size();
-        let objects = size / OBJECT_SIZE + FEW_OBJECTS;
-        let mut listing = Listing { size, budget, objects, reads, found: Vec::new() };
-        listing.reads.begin();
-        listing.group(&file.root(), "", 0)?;
-        listing.reads.end();
-        Ok(listing.found)
-    };
-    list().map_err(|fault: Fault| fault.refuse(path))
+    listed(path, budget).map_err(|fault| fault.refuse(path))
+}
+
+fn listed(path: &Path, budget: &Budget) -> Result<Vec<Variable>, Fault> {
+    let (file, reads) = open(path)?;
+    let size = file.file_size();
+    let objects = size / OBJECT_SIZE + FEW_OBJECTS;
+    let mut listing = Listing { size, budget, objects, reads, found: Vec::new() };
+    listing.reads.begin();
+    listing.group(&file.root(), "", 0)?;
+    listing.reads.end();
+    Ok(listing.found)
 }
 
 /// The numbers of a column of a matrix that is stored, as it lies in the file.
@@ -96,39 +71,35 @@ pub(super) fn column(
     path: &Path,
     budget: &Budget,
 ) -> Result<Vec<f64>, ReadError> {
-    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-    let size = path.metadata().map_err(io_error)?.len();
-    let read = || {
-        check_chunks(dataset, size)?;
-        let shape = dataset.shape()?;
-        let count = shape.iter().try_fold(1_u64, |count, length| count.checked_mul(*length));
-        let bytes = count.and_then(|count| count.checked_mul(2 * size_of::<f64>() as u64));
-        // A vector is one column, whichever way it lies.
-        match *shape.as_slice() {
-            [columns, rows] if columns > 1 && rows > 1 => {
-                budget.take(bytes.map_or(u64::MAX, |bytes| bytes / columns))?;
-                return Ok(dataset.read_f64_rows(column as u64, 1)?);
-            }
-            _ => {}
-        }
-        budget.take(bytes.unwrap_or(u64::MAX))?;
-        Ok(dataset.read_f64()?)
-    };
-    read().map_err(|fault: Fault| fault.refuse(path))
+    let size = path.metadata();
+    let size = size.map_err(|source| ReadError::Io { path: path.to_owned(), source })?.len();
+    stored(dataset, column, size, budget).map_err(|fault| fault.refuse(path))
 }
 
-/// Refuses chunks that lie outside of a file of `size` bytes: memory is taken for each before it
-/// is read.
-fn check_chunks(dataset: &Dataset, size: u64) -> Result<(), Fault> {
-    if !dataset.is_chunked() {
-        return Ok(());
-    }
+fn stored(dataset: &Dataset, column: usize, size: u64, budget: &Budget) -> Result<Vec<f64>, Fault> {
+    // Memory is taken for each chunk before it is read.
     let ends = |chunk: &Chunk| chunk.address.checked_add(chunk.storage_size);
     let lies_within = |chunk: &Chunk| ends(chunk).is_some_and(|end| end <= size);
-    if dataset.chunks()?.iter().all(lies_within) {
-        return Ok(());
+    if dataset.is_chunked() && !dataset.chunks()?.iter().all(lies_within) {
+        return fault("a part of its numbers lies outside of the file".to_owned());
     }
-    Err(Fault::Damaged("a part of its numbers lies outside of the file".to_owned()))
+    let shape = dataset.shape()?;
+    let bytes = product(2 * size_of::<f64>() as u64, &shape).unwrap_or(u64::MAX);
+    // A vector is one column, whichever way it lies.
+    match *shape.as_slice() {
+        [columns, rows] if columns > 1 && rows > 1 => {
+            budget.take(bytes / columns)?;
+            Ok(dataset.read_f64_rows(column as u64, 1)?)
+        }
+        _ => {
+            budget.take(bytes)?;
+            Ok(dataset.read_f64()?)
+        }
+    }
+}
+
+fn product(first: u64, others: &[u64]) -> Option<u64> {
+    others.iter().try_fold(first, |product, length| product.checked_mul(*length))
 }
 
 impl Listing<'_> {
@@ -136,15 +107,24 @@ impl Listing<'_> {
     fn group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), Fault> {
         let mut datasets = group.datasets()?;
         datasets.sort();
-        if datasets.len() > MOST_BESIDE {
-            return Err(Fault::Damaged(format!(
-                "{} variables lie beside one another, and {MOST_BESIDE} of such a file are read at most",
-                datasets.len()
-            )));
+        let count = datasets.len();
+        if count > MOST_BESIDE {
+            return fault(format!(
+                "{count} variables lie beside one another, and {MOST_BESIDE} of such a file are read at most"
+            ));
         }
         let mut groups: Vec<(String, Group)> = group.iter_groups()?.collect();
         groups.sort_by(|a, b| a.0.cmp(&b.0));
-        self.count(prefix, datasets.iter().chain(groups.iter().map(|(name, _)| name)))?;
+        for name in datasets.iter().chain(groups.iter().map(|(name, _)| name)) {
+            let Some(left) = self.objects.checked_sub(1) else {
+                return fault("its groups lie in one another in a circle".to_owned());
+            };
+            self.objects = left;
+            if prefix.len() + name.len() > LONGEST_NAME {
+                return fault("a name is too long".to_owned());
+            }
+            self.budget.take_values(1, size_of::<Variable>() + prefix.len() + name.len())?;
+        }
         for name in datasets {
             self.reads.begin();
             let found = self.variable(format!("{prefix}{name}"), group.dataset(&name)?)?;
@@ -159,56 +139,25 @@ impl Listing<'_> {
         Ok(())
     }
 
-    /// Counts objects by their names, so that there is an end to them.
-    fn count<'n>(
-        &mut self,
-        prefix: &str,
-        names: impl Iterator<Item = &'n String>,
-    ) -> Result<(), Fault> {
-        for name in names {
-            if name.len() > LONGEST_NAME {
-                return Err(Fault::Damaged("a name is too long".to_owned()));
-            }
-            let circle = || Fault::Damaged("its groups lie in one another in a circle".to_owned());
-            self.objects = self.objects.checked_sub(1).ok_or_else(circle)?;
-            self.budget.take_values(1, size_of::<Variable>() + prefix.len() + name.len())?;
-        }
-        Ok(())
-    }
-
     fn variable(&self, name: String, dataset: Dataset) -> Result<Variable, Fault> {
         let shape = dataset.shape()?;
-        self.check_size(&name, &dataset, &shape)?;
+        let chunk = dataset.chunk_shape()?.unwrap_or_default();
+        let (element, most) = (dataset.element_size()?, self.size.saturating_mul(LARGEST_RATIO));
+        if [&shape, &chunk].iter().any(|of| product(element, of).is_none_or(|size| size > most)) {
+            let size = self.size;
+            return fault(format!(
+                "`{name}` says that it is larger than a file of {size} bytes can be"
+            ));
+        }
         let attributes = dataset.attrs()?;
         let class = match attributes.get("MATLAB_class") {
             Some(AttrValue::AsciiString(class) | AttrValue::String(class)) => class.as_str(),
             _ => "",
         };
-        // HDF5 counts the longest stride first, MATLAB the shortest.
-        let mut dims = Vec::new();
-        for length in shape.iter().rev() {
-            dims.push(usize::try_from(*length).unwrap_or(usize::MAX));
-        }
         let class = if attributes.contains_key("MATLAB_empty") { NOTHING } else { class };
-        Ok(Variable { name, dims, content: content(class, dataset) })
-    }
-
-    /// Refuses a dataset that says it is larger than this file can hold.
-    fn check_size(&self, name: &str, dataset: &Dataset, shape: &[u64]) -> Result<(), Fault> {
-        let most = self.size.saturating_mul(LARGEST_RATIO);
-        let element = dataset.element_size()?;
-        let bytes =
-            |shape: &[u64]| shape.iter().try_fold(element, |bytes, n| bytes.checked_mul(*n));
-        let chunk = dataset.chunk_shape()?.unwrap_or_default();
-        for what in [shape, &chunk] {
-            if bytes(what).is_none_or(|bytes| bytes > most) {
-                return Err(Fault::Damaged(format!(
-                    "`{name}` says that it is larger than a file of {} bytes can be",
-                    self.size
-                )));
-            }
-        }
-        Ok(())
+        // HDF5 counts the longest stride first, MATLAB the shortest.
+        let dims = shape.iter().rev().map(|n| usize::try_from(*n).unwrap_or(usize::MAX));
+        Ok(Variable { name, dims: dims.collect(), content: content(class, dataset) })
     }
 }
 
@@ -216,20 +165,20 @@ impl Listing<'_> {
 const NOTHING: &str = "nothing";
 
 fn content(class: &str, dataset: Dataset) -> Content {
-    match dataset.dtype() {
-        Ok(DType::Compound(_)) => return Content::Other("complex numbers"),
-        Ok(DType::String | DType::VariableLengthString) => return Content::Other("text"),
-        _ => {}
-    }
-    match class {
-        "char" => Content::Other("text"),
-        "cell" => Content::Other("a cell array, which is read of files saved with `save -v7` only"),
-        "struct" => Content::Other(
-            "an array of structures, which is read of files saved with `save -v7` only",
-        ),
-        "double" | "single" | "logical" | "int8" | "int16" | "int32" | "int64" | "uint8"
-        | "uint16" | "uint32" | "uint64" | "" => Content::Numbers(Numbers::Stored(dataset)),
-        NOTHING => Content::Other("nothing"),
-        class => Content::Object(class.to_owned()),
-    }
+    let kind = match (dataset.dtype(), class) {
+        (Ok(DType::Compound(_)), _) => "complex numbers",
+        (Ok(DType::String | DType::VariableLengthString), _) | (_, "char") => "text",
+        (_, "cell") => "a cell array, which is read of files saved with `save -v7` only",
+        (_, "struct") => {
+            "an array of structures, which is read of files saved with `save -v7` only"
+        }
+        (_, NOTHING) => NOTHING,
+        (
+            _,
+            "double" | "single" | "logical" | "int8" | "int16" | "int32" | "int64" | "uint8"
+            | "uint16" | "uint32" | "uint64" | "",
+        ) => return Content::Stored(dataset),
+        (_, class) => return object(class),
+    };
+    Content::Other(kind.to_owned())
 }

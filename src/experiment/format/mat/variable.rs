@@ -1,8 +1,5 @@
 //! The variables of a file, and their shape as columns.
 
-use std::path::Path;
-
-use crate::experiment::error::ReadError;
 use crate::experiment::table::Header;
 
 /// A variable, or a field of one.
@@ -14,18 +11,20 @@ pub(super) struct Variable {
 }
 
 pub(super) enum Content {
-    Numbers(Numbers),
+    /// Numbers, column after column.
+    Numbers(Vec<f64>),
+    /// Numbers that are still in the file.
+    Stored(hdf5_pure::Dataset),
     /// One text per row.
     Texts(Vec<String>),
-    /// An object of this class of MATLAB, whose bytes say nothing without it.
-    Object(String),
     /// What is none of these.
-    Other(&'static str),
+    Other(String),
 }
 
-/// How the numbers in an object of a `class` are saved so that they can be read.
-pub(super) fn as_arrays(class: &str) -> &'static str {
-    match class {
+/// An object of a `class` of MATLAB, whose bytes say nothing without it; and how its numbers are saved so
+/// that they can be read.
+pub(super) fn object(class: &str) -> Content {
+    let remedy = match class {
         "timeseries" => "save its `.Time` and `.Data` as arrays",
         "Simulink.SimulationOutput" | "Simulink.SimulationData.Dataset" => {
             "save the `.Time` and `.Data` of each signal in it as arrays"
@@ -35,13 +34,10 @@ pub(super) fn as_arrays(class: &str) -> &'static str {
         }
         "iddata" => "save its `.SamplingInstants`, `.InputData` and `.OutputData` as arrays",
         _ => "save its parts as arrays",
-    }
-}
-
-/// Numbers, column after column.
-pub(super) enum Numbers {
-    Read(Vec<f64>),
-    Stored(hdf5_pure::Dataset),
+    };
+    Content::Other(format!(
+        "an object of the class `{class}`, which MATLAB alone can read ({remedy})"
+    ))
 }
 
 impl Variable {
@@ -50,12 +46,24 @@ impl Variable {
         /// A log has fewer columns; a matrix that lies on its side has more.
         const MOST_COLUMNS: usize = 1000;
         match (&self.content, self.dims.as_slice()) {
-            (Content::Texts(texts), _) => (texts.len(), 1),
-            (Content::Object(_) | Content::Other(_), _) => (0, 1),
+            (Content::Texts(texts), _) if texts.len() > 1 => (texts.len(), 1),
+            (Content::Texts(_) | Content::Other(_), _) => (0, 1),
             (_, [1, 1] | []) => (0, 0),
             (_, [1, length] | [length, 1] | [length]) => (*length, 1),
             (_, [rows, columns]) if *columns <= MOST_COLUMNS => (*rows, *columns),
             _ => (0, 1),
+        }
+    }
+
+    /// What it is, where it is no column of numbers or of texts.
+    pub(super) fn is_no_column(&self) -> Option<&str> {
+        match &self.content {
+            Content::Other(kind) => Some(kind),
+            Content::Texts(texts) if texts.len() < 2 => Some("text"),
+            _ if self.shape().0 == 0 => {
+                Some("an array that has no row per sample (turn a matrix of rows on its side)")
+            }
+            _ => None,
         }
     }
 
@@ -65,14 +73,5 @@ impl Variable {
             _ => format!("{}({})", self.name, column + 1),
         };
         Header::plain(&name, 0)
-    }
-}
-
-pub(super) fn damaged(path: &Path, reason: &impl ToString) -> ReadError {
-    ReadError::Format {
-        path: path.to_owned(),
-        format: "MATLAB",
-        reason: reason.to_string(),
-        remedy: "save it again, with `save -v7` if it is of another version",
     }
 }

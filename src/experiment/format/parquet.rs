@@ -1,0 +1,269 @@
+//! Parquet: columns of numbers, times or text, with a row number for messages.
+//!
+//! A column in a structure is called by its path, `boom.input`, as is a flat one of that name.
+//! The types are those of Arrow, which writers note beside Parquet's own: durations, for which
+//! Parquet has no type, and times of 96 bits are among them.
+
+use std::fs::File;
+use std::path::Path;
+
+use arrow_array::cast::AsArray as _;
+use arrow_array::types::Float64Type;
+use arrow_array::{Array as _, ArrayRef};
+use arrow_cast::cast;
+use arrow_schema::{ArrowError, DataType, TimeUnit};
+use parquet::arrow::ProjectionMask;
+use parquet::arrow::arrow_reader::{
+    ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder,
+};
+use parquet::basic::Compression;
+use parquet::file::metadata::RowGroupMetaData;
+
+use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
+use crate::experiment::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
+
+/// Memory of a number: itself, and what its vector has to spare.
+const NUMBER_SIZE: usize = 2 * size_of::<f64>();
+
+/// Rows that are read at once, at most.
+const BATCH: u64 = 8192;
+
+/// Copies of a batch at a time: its own, with what a list that grows has to spare, and those as labels.
+const COPIES: u64 = 8;
+
+/// What is done with some values of a column, and with which of them are missing.
+type Take<'a> = dyn FnMut(&ArrayRef, &[bool]) -> Result<(), ReadError> + 'a;
+
+/// A file whose footer was read.
+struct Unread {
+    file: File,
+    metadata: ArrowReaderMetadata,
+    /// The type of each column.
+    types: Vec<DataType>,
+    budget: Budget,
+}
+
+/// Opens the log and reads its schema.
+pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
+    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
+    let file = File::open(path).map_err(io_error)?;
+    let size = file.metadata().map_err(io_error)?.len();
+    // A schema of Arrow that doesn't fit the file, as of a tool that copies it along, is left aside.
+    let load = |skip| {
+        let options = ArrowReaderOptions::new().with_skip_arrow_metadata(skip);
+        ArrowReaderMetadata::load(&file, options)
+    };
+    let metadata = load(false).or_else(|_| load(true)).map_err(|error| damaged(path, &error))?;
+    if !metadata.metadata().row_groups().iter().all(|group| lies_within(group, size)) {
+        return Err(damaged(path, &"a column lies outside of the file"));
+    }
+    let mut types = Vec::new();
+    for field in metadata.schema().flattened_fields() {
+        if !field.data_type().is_nested() {
+            types.push(field.data_type().clone());
+        }
+    }
+    let columns = metadata.parquet_schema().columns();
+    let headers = columns.iter().zip(&types);
+    let headers = headers.map(|(column, kind)| header(&column.path().string(), kind)).collect();
+    let head = Head { path: path.to_owned(), headers, header_row: 0, unread: Vec::new() };
+    Ok(OpenTable { head, rows: Box::new(Unread { file, metadata, types, budget }) })
+}
+
+/// Whether the columns of a group of rows lie in a file of `size` bytes, as they are said to.
+fn lies_within(group: &RowGroupMetaData, size: u64) -> bool {
+    group.columns().iter().all(|column| {
+        let start = column.dictionary_page_offset().unwrap_or_else(|| column.data_page_offset());
+        let ends = u64::try_from(start).ok().zip(u64::try_from(column.compressed_size()).ok());
+        let end = ends.and_then(|(start, length)| start.checked_add(length));
+        end.is_some_and(|end| end <= size) && group.num_rows() >= 0
+    })
+}
+
+fn refused(path: &Path, reason: String, remedy: &'static str) -> ReadError {
+    ReadError::Format { path: path.to_owned(), format: "Parquet", reason, remedy }
+}
+
+fn damaged(path: &Path, error: &impl ToString) -> ReadError {
+    refused(path, error.to_string(), "write it again: a file that is not complete cannot be read")
+}
+
+/// A time or a duration is in the unit of its type, whatever its name says.
+fn header(name: &str, kind: &DataType) -> Header {
+    let mut header = Header::parse(name);
+    let (DataType::Timestamp(unit, _)
+    | DataType::Time32(unit)
+    | DataType::Time64(unit)
+    | DataType::Duration(unit)) = kind
+    else {
+        return header;
+    };
+    let unit = match unit {
+        TimeUnit::Second => "s",
+        TimeUnit::Millisecond => "ms",
+        TimeUnit::Microsecond => "us",
+        TimeUnit::Nanosecond => "ns",
+    };
+    header.unit = Some(unit.to_owned());
+    header
+}
+
+impl Rows for Unread {
+    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+        let path = wanted.path();
+        let counts = self.groups().iter().map(|group| usize::try_from(group.num_rows()));
+        let rows = counts.fold(0, |all: usize, count| all.saturating_add(count.unwrap_or(0)));
+        let taken = self.budget.take_values(rows, wanted.numeric.len() * NUMBER_SIZE);
+        taken.map_err(|error| error.refuse(path))?;
+        let mut columns = Vec::new();
+        for index in wanted.numeric {
+            columns.push(self.numbers(*index, rows, path)?);
+        }
+        let mut labels = Labels::default();
+        if let Some(index) = wanted.label {
+            let mut row = 0;
+            self.each_batch(index, rows, path, &mut |batch, missing| {
+                let texts = texts(batch).map_err(|error| damaged(path, &error))?;
+                for (text, missing) in texts.iter().zip(missing) {
+                    row += 1;
+                    let label = if *missing { "" } else { text };
+                    labels.push(label, row, (path, &self.budget))?;
+                }
+                Ok(())
+            })?;
+        }
+        Table::counted(path, rows, columns, &labels)
+    }
+}
+
+impl Unread {
+    fn groups(&self) -> &[RowGroupMetaData] {
+        self.metadata.metadata().row_groups()
+    }
+
+    /// A column as numbers, or what it holds instead.
+    fn numbers(&self, index: usize, rows: usize, path: &Path) -> Result<Column, ReadError> {
+        let kind = self.types.get(index).unwrap_or(&DataType::Null);
+        let lists = self.metadata.parquet_schema().column(index).max_rep_level() > 0;
+        if let Some(found) = if lists { Some("lists".to_owned()) } else { not_numbers(kind) } {
+            return Ok(Column::not_numbers(&found));
+        }
+        let are_of_day = matches!(kind, DataType::Time32(_) | DataType::Time64(_));
+        let mut column = Column { are_of_day, ..Column::default() };
+        self.each_batch(index, rows, path, &mut |batch, missing| {
+            let numbers = floats(batch).map_err(|error| damaged(path, &error))?;
+            for (number, missing) in numbers.as_primitive::<Float64Type>().iter().zip(missing) {
+                column.add(number.filter(|_| !missing).unwrap_or(f64::NAN));
+            }
+            Ok(())
+        })?;
+        Ok(column)
+    }
+
+    /// Hands on the values of a column in order, some thousand at a time, and which of them are missing
+    /// with the structure that they are in.
+    fn each_batch(
+        &self,
+        index: usize,
+        rows: usize,
+        path: &Path,
+        take: &mut Take<'_>,
+    ) -> Result<(), ReadError> {
+        let largest = self.check_pages(index, path)?;
+        // A long text that many rows share is repeated for each row of a batch.
+        let most = self.budget.left() / COPIES / largest.max(1);
+        let batch = most.clamp(1, BATCH);
+        let broken = |error: &dyn ToString| damaged(path, &error.to_string());
+        let file = self.file.try_clone().map_err(|error| broken(&error))?;
+        let only = ProjectionMask::leaves(self.metadata.parquet_schema(), [index]);
+        let batches =
+            ParquetRecordBatchReaderBuilder::new_with_metadata(file, self.metadata.clone())
+                .with_projection(only)
+                .with_batch_size(usize::try_from(batch).unwrap_or(1))
+                .build()
+                .map_err(|error| broken(&error))?;
+        let mut left = rows;
+        for batch in batches {
+            let batch = batch.map_err(|error| broken(&error))?;
+            let mut column = batch.column(0).clone();
+            // Where a structure is missing, each of its fields is.
+            let mut missing = vec![false; column.len()];
+            while let Some(structure) = column.clone().as_struct_opt() {
+                for (row, missing) in missing.iter_mut().enumerate() {
+                    *missing |= structure.is_null(row);
+                }
+                column = structure.column(0).clone();
+            }
+            let more = || broken(&format!("a column has more than {rows} rows"));
+            left = left.checked_sub(column.len()).ok_or_else(more)?;
+            take(&column, &missing)?;
+        }
+        if left > 0 {
+            return Err(broken(&format!("a column has fewer than {rows} rows")));
+        }
+        Ok(())
+    }
+
+    /// The most bytes of a column in a group of rows, of which a page is unpacked whole. Refuses more
+    /// than there is memory for, and codecs that are not built in.
+    fn check_pages(&self, index: usize, path: &Path) -> Result<u64, ReadError> {
+        let mut largest = 0;
+        for group in self.groups() {
+            let column = group.column(index);
+            let codec = match column.compression() {
+                Compression::BROTLI(_) => "brotli",
+                Compression::LZO => "LZO",
+                _ => "",
+            };
+            if !codec.is_empty() {
+                let name = column.column_path().string();
+                return Err(refused(
+                    path,
+                    format!("column `{name}` is compressed by {codec}, which is not read"),
+                    "write it with zstd or snappy: `pandas.to_parquet(OUT, compression=\"zstd\")`",
+                ));
+            }
+            largest = largest.max(u64::try_from(column.uncompressed_size()).unwrap_or(0));
+        }
+        self.budget.check(largest).map_err(|error| error.refuse(path))?;
+        Ok(largest)
+    }
+}
+
+/// What a column holds instead of numbers.
+fn not_numbers(kind: &DataType) -> Option<String> {
+    match kind {
+        DataType::Dictionary(_, values) => not_numbers(values),
+        // Days, which would be read as seconds.
+        DataType::Date32 | DataType::Date64 => Some("dates without a time of day".to_owned()),
+        DataType::Interval(_) => Some("intervals of the calendar".to_owned()),
+        DataType::Boolean => None,
+        kind if kind.is_numeric() || kind.is_temporal() => None,
+        kind if kind.is_string() => Some("text".to_owned()),
+        other => Some(format!("values of the type {other}")),
+    }
+}
+
+/// Values as numbers; times are counts of their unit.
+fn floats(values: &ArrayRef) -> Result<ArrayRef, ArrowError> {
+    if values.data_type().is_temporal() {
+        return cast(&cast(values, &DataType::Int64)?, &DataType::Float64);
+    }
+    cast(values, &DataType::Float64)
+}
+
+/// The label of each row; a number as it would stand in a text.
+fn texts(values: &ArrayRef) -> Result<Vec<String>, ArrowError> {
+    let mut labels = Vec::new();
+    if values.data_type().is_numeric() || *values.data_type() == DataType::Boolean {
+        for number in floats(values)?.as_primitive::<Float64Type>() {
+            labels.push(number.map(|number| number.to_string()).unwrap_or_default());
+        }
+    } else {
+        for text in cast(values, &DataType::Utf8)?.as_string::<i32>() {
+            labels.push(text.unwrap_or_default().trim().to_owned());
+        }
+    }
+    Ok(labels)
+}
