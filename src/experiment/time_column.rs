@@ -9,60 +9,19 @@ use crate::units::SamplePeriod;
 const TIME_NAMES: [&str; 3] = ["time_s", "t_s", "time"];
 
 /// Further names of a column of times, in lower case, without the unit they may end in.
-const FURTHER_TIME_NAMES: [&str; 49] = [
-    "time",
-    "t",
-    "timestamp",
-    "time_stamp",
-    "time stamp",
-    "stamp",
-    "ts",
-    "elapsed",
-    "elapsed_time",
-    "elapsed time",
-    "datetime",
-    "date_time",
-    "date time",
-    "date&time",
-    "seconds",
-    "sec",
-    "millis",
-    "micros",
-    "epoch",
-    "unix",
-    "unix_time",
-    "unixtime",
-    "time_unix",
-    "unix timestamp",
-    "unix_timestamp",
-    "posix",
-    "posix_time",
-    "utc",
-    "clock",
-    "tick",
-    "log_time",
-    "recorded_at",
-    "__time",
-    "%time",
-    "rosbagtimestamp",
-    "zeit",
-    "uhrzeit",
-    "zeitstempel",
-    "temps",
-    "tiempo",
-    "tempo",
-    "tid",
-    "aika",
-    "czas",
-    "čas",
-    "時間",
-    "时间",
-    "время",
-    "x_value",
-];
+const FURTHER_TIME_NAMES: &str = "time|t|timestamp|time_stamp|time stamp|stamp|ts|\
+    elapsed|elapsed_time|elapsed time|datetime|date_time|date time|date&time|\
+    seconds|sec|millis|micros|epoch|unix|unix_time|unixtime|time_unix|unix timestamp|unix_timestamp|\
+    posix|posix_time|utc|clock|tick|log_time|recorded_at|__time|%time|rosbagtimestamp|\
+    zeit|uhrzeit|zeitstempel|temps|tiempo|tempo|tid|aika|czas|čas|時間|时间|время|x_value";
 
 /// Those of them that are units themselves.
 const TIME_UNIT_NAMES: [&str; 4] = ["seconds", "sec", "millis", "micros"];
+
+/// The place of a name, in lower case and without a unit, among those of times.
+fn known_place(name: &str) -> Option<usize> {
+    FURTHER_TIME_NAMES.split('|').position(|known| known == without_unit(name))
+}
 
 /// Where the time of a row comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,13 +76,9 @@ pub(super) fn times(
 
 /// The column that a name such as `timestamp`, `t_us` or `elapsed` says holds the time.
 pub(super) fn find_time_column(head: &Head) -> Option<usize> {
-    let base = |header: &Header| {
-        let name = header.name.to_lowercase();
-        let known = |bare: &str| FURTHER_TIME_NAMES.iter().position(|known| *known == bare);
-        known(without_unit(&name)).filter(|_| header.name != "T")
-    };
-    let named = head.headers.iter().enumerate();
-    let named = named.filter_map(|(column, header)| Some((base(header)?, column)));
+    let place = |header: &Header| known_place(&header.name.to_lowercase());
+    let columns = head.headers.iter().enumerate().filter(|(_, header)| header.name != "T");
+    let named = columns.filter_map(|(column, header)| Some((place(header)?, column)));
     // `T` is a temperature, too.
     let is_t = |header: &Header| header.name == "t";
     find_any(head, &TIME_NAMES)
@@ -135,19 +90,14 @@ pub(super) fn find_time_column(head: &Head) -> Option<usize> {
 /// The column of what the whole seconds in `column` leave over, where a stamp is written in two, as those of
 /// ROS are (`sec`, `nanosec`), and its unit in seconds.
 pub(super) fn rest_of_times(head: &Head, column: usize) -> Option<(usize, f64)> {
-    const PARTS: [(&str, &str, f64); 6] = [
-        ("sec", "nanosec", 1e-9),
-        ("secs", "nsecs", 1e-9),
-        ("sec", "nsec", 1e-9),
-        ("seconds", "nanoseconds", 1e-9),
-        ("sec", "usec", 1e-6),
-        ("seconds", "microseconds", 1e-6),
-    ];
+    const WHOLE: [&str; 3] = ["seconds", "secs", "sec"];
     let name = head.headers.get(column)?.text.to_lowercase();
-    PARTS.iter().find_map(|(whole, part, unit_s)| {
-        let rest = format!("{}{part}", name.strip_suffix(whole)?);
-        let is_it = |header: &Header| header.text.to_lowercase() == rest;
-        Some((head.headers.iter().position(is_it)?, *unit_s))
+    let before = WHOLE.iter().find_map(|whole| name.strip_suffix(whole))?;
+    let mut headers = head.headers.iter().enumerate();
+    headers.find_map(|(place, header)| {
+        let text = header.text.to_lowercase();
+        let rest = text.strip_prefix(before).filter(|rest| rest.contains("sec"))?;
+        unit::time_in(rest).filter(|unit_s| *unit_s < 1e-3).map(|unit_s| (place, unit_s))
     })
 }
 
@@ -168,19 +118,18 @@ pub(super) fn note_on_times(head: &Head, column: usize, uses: &[usize]) -> Optio
                 || is_time_of_another(head, header)
                 || header.name.is_empty() && is_within)
     });
-    let names: Vec<String> = others.map(|(other, header)| named(other, header)).collect();
+    let mut names: Vec<String> = others.map(|(other, header)| named(other, header)).collect();
     let header = head.headers.get(column)?;
-    let used = named(column, header);
-    let more = if names.len() > MOST { ", …" } else { "" };
-    match names.as_slice() {
-        [] if header.name == "T" => Some(format!("the times are those in {used}")),
-        [] => None,
-        [other] => Some(format!("the times are those in {used}; {other} is not used")),
-        others => {
-            let names = others.get(..MOST).unwrap_or(others).join(", ");
-            Some(format!("the times are those in {used}; {names}{more} are not used"))
-        }
+    let used = format!("the times are those in {}", named(column, header));
+    let are = if names.len() == 1 { "is" } else { "are" };
+    if names.len() > MOST {
+        names.truncate(MOST);
+        names.push("…".to_owned());
     }
+    if names.is_empty() {
+        return (header.name == "T").then_some(used);
+    }
+    Some(format!("{used}; {} {are} not used", names.join(", ")))
 }
 
 /// A column as a note calls it.
@@ -220,11 +169,13 @@ fn is_like_a_time(header: &Header) -> bool {
     if name.starts_with('/') || name.contains("header.stamp") {
         return false;
     }
-    let is_known = |name: &str| FURTHER_TIME_NAMES.contains(&without_unit(name));
+    let is_known = |name: &str| known_place(name).is_some();
     let text = header.text.to_lowercase();
+    // `t1` is a temperature.
     let numbered = |text: &str| {
         let bare = text.trim_end_matches(|c: char| c.is_ascii_digit() || " _.#".contains(c));
-        is_known(unit::parted(bare).0)
+        let bare = unit::parted(bare).0;
+        bare.len() > 1 && is_known(bare)
     };
     is_known(&name)
         || numbered(&name)
