@@ -38,6 +38,7 @@ mod wrap;
 
 pub use activity::{Other, Supply};
 pub(crate) use bounded::{read_result, read_sheet, read_text};
+pub(crate) use columns::KEPT;
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
 pub(crate) use conditions::are_opposites;
 pub use conditions::conditions;

@@ -3,20 +3,21 @@
 use super::text_table::TextTable;
 use crate::experiment::{Role, Survey, SurveyedColumn};
 
-/// A row per column: what it is taken for and why; what is open; and the mapping as `options`,
-/// where there are some.
-pub(crate) fn columns_table(survey: &Survey, options: &str) -> String {
+/// A row per column: what it is taken for and why; what is open; and as `options` the mapping, then those that
+/// could be meant as well.
+pub(crate) fn columns_table(survey: &Survey, options: &[String]) -> String {
     let mut table = TextTable::new(["column", "taken for", "unit", "why"], &[]);
     for column in &survey.columns {
         let unit = column.unit.clone().unwrap_or_default();
         table.row([column.name.clone(), role(column), unit, column.why.clone()]);
     }
     let mut text = format!("{table}\n");
-    let open = survey.open.iter().cloned();
-    let options = (!options.is_empty()).then(|| format!("as options: {options}"));
-    for line in open.chain(options) {
-        text += &line;
-        text.push('\n');
+    for line in &survey.open {
+        text += &format!("{line}\n");
+    }
+    for (place, options) in options.iter().enumerate() {
+        let kind = if place == 0 { "as options" } else { "or" };
+        text += &format!("{kind}: {options}\n");
     }
     text
 }

@@ -16,6 +16,9 @@ pub(crate) struct ColumnsJson<'a> {
     joints: Vec<JointJson<'a>>,
     open: &'a [String],
     options: &'a str,
+    /// The options of mappings that could be meant as well.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    alternatives: &'a [String],
 }
 
 #[derive(Debug, Serialize)]
@@ -34,8 +37,12 @@ struct JointJson<'a> {
 }
 
 impl<'a> ColumnsJson<'a> {
-    /// The JSON of `survey`, with the mapping as `options` on the command line.
-    pub(crate) fn new(survey: &'a Survey, options: &'a str) -> Self {
+    /// The JSON of `survey`, with the mappings as `options` on the command line, the likeliest first.
+    pub(crate) fn new(survey: &'a Survey, options: &'a [String]) -> Self {
+        let (options, alternatives) = match options {
+            [first, others @ ..] => (first.as_str(), others),
+            [] => ("", options),
+        };
         let column = |column: &'a SurveyedColumn| ColumnJson {
             column: &column.name,
             unit: column.unit.as_deref(),
@@ -54,6 +61,7 @@ impl<'a> ColumnsJson<'a> {
             joints: joints.collect(),
             open: &survey.open,
             options,
+            alternatives,
         }
     }
 }
