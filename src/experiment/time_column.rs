@@ -114,9 +114,7 @@ pub(super) fn note_on_times(head: &Head, column: usize, uses: &[usize]) -> Optio
         header.text != *text
             && !uses.contains(other)
             && rest != Some(*other)
-            && (is_like_a_time(header)
-                || is_time_of_another(head, header)
-                || header.name.is_empty() && is_within)
+            && (is_like_a_time(head, header) || header.name.is_empty() && is_within)
     });
     let mut names: Vec<String> = others.map(|(other, header)| named(other, header)).collect();
     let header = head.headers.get(column)?;
@@ -140,47 +138,35 @@ fn named(column: usize, header: &Header) -> String {
     }
 }
 
-/// Whether a name is that of a time and of something else, as of a signal that has a clock of its own:
-/// `time_y`, `stamp_out`, `Time(1)`; `t_y` beside a signal `y`, as `t_oil` is a temperature.
-fn is_time_of_another(head: &Head, header: &Header) -> bool {
+/// Whether a name is one of a time, also with a number behind it or that of a joint before it; or of a time and
+/// of something else, as of a signal that has a clock of its own: `time_y`, `stamp_out`, `Time(1)`; `t_y` beside
+/// a signal `y`, as `t_oil` is a temperature.
+fn is_like_a_time(head: &Head, header: &Header) -> bool {
     const TIMES: [&str; 6] = ["time", "times", "timestamp", "stamp", "zeit", "temps"];
     const SIGNALS: [&str; 6] = ["in", "out", "input", "output", "u", "y"];
-    let name = unit::parted(&header.text).0.to_lowercase();
-    // Clocks of messages have names that say so.
-    if name.contains(['.', '/']) || name == "publish_time" {
+    let name = header.name.to_lowercase();
+    let is_other = header.unit.as_deref().is_some_and(|unit| !unit::is_time(unit));
+    // Messages and their parts have stamps of their own.
+    let is_stamp = name.starts_with('/') || name.contains("header.stamp") || name == "publish_time";
+    if header.name == "T" || is_other || is_stamp {
         return false;
+    }
+    let bare = name.trim_end_matches(|c: char| c.is_ascii_digit() || " _.#".contains(c));
+    let bare = unit::parted(bare).0;
+    // `t1` is a temperature.
+    let numbered = Some(bare).filter(|bare| bare.len() > 1);
+    let last = name.rsplit('.').next();
+    if [Some(&*name), numbered, last].into_iter().flatten().any(|n| known_place(n).is_some()) {
+        return true;
     }
     let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).collect();
     let is_signal = |word: &&str| {
         let of = |other: &Header| other.name.eq_ignore_ascii_case(word);
         SIGNALS.contains(word) || word.len() > 1 && head.headers.iter().any(of)
     };
-    words.iter().any(|word| TIMES.contains(word))
-        || words.contains(&"t") && words.iter().any(is_signal)
-}
-
-/// Whether a name is one of a time, also with a number behind it or that of a joint before it.
-fn is_like_a_time(header: &Header) -> bool {
-    if header.name == "T" || header.unit.as_deref().is_some_and(|unit| !unit::is_time(unit)) {
-        return false;
-    }
-    let name = header.name.to_lowercase();
-    // Parts of messages have stamps of their own.
-    if name.starts_with('/') || name.contains("header.stamp") {
-        return false;
-    }
-    let is_known = |name: &str| known_place(name).is_some();
-    let text = header.text.to_lowercase();
-    // `t1` is a temperature.
-    let numbered = |text: &str| {
-        let bare = text.trim_end_matches(|c: char| c.is_ascii_digit() || " _.#".contains(c));
-        let bare = unit::parted(bare).0;
-        bare.len() > 1 && is_known(bare)
-    };
-    is_known(&name)
-        || numbered(&name)
-        || numbered(&text)
-        || name.rsplit_once('.').is_some_and(|(_, last)| is_known(last))
+    let is_time = words.iter().any(|word| TIMES.contains(word));
+    let is_t_of_signal = || words.contains(&"t") && words.iter().any(is_signal);
+    !name.contains(['.', '/']) && (is_time || is_t_of_signal())
 }
 
 /// A name in lower case without the unit of time that it ends in.

@@ -24,8 +24,9 @@ pub(super) struct Columns<'a> {
     pub(super) head: &'a Head,
     /// The numbers of each column; none of the time, and of what holds no numbers.
     pub(super) signals: &'a [Option<Signal>],
-    names: Vec<Name>,
-    /// The columns that may be those of a joint.
+    /// Of each column that may be one of a joint.
+    names: Vec<Option<Name>>,
+    /// These columns.
     moving: Vec<usize>,
     /// Words that each of these has, as the name of the machine: they say of no joint which it is.
     common: BTreeSet<String>,
@@ -57,8 +58,14 @@ impl<'a> Columns<'a> {
 
     /// These columns, whatever they hold.
     pub(super) fn among(head: &'a Head, signals: &'a [Option<Signal>], moving: Vec<usize>) -> Self {
-        let names: Vec<Name> = head.headers.iter().map(Name::of).collect();
-        let mut all = moving.iter().filter_map(|column| names.get(*column));
+        let mut names: Vec<Option<Name>> = vec![None; head.headers.len()];
+        for column in &moving {
+            if let (Some(name), Some(header)) = (names.get_mut(*column), head.headers.get(*column))
+            {
+                *name = Some(Name::of(header));
+            }
+        }
+        let mut all = names.iter().flatten();
         let mut common = all.next().map(Name::parts).unwrap_or_default();
         for name in all {
             common = &common & &name.parts();
@@ -173,9 +180,11 @@ impl Columns<'_> {
             found.extend(near.map(|(follows, input)| (follows, input, output)));
         }
         // Of a position and its speed, which follow alike, the likelier name stands first.
-        let tenths = |follows: f64| (10.0 * follows).floor() as i64 / 2;
-        found.sort_by_key(|(follows, input, output)| {
-            (Reverse(tenths(*follows)), self.likelihood(*output), *input, *output)
+        let fifths = |follows: f64| (5.0 * follows).floor();
+        found.sort_by(|(a, input, output), (b, other_input, other_output)| {
+            let by_data = fifths(*b).total_cmp(&fifths(*a));
+            let key = |input: usize, output: usize| (self.likelihood(output), input, output);
+            by_data.then_with(|| key(*input, *output).cmp(&key(*other_input, *other_output)))
         });
         let is_only = inputs.len() == 1;
         let pairs = found.into_iter().map(|(_, input, output)| Pair::alone(input, output, is_only));
@@ -195,12 +204,11 @@ impl Columns<'_> {
 
     /// The joints of `pairs` whose names say so, or whose data do; it is sure what names alone say, or what
     /// weaker names and the data say together where nothing else moves.
-    fn judged(&self, pairs: Vec<Pair>) -> Vec<FoundJoint> {
+    fn judged(&self, mut pairs: Vec<Pair>) -> Vec<FoundJoint> {
         let grade = |pair: &Pair| {
             self.grade(pair.input, Side::Input).max(self.grade(pair.output, Side::Output))
         };
         let best = pairs.iter().map(grade).min();
-        let mut pairs = pairs;
         // A setpoint and a pressure beside real joints are none.
         pairs.retain(|pair| grade(pair) < Grade::Beside || best >= Some(Grade::Beside));
         let are_all = self.moving.len() == 2 * pairs.len();
@@ -336,7 +344,7 @@ impl Columns<'_> {
     }
 
     fn name(&self, column: usize) -> Option<&Name> {
-        self.names.get(column)
+        self.names.get(column)?.as_ref()
     }
 
     fn signal(&self, column: usize) -> Option<&Signal> {
