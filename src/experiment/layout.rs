@@ -325,21 +325,13 @@ fn find_time(
     let head = columns.head;
     if let Some(name) = &map.time {
         // Of several of a name each must say the same.
-        let find = |name: &str| match columns.find(name) {
-            Err(ReadError::DuplicateColumn { .. }) => {
-                let is_it = |header: &Header| header.text == name || header.name == name;
-                let first = head.headers.iter().position(is_it);
-                first.map_or_else(|| columns.find(name), Ok)
-            }
-            found => found,
-        };
+        if let Some(column) = columns.first(name) {
+            return times(head, column, None);
+        }
         // `t [ms]` says the unit of a column `t`.
-        return match (find(name), unit::parted(name)) {
-            (Err(_), (name, Some(unit))) if find(name).is_ok() => {
-                find(name).and_then(|column| times(head, column, Some(&unit)))
-            }
-            (found, _) => found.and_then(|column| times(head, column, None)),
-        };
+        let (bare, unit) = unit::parted(name);
+        let column = columns.first(bare).map_or_else(|| columns.find(name), Ok)?;
+        return times(head, column, unit.as_deref());
     }
     // A period that was asked for stands above a time column: the user knows why.
     match (period, find_any(head, &[SAMPLE_NAME])) {
@@ -380,7 +372,16 @@ struct Columns<'a> {
 #[derive(Clone, Copy)]
 enum Named {
     One(usize),
-    Several,
+    /// Several, and the first of them.
+    Several(usize),
+}
+
+impl Named {
+    fn first(self) -> usize {
+        match self {
+            Self::One(index) | Self::Several(index) => index,
+        }
+    }
 }
 
 impl<'a> Columns<'a> {
@@ -395,7 +396,7 @@ impl<'a> Columns<'a> {
         for name in kinds {
             let mut named = HashMap::new();
             for (index, header) in head.headers.iter().enumerate() {
-                let several = |named: &mut Named| *named = Named::Several;
+                let several = |named: &mut Named| *named = Named::Several(named.first());
                 if let Some(name) = name(header) {
                     named.entry(name).and_modify(several).or_insert(Named::One(index));
                 }
@@ -405,6 +406,11 @@ impl<'a> Columns<'a> {
         Self { head, by_name }
     }
 
+    /// The first column of this name.
+    fn first(&self, wanted: &str) -> Option<usize> {
+        self.by_name.get(wanted).map(|named| named.first())
+    }
+
     /// The column whose whole header is `wanted`, else the one whose name it is, else the one
     /// whose name it is but for a unit at its end.
     fn find(&self, wanted: &str) -> Result<usize, ReadError> {
@@ -412,7 +418,7 @@ impl<'a> Columns<'a> {
         let (path, row, column) = (head.path.clone(), head.header_row, wanted.to_owned());
         match self.by_name.get(wanted) {
             Some(Named::One(index)) => Ok(*index),
-            Some(Named::Several) => Err(ReadError::DuplicateColumn { path, row, column }),
+            Some(Named::Several(_)) => Err(ReadError::DuplicateColumn { path, row, column }),
             None => {
                 let few = Some(&head.headers).filter(|headers| headers.len() <= MOST_COMPARED);
                 let names = few.into_iter().flatten().map(|header| header.name.as_str());

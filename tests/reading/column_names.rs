@@ -9,7 +9,7 @@ use tauscope::experiment::{
 
 /// Headers of the time, then an input and an output of each joint, then a pressure where there is one more;
 /// and the joints that are found, with a `?` where the data had to help and a person is asked.
-const HEADERS: [(&str, &str); 44] = [
+const HEADERS: [(&str, &str); 45] = [
     // Hydraulics.
     ("t_s,u_boom_pct,boom_deg", "boom"),
     ("t_s,boom_pct,boom_deg,stick_pct,stick_deg", "boom stick"),
@@ -68,6 +68,7 @@ const HEADERS: [(&str, &str); 44] = [
     // Others.
     ("time,esc_us,rpm", "rpm"),
     ("time,joy_x,swing_deg,joy_y,boom_deg", "swing? boom?"),
+    ("Time,AnalogOut_1,AnalogIn_1", "analog_1?"),
     ("t,a,b,c,d", "b? d?"),
 ];
 
@@ -148,6 +149,23 @@ fn of_several_outputs_that_follow_one_input_all_are_offered() {
     assert_eq!(survey.map.joints, [JointColumns::new("t1", "Q1", "T1")]);
     let other: Vec<_> = survey.alternatives.iter().flat_map(|map| &map.joints).collect();
     assert_eq!(other, [&JointColumns::new("t2", "Q1", "T2")]);
+}
+
+#[test]
+fn of_several_inputs_of_a_joint_the_one_that_moves_it_is_not_guessed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.csv");
+    let ([pump, _], [valve, angle]) = (joint(1), joint(0));
+    let mut text = "t,boom_pump_cmd,boom_valve_cmd,boom_angle\n".to_owned();
+    for row in 0..ROWS {
+        let cells = [row as f64 / 100.0, pump[row], valve[row], angle[row]];
+        writeln!(text, "{}", cells.map(|cell| format!("{cell:.3}")).join(",")).unwrap();
+    }
+    fs::write(&path, text).unwrap();
+    let survey = Survey::of(&path, MemoryLimit::default()).unwrap();
+    let maps = std::iter::once(&survey.map).chain(&survey.alternatives);
+    let valve = JointColumns::new("boom", "boom_valve_cmd", "boom_angle");
+    assert!(!survey.is_sure && maps.flat_map(|map| &map.joints).any(|joint| *joint == valve));
 }
 
 #[test]

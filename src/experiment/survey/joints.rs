@@ -46,6 +46,10 @@ impl Pair {
     fn alone(input: usize, output: usize, is_only: bool) -> Self {
         Self { input, output, shared: BTreeSet::new(), is_only }
     }
+
+    fn reversed(self) -> Self {
+        Self { input: self.output, output: self.input, ..self }
+    }
 }
 
 impl<'a> Columns<'a> {
@@ -128,9 +132,9 @@ impl Columns<'_> {
         own: impl Fn(&Name) -> BTreeSet<String>,
         is_only: bool,
     ) -> Vec<Pair> {
-        let own = |column: usize| self.name(column).map(&own).unwrap_or_default();
         /// Pairs that are compared: those of a thousand inputs with as many outputs.
         const MOST: usize = 1_000_000;
+        let own = |column: usize| self.name(column).map(&own).unwrap_or_default();
         let mut with: HashMap<String, Vec<usize>> = HashMap::new();
         for output in outputs {
             for word in own(*output) {
@@ -198,7 +202,7 @@ impl Columns<'_> {
             return inputs;
         }
         let holds = |column: usize| self.signal(column).is_some_and(Signal::holds_levels);
-        let is_open = |column: usize| self.name(column).is_some_and(|n| n.grade > Grade::Word);
+        let is_open = |column: usize| self.name(column).is_some_and(|name| !name.is_neither());
         self.moving.iter().copied().filter(|column| holds(*column) && is_open(*column)).collect()
     }
 
@@ -214,16 +218,23 @@ impl Columns<'_> {
         let are_all = self.moving.len() == 2 * pairs.len();
         let taken: HashSet<usize> = pairs.iter().flat_map(|p| [p.input, p.output]).collect();
         let (mut joints, mut names) = (Vec::new(), HashSet::new());
-        for pair in &pairs {
+        for pair in pairs {
+            // `AnalogOut` drives, and `AnalogIn` measures; a setpoint is never what follows.
+            let is_reversed = grade(&pair) > Grade::Word && self.is_reversed(&pair);
+            if is_reversed && self.grade(pair.input, Side::Input) == Grade::Beside {
+                continue;
+            }
+            let pair = if is_reversed { pair.reversed() } else { pair };
             let follows = self.following(pair.input, pair.output);
-            let is_sure = pair.is_only && self.is_said(pair, follows.is_some(), are_all);
-            let is_shown = || follows.is_some_and(|f| !self.is_reversed(pair, f));
-            let name = self.joint_name(pair);
+            let is_sure = pair.is_only
+                && self.is_said(&pair, follows.is_some(), are_all)
+                && !self.has_rival(&pair, follows, &taken);
+            let name = self.joint_name(&pair);
             let is_speed = !pair.is_only && !pair.shared.is_empty();
-            if (is_sure || is_speed || is_shown()) && names.insert(name.clone()) {
+            if (is_sure || is_speed || follows.is_some()) && names.insert(name.clone()) {
                 let instead =
-                    if is_sure { Vec::new() } else { self.instead(pair, follows, &taken) };
-                let why = self.reasons(pair, follows);
+                    if is_sure { Vec::new() } else { self.instead(&pair, follows, &taken) };
+                let why = self.reasons(&pair, follows);
                 let (input, output) = (pair.input, pair.output);
                 joints.push(FoundJoint { name, input, output, why, is_sure, instead });
             }
@@ -245,9 +256,28 @@ impl Columns<'_> {
         }
     }
 
+    /// Whether the output follows another input clearly more that is named like one of this joint, too.
+    fn has_rival(&self, pair: &Pair, follows: Option<f64>, taken: &HashSet<usize>) -> bool {
+        let own = follows.map_or(0.0, f64::abs);
+        self.second_inputs(pair.output).filter(|input| !taken.contains(input)).any(|input| {
+            self.following(input, pair.output).is_some_and(|f| !is_alike(own, f.abs()))
+        })
+    }
+
+    /// The columns whose names say that they are inputs of the joint which has this output.
+    fn second_inputs(&self, output: usize) -> impl Iterator<Item = usize> {
+        let own = self.name(output).map(|name| &name.own);
+        let shares = move |input: &usize| match (own, self.name(*input)) {
+            (Some(own), Some(name)) => name.grade == Grade::Word && !own.is_disjoint(&name.own),
+            _ => false,
+        };
+        self.on(Side::Input).filter(shares)
+    }
+
     /// Whether the input follows the output more than the output follows the input.
-    fn is_reversed(&self, pair: &Pair, follows: f64) -> bool {
-        self.following(pair.output, pair.input).is_some_and(|back| back.abs() > follows.abs())
+    fn is_reversed(&self, pair: &Pair) -> bool {
+        let follows = |a: usize, b: usize| self.following(a, b).map_or(0.0, f64::abs);
+        follows(pair.output, pair.input) > follows(pair.input, pair.output)
     }
 
     /// What may as well be the output of this input, or the input of this output, of the columns that are not
@@ -326,18 +356,13 @@ impl Columns<'_> {
 
     /// For each of `joints` the columns that are named like what drives it, too, and are no joint's.
     pub(super) fn further_inputs(&self, joints: &[FoundJoint]) -> Vec<(String, String)> {
+        let mut taken: HashSet<usize> = joints.iter().map(|joint| joint.input).collect();
         let mut found = Vec::new();
-        for input in self.on(Side::Input) {
-            let is_taken = joints.iter().any(|joint| joint.input == input);
-            if is_taken || self.grade(input, Side::Input) > Grade::Word {
-                continue;
-            }
-            let shares = |joint: &&FoundJoint| {
-                let own = [input, joint.output].map(|column| self.name(column).map(|n| &n.own));
-                matches!(own, [Some(a), Some(b)] if !a.is_disjoint(b))
-            };
-            if let Some(joint) = joints.iter().find(shares) {
-                found.push((joint.name.clone(), self.head.text(input)));
+        for joint in joints {
+            for input in self.second_inputs(joint.output) {
+                if taken.insert(input) {
+                    found.push((joint.name.clone(), self.head.text(input)));
+                }
             }
         }
         found

@@ -72,7 +72,7 @@ impl Signal {
         const OVER: usize = 5;
         const LATE: [usize; 14] = [0, 5, 10, 15, 20, 25, 30, 35, 40, 50, 70, 100, 150, 200];
         /// Rows that are looked at, spread over the record.
-        const ROWS: usize = 4_000;
+        const ROWS: usize = 2_000;
         /// Correlation from which one follows the other.
         const CLEAR: f64 = 0.3;
         let (u, y) = (&input.values, &self.values);
