@@ -32,6 +32,9 @@ pub(super) struct Columns<'a> {
     common: BTreeSet<String>,
 }
 
+/// Further columns that are compared with those of a joint.
+const COMPARED: usize = 100;
+
 /// An input and an output.
 pub(super) struct Pair {
     pub(super) input: usize,
@@ -217,6 +220,8 @@ impl Columns<'_> {
         pairs.retain(|pair| grade(pair) < Grade::Beside || best >= Some(Grade::Beside));
         let are_all = self.moving.len() == 2 * pairs.len();
         let taken: HashSet<usize> = pairs.iter().flat_map(|p| [p.input, p.output]).collect();
+        let free: Vec<usize> = self.free_inputs(&taken).take(COMPARED).collect();
+        let is_one = pairs.len() == 1;
         let (mut joints, mut names) = (Vec::new(), HashSet::new());
         for pair in pairs {
             // `AnalogOut` drives, and `AnalogIn` measures; a setpoint is never what follows.
@@ -228,7 +233,7 @@ impl Columns<'_> {
             let follows = self.following(pair.input, pair.output);
             let is_sure = pair.is_only
                 && self.is_said(&pair, follows.is_some(), are_all)
-                && !self.has_rival(&pair, follows, &taken);
+                && !self.has_rival(&pair, follows, &free, is_one);
             let name = self.joint_name(&pair);
             let is_speed = !pair.is_only && !pair.shared.is_empty();
             if (is_sure || is_speed || follows.is_some()) && names.insert(name.clone()) {
@@ -256,22 +261,27 @@ impl Columns<'_> {
         }
     }
 
-    /// Whether the output follows another input clearly more that is named like one of this joint, too.
-    fn has_rival(&self, pair: &Pair, follows: Option<f64>, taken: &HashSet<usize>) -> bool {
+    /// Whether the output follows one of the `free` inputs clearly more, which is named like one of this joint,
+    /// too.
+    fn has_rival(&self, pair: &Pair, follows: Option<f64>, free: &[usize], is_one: bool) -> bool {
         let own = follows.map_or(0.0, f64::abs);
-        self.second_inputs(pair.output).filter(|input| !taken.contains(input)).any(|input| {
-            self.following(input, pair.output).is_some_and(|f| !is_alike(own, f.abs()))
+        let words = self.own(pair.output, is_one);
+        free.iter().filter(|input| !self.own(**input, is_one).is_disjoint(&words)).any(|input| {
+            self.following(*input, pair.output).is_some_and(|f| !is_alike(own, f.abs()))
         })
     }
 
-    /// The columns whose names say that they are inputs of the joint which has this output.
-    fn second_inputs(&self, output: usize) -> impl Iterator<Item = usize> {
-        let own = self.name(output).map(|name| &name.own);
-        let shares = move |input: &usize| match (own, self.name(*input)) {
-            (Some(own), Some(name)) => name.grade == Grade::Word && !own.is_disjoint(&name.own),
-            _ => false,
-        };
-        self.on(Side::Input).filter(shares)
+    /// The columns whose names say that they are inputs, but for those that are `taken`.
+    fn free_inputs(&self, taken: &HashSet<usize>) -> impl Iterator<Item = usize> {
+        self.on(Side::Input).filter(|input| {
+            !taken.contains(input) && self.grade(*input, Side::Input) == Grade::Word
+        })
+    }
+
+    /// What of a name says which joint: of several joints, not what all columns have.
+    fn own(&self, column: usize, is_one: bool) -> BTreeSet<String> {
+        let own = self.name(column).map(|name| name.own.clone()).unwrap_or_default();
+        if is_one { own } else { &own - &self.common }
     }
 
     /// Whether the input follows the output more than the output follows the input.
@@ -288,8 +298,7 @@ impl Columns<'_> {
         follows: Option<f64>,
         taken: &HashSet<usize>,
     ) -> Vec<([usize; 2], String)> {
-        /// Columns that are compared, and pairs that are said.
-        const COMPARED: usize = 100;
+        /// Pairs that are said.
         const SAID: usize = 3;
         let own = follows.map_or(0.0, f64::abs);
         let free = self.moving.iter().copied().filter(|column| !taken.contains(column));
@@ -356,13 +365,19 @@ impl Columns<'_> {
 
     /// For each of `joints` the columns that are named like what drives it, too, and are no joint's.
     pub(super) fn further_inputs(&self, joints: &[FoundJoint]) -> Vec<(String, String)> {
-        let mut taken: HashSet<usize> = joints.iter().map(|joint| joint.input).collect();
-        let mut found = Vec::new();
+        let is_one = joints.len() == 1;
+        let taken = joints.iter().flat_map(|joint| [joint.input, joint.output]).collect();
+        let mut by_word: HashMap<String, &FoundJoint> = HashMap::new();
         for joint in joints {
-            for input in self.second_inputs(joint.output) {
-                if taken.insert(input) {
-                    found.push((joint.name.clone(), self.head.text(input)));
-                }
+            for word in self.own(joint.output, is_one) {
+                by_word.entry(word).or_insert(joint);
+            }
+        }
+        let mut found = Vec::new();
+        for input in self.free_inputs(&taken) {
+            let words = self.own(input, is_one);
+            if let Some(joint) = words.iter().find_map(|word| by_word.get(word)) {
+                found.push((joint.name.clone(), self.head.text(input)));
             }
         }
         found
