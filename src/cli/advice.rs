@@ -43,10 +43,13 @@ pub(crate) fn advice(error: &(dyn Error + 'static)) -> String {
 fn on_reading(error: &ReadError) -> String {
     let text = match error {
         ReadError::NoJoints { likely, .. } if !likely.1.is_empty() => {
-            let (time, joints) = likely.as_ref();
+            let (time, mappings) = likely.as_ref();
+            let options =
+                |joints: &Vec<_>| format!("`{}`", mapping_options([time.as_deref(), None], joints));
+            let options: Vec<String> = mappings.iter().map(options).collect();
             return format!(
-                "; what the columns hold suggests `{}`, and `tauscope columns` says why",
-                mapping_options([time.as_deref(), None], joints)
+                "; what the columns hold suggests {}; `tauscope columns` says why, and its `-w` keeps it",
+                options.join(" or ")
             );
         }
         ReadError::NoJoints { .. } => {

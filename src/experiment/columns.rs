@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::bounded::read_text;
 use super::names::on_one_line;
 
+/// The file beside a log that holds the mapping of its columns, where none is given.
+pub(crate) const KEPT: &str = "columns.toml";
+
 /// The columns of a log that do not bear the native names.
 ///
 /// An empty map reads the native names: `time_s`, `trial`, `<joint>.input`,
@@ -119,6 +122,14 @@ impl ColumnMap {
         self.joints.iter().map(joint).collect()
     }
 
+    /// The mapping that `tauscope columns -w` has left beside this log, with its file; none where there is no
+    /// such file, or another program's.
+    pub(super) fn kept_beside(log: &Path) -> Option<(PathBuf, Self)> {
+        let path = log.with_file_name(KEPT);
+        let map = Self::read(&path).ok().filter(|map| !map.joints.is_empty())?;
+        Some((path, map))
+    }
+
     /// Reads a mapping from a TOML file.
     ///
     /// ```toml
@@ -159,15 +170,10 @@ impl ColumnMap {
 
     /// The mapping as the text of a file, which [`Self::read`] reads.
     pub fn to_toml(&self) -> String {
-        let joint = |joint: &JointColumns| {
-            let JointColumns { name, input, output, input_unit, output_unit, covariates } =
-                joint.clone();
-            let covariates = covariates.into_iter().collect();
-            let (input, output) = (Some(input), Some(output));
-            let estimate = BTreeMap::new();
-            (name, MapJoint { input, output, input_unit, output_unit, covariates, estimate })
-        };
-        let mut joints: BTreeMap<String, MapJoint> = self.joints.iter().map(joint).collect();
+        let mut joints: BTreeMap<String, MapJoint> = BTreeMap::new();
+        for joint in &self.joints {
+            joints.insert(joint.name.clone(), joint.into());
+        }
         for (name, settings) in &self.estimate {
             let settings = settings.iter().map(|(name, text)| (name.clone(), text.clone().into()));
             joints.entry(name.clone()).or_default().estimate = settings.collect();
@@ -216,9 +222,18 @@ struct MapJoint {
 impl MapJoint {
     /// Whether it says nothing of columns, which then have native names.
     fn is_native(&self) -> bool {
-        let Self { input, output, input_unit, output_unit, covariates, estimate: _ } = self;
-        let named = [input, output, input_unit, output_unit];
-        covariates.is_empty() && named.into_iter().all(Option::is_none)
+        let named = [&self.input, &self.output, &self.input_unit, &self.output_unit];
+        self.covariates.is_empty() && named.into_iter().all(Option::is_none)
+    }
+}
+
+impl From<&JointColumns> for MapJoint {
+    fn from(joint: &JointColumns) -> Self {
+        let JointColumns { name: _, input, output, input_unit, output_unit, covariates } =
+            joint.clone();
+        let covariates = covariates.into_iter().collect();
+        let (input, output) = (Some(input), Some(output));
+        Self { input, output, input_unit, output_unit, covariates, estimate: BTreeMap::new() }
     }
 }
 

@@ -299,8 +299,8 @@ pub enum ReadError {
         /// The names that are there.
         available: String,
         /// What names and data suggest, though not for sure: the column of the time, and the name, the
-        /// input and the output of each joint.
-        likely: Box<(Option<String>, Vec<[String; 3]>)>,
+        /// input and the output of each joint, the likeliest of several mappings first.
+        likely: Box<(Option<String>, Vec<Vec<[String; 3]>>)>,
     },
     /// A joint that was asked for is not in the log.
     #[error(

@@ -7,9 +7,9 @@ use sha2::{Digest as _, Sha256};
 
 use super::error::ReadError;
 use super::joint::Joint;
+use super::layout::unknown_joint;
 use super::log::Log;
 use super::memory::Budget;
-use super::names::{listed, nearest_name};
 use super::read::{Experiment, Failure, ReadOptions, laid_out, laid_out_by_names};
 use super::source::{Source, hashed};
 use super::survey::Survey;
@@ -112,13 +112,7 @@ impl Experiment {
         experiment.sources.push(source(Path::new(name), &joints));
         let names: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();
         for wanted in options.joints.iter().filter(|wanted| !names.contains(wanted)) {
-            let known = || names.iter().map(String::as_str);
-            let error = ReadError::UnknownJoint {
-                path: PathBuf::from(name),
-                joint: wanted.clone(),
-                nearest: nearest_name(wanted, known()).map(str::to_owned),
-                available: listed(known().collect::<Vec<_>>().into_iter()),
-            };
+            let error = unknown_joint(Path::new(name), wanted, &names);
             experiment.failures.push(Failure { joint: Some(wanted.clone()), error });
         }
         let is_kept =
@@ -195,22 +189,14 @@ fn survey(head: &Head, log: &HandedLog) -> Survey {
 
 /// How many rows there are.
 fn same_length(head: &Head, log: &HandedLog) -> Result<usize, ReadError> {
-    let path = || head.path.clone();
-    let Some(first) = log.columns.first() else { return Err(ReadError::Empty { path: path() }) };
-    let expected = first.values.len();
+    let path = head.path.clone();
+    let Some(first) = log.columns.first() else { return Err(ReadError::Empty { path }) };
+    let (other, expected) = (first.name.clone(), first.values.len());
     if let Some(odd) = log.columns.iter().find(|column| column.values.len() != expected) {
-        return Err(ReadError::UnequalColumns {
-            path: path(),
-            column: odd.name.clone(),
-            found: odd.values.len(),
-            other: first.name.clone(),
-            expected,
-        });
+        let (column, found) = (odd.name.clone(), odd.values.len());
+        return Err(ReadError::UnequalColumns { path, column, found, other, expected });
     }
-    if expected == 0 {
-        return Err(ReadError::HeaderOnly { path: path() });
-    }
-    Ok(expected)
+    if expected == 0 { Err(ReadError::HeaderOnly { path }) } else { Ok(expected) }
 }
 
 fn source_of(head: &Head, log: &HandedLog) -> Source {

@@ -142,20 +142,16 @@ impl Layout {
         }
         let names: Vec<String> = self.joints.iter().map(|joint| joint.name.clone()).collect();
         let is_wanted = |joint: &JointLayout| wanted.contains(&joint.name);
-        let (kept, others) = std::mem::take(&mut self.joints).into_iter().partition(is_wanted);
-        (self.joints, self.others) = (kept, others);
+        (self.joints, self.others) =
+            std::mem::take(&mut self.joints).into_iter().partition(is_wanted);
         self.incomplete.retain(|(name, _)| wanted.contains(name));
-        let incomplete = &self.incomplete;
-        let known = |name: &String| {
-            names.contains(name) || incomplete.iter().any(|(incomplete, _)| incomplete == name)
-        };
-        let error = |name: &String| ReadError::UnknownJoint {
-            path: path.to_owned(),
-            joint: name.clone(),
-            nearest: nearest_name(name, names.iter().map(String::as_str)).map(str::to_owned),
-            available: listed(names.iter().map(String::as_str)),
-        };
-        wanted.iter().filter(|name| !known(name)).map(|name| (name.clone(), error(name))).collect()
+        let mut unknown = Vec::new();
+        for joint in wanted {
+            if !names.contains(joint) && self.incomplete.iter().all(|(name, _)| name != joint) {
+                unknown.push((joint.clone(), unknown_joint(path, joint, &names)));
+            }
+        }
+        unknown
     }
 
     /// Takes out the joints of which a column has other `rows` than the times, or than the first joint where
@@ -165,9 +161,6 @@ impl Layout {
         head: &Head,
         rows: impl Fn(usize) -> Option<usize>,
     ) -> Vec<(String, ReadError)> {
-        let name = |column: usize| {
-            head.headers.get(column).map_or_else(String::new, |header| header.text.clone())
-        };
         let of_joints = self.joints.iter().flat_map(JointLayout::columns);
         let columns: Vec<usize> = self.time_column().into_iter().chain(of_joints).collect();
         let known = |column: &usize| Some((*column, rows(*column)?));
@@ -185,7 +178,7 @@ impl Layout {
         let error = |joint: JointLayout| {
             let column = unequal(&joint)?;
             let found = rows(column)?;
-            let (path, other, column) = (head.path.clone(), name(other), name(column));
+            let (path, other, column) = (head.path.clone(), head.text(other), head.text(column));
             Some((joint.name, ReadError::UnequalColumns { path, column, found, other, expected }))
         };
         short.into_iter().filter_map(error).collect()
@@ -196,10 +189,8 @@ impl Layout {
         let mut columns: Vec<usize> = self.time_column().into_iter().collect();
         columns.extend(&self.time_again);
         columns.extend(self.time_rest.map(|(column, _)| column));
-        for joint in self.joints.iter().chain(&self.others) {
-            columns.extend([joint.input.column, joint.output.column]);
-            columns.extend(joint.covariates.iter().map(|covariate| covariate.column));
-        }
+        let joints = self.joints.iter().chain(&self.others);
+        columns.extend(joints.flat_map(JointLayout::columns));
         columns.sort_unstable();
         columns.dedup();
         columns
@@ -258,6 +249,17 @@ impl Layout {
     }
 }
 
+/// That a joint is not among those of these `names`.
+pub(super) fn unknown_joint(path: &Path, joint: &str, names: &[String]) -> ReadError {
+    let names = || names.iter().map(String::as_str);
+    ReadError::UnknownJoint {
+        path: path.to_owned(),
+        joint: joint.to_owned(),
+        nearest: nearest_name(joint, names()).map(str::to_owned),
+        available: listed(names()),
+    }
+}
+
 /// Joint and signal of a native column: `boom.output` is `("boom", "output")`.
 fn native_name(header: &Header) -> Option<(&str, &str)> {
     header.name.rsplit_once('.').filter(|(joint, signal)| !joint.is_empty() && !signal.is_empty())
@@ -283,8 +285,8 @@ fn mapped_joint(columns: &Columns<'_>, joint: &JointColumns) -> Result<JointLayo
     let output = signal_column(columns, &joint.output, "output", joint.output_unit.as_ref())?;
     if input.column == output.column {
         let (path, joint) = (columns.head.path.clone(), joint.name.clone());
-        let column = columns.head.headers.get(input.column).map(|header| header.text.clone());
-        return Err(ReadError::OneColumn { path, joint, column: column.unwrap_or_default() });
+        let column = columns.head.text(input.column);
+        return Err(ReadError::OneColumn { path, joint, column });
     }
     Ok(JointLayout {
         name: joint.name.clone(),
@@ -318,21 +320,13 @@ fn find_time(
     let head = columns.head;
     if let Some(name) = &map.time {
         // Of several of a name each must say the same.
-        let find = |name: &str| match columns.find(name) {
-            Err(ReadError::DuplicateColumn { .. }) => {
-                let is_it = |header: &Header| header.text == name || header.name == name;
-                let first = head.headers.iter().position(is_it);
-                first.map_or_else(|| columns.find(name), Ok)
-            }
-            found => found,
-        };
+        if let Some(column) = columns.first(name) {
+            return times(head, column, None);
+        }
         // `t [ms]` says the unit of a column `t`.
-        return match (find(name), unit::parted(name)) {
-            (Err(_), (name, Some(unit))) if find(name).is_ok() => {
-                find(name).and_then(|column| times(head, column, Some(&unit)))
-            }
-            (found, _) => found.and_then(|column| times(head, column, None)),
-        };
+        let (bare, unit) = unit::parted(name);
+        let column = columns.first(bare).map_or_else(|| columns.find(name), Ok)?;
+        return times(head, column, unit.as_deref());
     }
     // A period that was asked for stands above a time column: the user knows why.
     match (period, find_any(head, &[SAMPLE_NAME])) {
@@ -366,36 +360,50 @@ const MOST_COMPARED: usize = 1000;
 /// The columns of a log by their names: logs may have very many.
 struct Columns<'a> {
     head: &'a Head,
-    by_text: HashMap<&'a str, Named>,
     by_name: HashMap<&'a str, Named>,
-    /// By their names without the units that these end in.
-    by_bare_name: HashMap<&'a str, Named>,
 }
 
 /// The columns that share a name.
 #[derive(Clone, Copy)]
 enum Named {
     One(usize),
-    Several,
+    /// Several, and the first of them.
+    Several(usize),
+}
+
+impl Named {
+    fn first(self) -> usize {
+        match self {
+            Self::One(index) | Self::Several(index) => index,
+        }
+    }
 }
 
 impl<'a> Columns<'a> {
     fn of(head: &'a Head) -> Self {
-        let named = |of: fn(&Header) -> Option<&str>| {
-            let mut columns = HashMap::new();
+        let mut by_name = HashMap::new();
+        // A whole header stands above a name, and this above one without the unit at its end.
+        let kinds: [fn(&Header) -> Option<&str>; 3] = [
+            |header| unit::without(&header.name),
+            |header| Some(&header.name),
+            |header| Some(&header.text),
+        ];
+        for name in kinds {
+            let mut named = HashMap::new();
             for (index, header) in head.headers.iter().enumerate() {
-                let Some(name) = of(header) else { continue };
-                let several = |named: &mut Named| *named = Named::Several;
-                columns.entry(name).and_modify(several).or_insert(Named::One(index));
+                let several = |named: &mut Named| *named = Named::Several(named.first());
+                if let Some(name) = name(header) {
+                    named.entry(name).and_modify(several).or_insert(Named::One(index));
+                }
             }
-            columns
-        };
-        Self {
-            head,
-            by_text: named(|header| Some(&header.text)),
-            by_name: named(|header| Some(&header.name)),
-            by_bare_name: named(|header| unit::without(&header.name)),
+            by_name.extend(named);
         }
+        Self { head, by_name }
+    }
+
+    /// The first column of this name.
+    fn first(&self, wanted: &str) -> Option<usize> {
+        self.by_name.get(wanted).map(|named| named.first())
     }
 
     /// The column whose whole header is `wanted`, else the one whose name it is, else the one
@@ -403,10 +411,9 @@ impl<'a> Columns<'a> {
     fn find(&self, wanted: &str) -> Result<usize, ReadError> {
         let head = self.head;
         let (path, row, column) = (head.path.clone(), head.header_row, wanted.to_owned());
-        let named = self.by_text.get(wanted).or_else(|| self.by_name.get(wanted));
-        match named.or_else(|| self.by_bare_name.get(wanted)) {
+        match self.by_name.get(wanted) {
             Some(Named::One(index)) => Ok(*index),
-            Some(Named::Several) => Err(ReadError::DuplicateColumn { path, row, column }),
+            Some(Named::Several(_)) => Err(ReadError::DuplicateColumn { path, row, column }),
             None => {
                 let few = Some(&head.headers).filter(|headers| headers.len() <= MOST_COMPARED);
                 let names = few.into_iter().flatten().map(|header| header.name.as_str());

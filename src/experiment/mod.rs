@@ -37,6 +37,7 @@ mod unit;
 
 pub use activity::{Other, Supply};
 pub(crate) use bounded::{read_result, read_sheet, read_text};
+pub(crate) use columns::KEPT;
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
 pub(crate) use conditions::are_opposites;
 pub use conditions::conditions;

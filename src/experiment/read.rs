@@ -262,10 +262,13 @@ fn read_log(
     let open = || format::open(path, budget.rest());
     let table = open()?;
     let (mut layout, mut found) = match laid_out(&table.head, options) {
-        Err(ReadError::NoJoints { .. }) => {
-            let survey = Survey::of(path, options.memory)?;
-            laid_out_by_names(&table.head, &survey, options)?
-        }
+        Err(ReadError::NoJoints { .. }) => match ColumnMap::kept_beside(path) {
+            Some((file, kept)) => laid_out_as_kept(&table.head, &file, kept, options)?,
+            None => {
+                let survey = Survey::of(path, options.memory)?;
+                laid_out_by_names(&table.head, &survey, options)?
+            }
+        },
         found => found?,
     };
     let unequal = layout.without_unequal(&table.head, |column| table.rows.rows_of(column));
@@ -339,6 +342,34 @@ fn note_on_further_joint(head: &Head, layout: &Layout) -> Option<String> {
     ))
 }
 
+/// What every column means as the mapping `kept` in `file` beside the log says.
+fn laid_out_as_kept(
+    head: &Head,
+    file: &Path,
+    kept: ColumnMap,
+    options: &ReadOptions,
+) -> Result<(Layout, Experiment), ReadError> {
+    let given = &options.columns;
+    let period = given.sample_period_s.or(kept.sample_period_s);
+    let time = kept.time.filter(|_| given.sample_period_s.is_none());
+    let columns = ColumnMap {
+        time: given.time.clone().or(time),
+        trial: given.trial.clone().or(kept.trial),
+        sample_period_s: period,
+        joints: kept.joints,
+        estimate: given.estimate.clone(),
+    };
+    let (layout, mut found) = laid_out(head, &ReadOptions { columns, ..options.clone() })?;
+    let settings = if kept.estimate.is_empty() {
+        ""
+    } else {
+        "; `--columns` with this file takes the settings of its joints, too"
+    };
+    let (log, file) = (head.path.display(), file.display());
+    found.notes.push(format!("{log}: its columns are those that `{file}` names{settings}"));
+    Ok((layout, found))
+}
+
 /// What every column means in a log without native names, where `survey` is sure of it.
 pub(super) fn laid_out_by_names(
     head: &Head,
@@ -351,7 +382,7 @@ pub(super) fn laid_out_by_names(
     }
     let suggested = |error| match error {
         ReadError::NoJoints { path, row, available, .. } => {
-            let likely = Box::new((survey.map.time.clone(), survey.map.named_joints()));
+            let likely = Box::new((survey.map.time.clone(), survey.named_joints()));
             ReadError::NoJoints { path, row, available, likely }
         }
         error => error,

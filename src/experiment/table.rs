@@ -72,6 +72,11 @@ impl Head {
         })
     }
 
+    /// A column's header as it stands in the file.
+    pub(super) fn text(&self, column: usize) -> String {
+        self.headers.get(column).map_or_else(String::new, |header| header.text.clone())
+    }
+
     /// The names of all columns, for messages.
     pub(super) fn names(&self) -> String {
         let names = listed(self.headers.iter().map(|header| header.text.as_str()));

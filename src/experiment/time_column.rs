@@ -9,60 +9,19 @@ use crate::units::SamplePeriod;
 const TIME_NAMES: [&str; 3] = ["time_s", "t_s", "time"];
 
 /// Further names of a column of times, in lower case, without the unit they may end in.
-const FURTHER_TIME_NAMES: [&str; 49] = [
-    "time",
-    "t",
-    "timestamp",
-    "time_stamp",
-    "time stamp",
-    "stamp",
-    "ts",
-    "elapsed",
-    "elapsed_time",
-    "elapsed time",
-    "datetime",
-    "date_time",
-    "date time",
-    "date&time",
-    "seconds",
-    "sec",
-    "millis",
-    "micros",
-    "epoch",
-    "unix",
-    "unix_time",
-    "unixtime",
-    "time_unix",
-    "unix timestamp",
-    "unix_timestamp",
-    "posix",
-    "posix_time",
-    "utc",
-    "clock",
-    "tick",
-    "log_time",
-    "recorded_at",
-    "__time",
-    "%time",
-    "rosbagtimestamp",
-    "zeit",
-    "uhrzeit",
-    "zeitstempel",
-    "temps",
-    "tiempo",
-    "tempo",
-    "tid",
-    "aika",
-    "czas",
-    "čas",
-    "時間",
-    "时间",
-    "время",
-    "x_value",
-];
+const FURTHER_TIME_NAMES: &str = "time|t|timestamp|time_stamp|time stamp|stamp|ts|\
+    elapsed|elapsed_time|elapsed time|datetime|date_time|date time|date&time|\
+    seconds|sec|millis|micros|epoch|unix|unix_time|unixtime|time_unix|unix timestamp|unix_timestamp|\
+    posix|posix_time|utc|clock|tick|log_time|recorded_at|__time|%time|rosbagtimestamp|\
+    zeit|uhrzeit|zeitstempel|temps|tiempo|tempo|tid|aika|czas|čas|時間|时间|время|x_value";
 
 /// Those of them that are units themselves.
 const TIME_UNIT_NAMES: [&str; 4] = ["seconds", "sec", "millis", "micros"];
+
+/// The place of a name, in lower case and without a unit, among those of times.
+fn known_place(name: &str) -> Option<usize> {
+    FURTHER_TIME_NAMES.split('|').position(|known| known == without_unit(name))
+}
 
 /// Where the time of a row comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,13 +76,9 @@ pub(super) fn times(
 
 /// The column that a name such as `timestamp`, `t_us` or `elapsed` says holds the time.
 pub(super) fn find_time_column(head: &Head) -> Option<usize> {
-    let base = |header: &Header| {
-        let name = header.name.to_lowercase();
-        let known = |bare: &str| FURTHER_TIME_NAMES.iter().position(|known| *known == bare);
-        known(without_unit(&name)).filter(|_| header.name != "T")
-    };
-    let named = head.headers.iter().enumerate();
-    let named = named.filter_map(|(column, header)| Some((base(header)?, column)));
+    let place = |header: &Header| known_place(&header.name.to_lowercase());
+    let columns = head.headers.iter().enumerate().filter(|(_, header)| header.name != "T");
+    let named = columns.filter_map(|(column, header)| Some((place(header)?, column)));
     // `T` is a temperature, too.
     let is_t = |header: &Header| header.name == "t";
     find_any(head, &TIME_NAMES)
@@ -135,19 +90,14 @@ pub(super) fn find_time_column(head: &Head) -> Option<usize> {
 /// The column of what the whole seconds in `column` leave over, where a stamp is written in two, as those of
 /// ROS are (`sec`, `nanosec`), and its unit in seconds.
 pub(super) fn rest_of_times(head: &Head, column: usize) -> Option<(usize, f64)> {
-    const PARTS: [(&str, &str, f64); 6] = [
-        ("sec", "nanosec", 1e-9),
-        ("secs", "nsecs", 1e-9),
-        ("sec", "nsec", 1e-9),
-        ("seconds", "nanoseconds", 1e-9),
-        ("sec", "usec", 1e-6),
-        ("seconds", "microseconds", 1e-6),
-    ];
+    const WHOLE: [&str; 3] = ["seconds", "secs", "sec"];
     let name = head.headers.get(column)?.text.to_lowercase();
-    PARTS.iter().find_map(|(whole, part, unit_s)| {
-        let rest = format!("{}{part}", name.strip_suffix(whole)?);
-        let is_it = |header: &Header| header.text.to_lowercase() == rest;
-        Some((head.headers.iter().position(is_it)?, *unit_s))
+    let before = WHOLE.iter().find_map(|whole| name.strip_suffix(whole))?;
+    let mut headers = head.headers.iter().enumerate();
+    headers.find_map(|(place, header)| {
+        let text = header.text.to_lowercase();
+        let rest = text.strip_prefix(before).filter(|rest| rest.contains("sec"))?;
+        unit::time_in(rest).filter(|unit_s| *unit_s < 1e-3).map(|unit_s| (place, unit_s))
     })
 }
 
@@ -164,23 +114,20 @@ pub(super) fn note_on_times(head: &Head, column: usize, uses: &[usize]) -> Optio
         header.text != *text
             && !uses.contains(other)
             && rest != Some(*other)
-            && (is_like_a_time(header)
-                || is_time_of_another(head, header)
-                || header.name.is_empty() && is_within)
+            && (is_like_a_time(head, header) || header.name.is_empty() && is_within)
     });
-    let names: Vec<String> = others.map(|(other, header)| named(other, header)).collect();
+    let mut names: Vec<String> = others.map(|(other, header)| named(other, header)).collect();
     let header = head.headers.get(column)?;
-    let used = named(column, header);
-    let more = if names.len() > MOST { ", …" } else { "" };
-    match names.as_slice() {
-        [] if header.name == "T" => Some(format!("the times are those in {used}")),
-        [] => None,
-        [other] => Some(format!("the times are those in {used}; {other} is not used")),
-        others => {
-            let names = others.get(..MOST).unwrap_or(others).join(", ");
-            Some(format!("the times are those in {used}; {names}{more} are not used"))
-        }
+    let used = format!("the times are those in {}", named(column, header));
+    let are = if names.len() == 1 { "is" } else { "are" };
+    if names.len() > MOST {
+        names.truncate(MOST);
+        names.push("…".to_owned());
     }
+    if names.is_empty() {
+        return (header.name == "T").then_some(used);
+    }
+    Some(format!("{used}; {} {are} not used", names.join(", ")))
 }
 
 /// A column as a note calls it.
@@ -191,45 +138,35 @@ fn named(column: usize, header: &Header) -> String {
     }
 }
 
-/// Whether a name is that of a time and of something else, as of a signal that has a clock of its own:
-/// `time_y`, `stamp_out`, `Time(1)`; `t_y` beside a signal `y`, as `t_oil` is a temperature.
-fn is_time_of_another(head: &Head, header: &Header) -> bool {
+/// Whether a name is one of a time, also with a number behind it or that of a joint before it; or of a time and
+/// of something else, as of a signal that has a clock of its own: `time_y`, `stamp_out`, `Time(1)`; `t_y` beside
+/// a signal `y`, as `t_oil` is a temperature.
+fn is_like_a_time(head: &Head, header: &Header) -> bool {
     const TIMES: [&str; 6] = ["time", "times", "timestamp", "stamp", "zeit", "temps"];
     const SIGNALS: [&str; 6] = ["in", "out", "input", "output", "u", "y"];
-    let name = unit::parted(&header.text).0.to_lowercase();
-    // Clocks of messages have names that say so.
-    if name.contains(['.', '/']) || name == "publish_time" {
+    let name = header.name.to_lowercase();
+    let is_other = header.unit.as_deref().is_some_and(|unit| !unit::is_time(unit));
+    // Messages and their parts have stamps of their own.
+    let is_stamp = name.starts_with('/') || name.contains("header.stamp") || name == "publish_time";
+    if header.name == "T" || is_other || is_stamp {
         return false;
+    }
+    let bare = name.trim_end_matches(|c: char| c.is_ascii_digit() || " _.#".contains(c));
+    let bare = unit::parted(bare).0;
+    // `t1` is a temperature.
+    let numbered = Some(bare).filter(|bare| bare.len() > 1);
+    let last = name.rsplit('.').next();
+    if [Some(&*name), numbered, last].into_iter().flatten().any(|n| known_place(n).is_some()) {
+        return true;
     }
     let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).collect();
     let is_signal = |word: &&str| {
         let of = |other: &Header| other.name.eq_ignore_ascii_case(word);
         SIGNALS.contains(word) || word.len() > 1 && head.headers.iter().any(of)
     };
-    words.iter().any(|word| TIMES.contains(word))
-        || words.contains(&"t") && words.iter().any(is_signal)
-}
-
-/// Whether a name is one of a time, also with a number behind it or that of a joint before it.
-fn is_like_a_time(header: &Header) -> bool {
-    if header.name == "T" || header.unit.as_deref().is_some_and(|unit| !unit::is_time(unit)) {
-        return false;
-    }
-    let name = header.name.to_lowercase();
-    // Parts of messages have stamps of their own.
-    if name.starts_with('/') || name.contains("header.stamp") {
-        return false;
-    }
-    let is_known = |name: &str| FURTHER_TIME_NAMES.contains(&without_unit(name));
-    let text = header.text.to_lowercase();
-    let numbered = |text: &str| {
-        let bare = text.trim_end_matches(|c: char| c.is_ascii_digit() || " _.#".contains(c));
-        is_known(unit::parted(bare).0)
-    };
-    is_known(&name)
-        || numbered(&name)
-        || numbered(&text)
-        || name.rsplit_once('.').is_some_and(|(_, last)| is_known(last))
+    let is_time = words.iter().any(|word| TIMES.contains(word));
+    let is_t_of_signal = || words.contains(&"t") && words.iter().any(is_signal);
+    !name.contains(['.', '/']) && (is_time || is_t_of_signal())
 }
 
 /// A name in lower case without the unit of time that it ends in.

@@ -1,100 +1,42 @@
 //! Units in the names of columns: `boom.output [deg]`, `angle (rad)`, `u_duty_pct`, `t_ms`.
 
 /// How units are written in names, and how they are shown.
-const UNITS: [(&str, &str); 55] = [
-    ("deg", "deg"),
-    ("degrees", "deg"),
-    ("°", "°"),
-    ("rad", "rad"),
-    ("mrad", "mrad"),
-    ("pct", "%"),
-    ("percent", "%"),
-    ("%", "%"),
-    ("mm", "mm"),
-    ("cm", "cm"),
-    ("m", "m"),
-    ("um", "µm"),
-    ("V", "V"),
-    ("volt", "V"),
-    ("mV", "mV"),
-    ("A", "A"),
-    ("mA", "mA"),
-    ("bar", "bar"),
-    ("mbar", "mbar"),
-    ("Pa", "Pa"),
-    ("kPa", "kPa"),
-    ("MPa", "MPa"),
-    ("psi", "psi"),
-    ("N", "N"),
-    ("kN", "kN"),
-    ("Nm", "N·m"),
-    ("kg", "kg"),
-    ("rpm", "rpm"),
-    ("Hz", "Hz"),
-    ("W", "W"),
-    ("kW", "kW"),
-    ("degC", "°C"),
-    ("°C", "°C"),
-    ("ms", "ms"),
-    ("us", "µs"),
-    ("ns", "ns"),
-    ("deg_s", "deg/s"),
-    ("deg/s", "deg/s"),
-    ("rad_s", "rad/s"),
-    ("rad/s", "rad/s"),
-    ("m_s", "m/s"),
-    ("m/s", "m/s"),
-    ("mm_s", "mm/s"),
-    ("mm/s", "mm/s"),
-    ("cm_s", "cm/s"),
-    ("inch", "in"),
-    ("K", "K"),
-    ("lpm", "l/min"),
-    ("l_min", "l/min"),
-    ("l/min", "l/min"),
-    ("L/min", "l/min"),
-    ("cnt", "counts"),
-    ("cnts", "counts"),
-    ("counts", "counts"),
-    ("ticks", "ticks"),
-];
+const UNITS: &str = "deg=deg degrees=deg °=° rad=rad mrad=mrad pct=% percent=% %=% \
+    mm=mm cm=cm m=m um=µm inch=in V=V volt=V mV=mV A=A mA=mA \
+    bar=bar mbar=mbar Pa=Pa kPa=kPa MPa=MPa psi=psi N=N kN=kN Nm=N·m kg=kg \
+    rpm=rpm Hz=Hz W=W kW=kW degC=°C °C=°C K=K ms=ms us=µs ns=ns \
+    deg_s=deg/s deg/s=deg/s rad_s=rad/s rad/s=rad/s \
+    m_s=m/s m/s=m/s mm_s=mm/s mm/s=mm/s cm_s=cm/s \
+    lpm=l/min l_min=l/min l/min=l/min L/min=l/min cnt=counts cnts=counts counts=counts ticks=ticks";
 
 /// Units of time: names of which each is a unit by itself or ends the name of a column, further words
 /// for it in lower case, and its seconds.
-const TIMES: [(&[&str], &[&str], f64); 7] = [
+const TIMES: [(&str, &str, f64); 7] = [
+    ("s sec secs second seconds", "sekunde sekunden seconde secondes", 1.0),
     (
-        &["s", "sec", "secs", "second", "seconds"],
-        &["sekunde", "sekunden", "seconde", "secondes"],
-        1.0,
-    ),
-    (
-        &["ms", "msec", "millis", "milliseconds"],
-        &[
-            "msecs",
-            "millisecond",
-            "millisekunde",
-            "millisekunden",
-            "milliseconde",
-            "millisecondes",
-            "milisegundos",
-            "millisecondi",
-        ],
+        "ms msec millis milliseconds",
+        "msecs millisecond millisekunde millisekunden milliseconde millisecondes milisegundos millisecondi",
         1e-3,
     ),
     (
-        &["us", "µs", "μs", "usec", "micros", "microseconds"],
-        &["usecs", "microsecond", "mikrosekunden", "microsecondes"],
+        "us µs μs usec micros microseconds",
+        "usecs microsec microsecond mikrosekunden microsecondes",
         1e-6,
     ),
-    (
-        &["ns", "nsec", "nanos", "nanoseconds"],
-        &["nsecs", "nanosecond", "nanosekunden", "nanosecondes"],
-        1e-9,
-    ),
-    (&["min", "minutes"], &["mins", "minute", "minuten", "minutos", "minuti"], 60.0),
-    (&["h", "hours"], &["hr", "hrs", "hour", "stunde", "stunden", "heure", "heures"], 3600.0),
-    (&[], &["d", "day", "days", "tag", "tage", "jour", "jours"], 86_400.0),
+    ("ns nsec nanos nanoseconds", "nsecs nanosec nanosecond nanosekunden nanosecondes", 1e-9),
+    ("min minutes", "mins minute minuten minutos minuti", 60.0),
+    ("h hours", "hr hrs hour stunde stunden heure heures", 3600.0),
+    ("", "d day days tag tage jour jours", 86_400.0),
 ];
+
+fn is_in(words: &str, word: &str) -> bool {
+    words.split_whitespace().any(|known| known == word)
+}
+
+/// The units as they are written and as they are shown.
+fn units() -> impl Iterator<Item = (&'static str, &'static str)> {
+    UNITS.split_whitespace().filter_map(|unit| unit.split_once('='))
+}
 
 /// The seconds of the one unit of time that `text` names, as `Time in ms`, `Millisekunden` or `10 ms`;
 /// none where it names none or several.
@@ -106,13 +48,11 @@ pub(super) fn time_in(text: &str) -> Option<f64> {
         return with_factor(lower);
     }
     let words = lower.split(|letter: char| !letter.is_alphabetic());
-    let of = |word: &str| {
-        let is_it = |(names, words, _): &&(&[&str], &[&str], f64)| {
-            names.contains(&word) || words.contains(&word)
-        };
-        TIMES.iter().find(is_it).map(|(_, _, seconds)| *seconds)
-    };
-    let mut found = words.filter_map(of);
+    let mut found = words.filter_map(|word| {
+        let mut times = TIMES.iter();
+        let time = times.find(|(names, words, _)| is_in(names, word) || is_in(words, word));
+        time.map(|(_, _, seconds)| *seconds)
+    });
     let first = found.next()?;
     #[expect(clippy::float_cmp, reason = "each stands in the list above")]
     found.all(|other| other == first).then_some(first)
@@ -160,13 +100,14 @@ pub(super) fn is_unit(text: &str) -> bool {
     shown(text).is_some() || seconds_of(text).is_some()
 }
 
-fn shown(text: &str) -> Option<&'static str> {
-    UNITS.iter().find(|(written, _)| *written == text).map(|(_, shown)| *shown)
+/// How a unit is shown.
+pub(super) fn shown(text: &str) -> Option<&'static str> {
+    units().find(|(written, _)| *written == text).map(|(_, shown)| shown)
 }
 
 /// The seconds of a unit of time.
 pub(super) fn seconds_of(unit: &str) -> Option<f64> {
-    TIMES.iter().find(|(names, ..)| names.contains(&unit)).map(|(_, _, seconds)| *seconds)
+    TIMES.iter().find(|(names, ..)| is_in(names, unit)).map(|(_, _, seconds)| *seconds)
 }
 
 /// Name and unit of a header: a unit in square brackets is any text, one in round brackets or behind a
@@ -176,7 +117,11 @@ pub(super) fn parted(text: &str) -> (&str, Option<String>) {
         let (name, unit) = text.strip_suffix(close)?.rsplit_once(open)?;
         Some((name.trim(), unit.trim()))
     };
-    if let Some((name, unit)) = split('[', ']') {
+    // `x[0]` is an element, and `x [1]` has no dimension.
+    let is_index = text.split_once('[').is_some_and(|(name, index)| {
+        !name.ends_with(' ') && index.trim_end_matches(']').bytes().all(|b| b.is_ascii_digit())
+    });
+    if let Some((name, unit)) = split('[', ']').filter(|_| !is_index) {
         return (name, Some(unit.to_owned()));
     }
     let is_known = |unit: &str| is_unit(unit) || seconds_of(&unit.to_lowercase()).is_some();
@@ -207,14 +152,18 @@ pub(super) fn of_native(name: &str) -> Option<(&str, String)> {
 
 /// A name in two: before the unit at its end, and the unit.
 fn ended(name: &str) -> Option<(&str, &'static str)> {
-    let units = UNITS.iter().filter_map(|(written, unit)| {
+    let mut found: Option<(&str, &'static str)> = None;
+    for (written, unit) in units() {
         let per = written.strip_suffix("_s").map(|unit| format!("{unit}_per_s"));
-        let written = Some((*written).to_owned()).into_iter().chain(per);
-        let rest = |text: String| Some((name.strip_suffix(&text)?.strip_suffix('_')?, *unit));
-        written.into_iter().find_map(rest)
-    });
-    // Of `v_deg_s` the unit is no `s`, and of `v_m_s` no `m_s` less.
-    units.filter(|(rest, _)| !rest.is_empty()).min_by_key(|(rest, _)| rest.len())
+        for text in std::iter::once(written).chain(per.as_deref()) {
+            let rest = name.strip_suffix(text).and_then(|rest| rest.strip_suffix('_'));
+            // Of `v_deg_s` the unit is no `s`, and of `v_m_s` no `m_s` less.
+            let is_longer = |rest: &&str| found.is_none_or(|(other, _)| rest.len() < other.len());
+            let rest = rest.filter(|rest| !rest.is_empty()).filter(is_longer);
+            found = rest.map(|rest| (rest, unit)).or(found);
+        }
+    }
+    found
 }
 
 /// The unit of time at the end of a name: `ms` of `t_ms` and `time_ms`.

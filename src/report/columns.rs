@@ -3,21 +3,24 @@
 use super::text_table::TextTable;
 use crate::experiment::{Role, Survey, SurveyedColumn};
 
-/// A row per column: what it is taken for and why; what is open; the mapping as `options`, where there are
-/// some; and what is `mended` in the log.
-pub(crate) fn columns_table(survey: &Survey, options: &str, mended: &[String]) -> String {
+/// A row per column: what it is taken for and why; what is open; as `options` the mapping, then those that
+/// could be meant as well; and what is `mended` in the log.
+pub(crate) fn columns_table(survey: &Survey, options: &[String], mended: &[String]) -> String {
     let mut table = TextTable::new(["column", "taken for", "unit", "why"], &[]);
     for column in &survey.columns {
         let unit = column.unit.clone().unwrap_or_default();
         table.row([column.name.clone(), role(column), unit, column.why.clone()]);
     }
     let mut text = format!("{table}\n");
-    let open = survey.open.iter().cloned();
-    let options = (!options.is_empty()).then(|| format!("as options: {options}"));
-    let mended = mended.iter().map(|what| format!("where it is read: {what}"));
-    for line in open.chain(options).chain(mended) {
-        text += &line;
-        text.push('\n');
+    for line in &survey.open {
+        text += &format!("{line}\n");
+    }
+    for (place, options) in options.iter().enumerate() {
+        let kind = if place == 0 { "as options" } else { "or" };
+        text += &format!("{kind}: {options}\n");
+    }
+    for what in mended {
+        text += &format!("where it is read: {what}\n");
     }
     text
 }

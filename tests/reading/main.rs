@@ -5,6 +5,7 @@
 mod attempts;
 #[cfg(any(feature = "mat", feature = "mcap"))]
 mod bytes;
+mod column_names;
 mod formats;
 mod hostile;
 #[path = "../support/log_text.rs"]

@@ -10,13 +10,14 @@ use crate::cli::args::{MemoryArgs, RunArgs};
 use crate::cli::exit::Completion;
 use crate::cli::output::{check_outputs, write_file};
 use crate::cli::typed::mapping_options;
-use crate::experiment::{ColumnMap, Experiment, MemoryLimit, ReadOptions, Survey};
+use crate::experiment::{ColumnMap, Experiment, KEPT, MemoryLimit, ReadOptions, Survey};
 use crate::report::{ColumnsJson, columns_table};
 
 /// Say what each column of a log is taken for, and why
 ///
 /// Names and data tell which column is the time, which drives a joint, and which follows.
-/// With `-w` the mapping is written as a file for `--columns`, to be corrected by hand. What is mended in
+/// With `-w` the mapping is written as a file for `--columns`, to be corrected by hand; without a name it is
+/// `columns.toml` beside the log, which holds for all logs in this folder from then on. What is mended in
 /// the log where it is read so is said, too.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
@@ -24,9 +25,9 @@ pub(crate) struct Args {
     #[arg(value_name = "LOG")]
     log: PathBuf,
 
-    /// Write the mapping for `--columns`
-    #[arg(short = 'w', long = "write", value_name = "FILE.toml")]
-    write: Option<PathBuf>,
+    /// Write the mapping for `--columns` [default file: `columns.toml` beside the log, which is read unasked]
+    #[arg(short = 'w', long = "write", value_name = "FILE.toml", num_args = 0..=1)]
+    write: Option<Option<PathBuf>>,
 
     #[command(flatten)]
     memory: MemoryArgs,
@@ -38,6 +39,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let survey = Survey::of(&args.log, args.memory.limit())?;
     if let Some(path) = &args.write {
+        let path = &path.clone().unwrap_or_else(|| args.log.with_file_name(KEPT));
         check_outputs(&[path], std::slice::from_ref(&args.log))?;
         let mapping = survey.map.to_toml();
         // A mapping may have been corrected by hand.
@@ -51,13 +53,16 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         write_file(path, |file| Ok(file.write_all(mapping.as_bytes())?))?;
     }
     let map = &survey.map;
-    let options = mapping_options([map.time.as_deref(), map.trial.as_deref()], &map.named_joints());
+    let named = [map.time.as_deref(), map.trial.as_deref()];
+    let mut options = Vec::new();
+    for joints in survey.named_joints() {
+        options.push(mapping_options(named, &joints));
+    }
     let mended = mended(&survey, args.memory.limit());
-    let text = || {
-        let joints = if survey.map.joints.is_empty() { "" } else { options.as_str() };
-        columns_table(&survey, joints, &mended)
-    };
-    args.run.print(text, || ColumnsJson::new(&survey, &options, &mended))?;
+    let text = || columns_table(&survey, &options, &mended);
+    let time_alone = [mapping_options(named, &[])];
+    let of_json = if options.is_empty() { &time_alone[..] } else { &options };
+    args.run.print(text, || ColumnsJson::new(&survey, of_json, &mended))?;
     let told = !survey.map.joints.is_empty();
     Ok(if told { Completion::Whole } else { Completion::Partial })
 }

@@ -1,11 +1,11 @@
 //! Which columns drive and measure which joint.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::signal::Signal;
-use super::words::{INPUT_WORDS, OTHER_WORDS, OUTPUT_WORDS, WANTED_WORDS, rank, words};
+use super::words::{Grade, Name, Side, parts};
 use crate::experiment::table::{Head, Header};
-use crate::experiment::unit;
 
 /// A joint that was found, with the reasons.
 pub(super) struct FoundJoint {
@@ -15,6 +15,8 @@ pub(super) struct FoundJoint {
     pub(super) why: [String; 2],
     /// Whether names say both what drives it and what it does, and nothing else could be meant.
     pub(super) is_sure: bool,
+    /// Inputs and outputs that could be meant as well, where it is not sure.
+    pub(super) instead: Vec<([usize; 2], String)>,
 }
 
 /// A log's columns by their names, and what they hold.
@@ -22,67 +24,73 @@ pub(super) struct Columns<'a> {
     pub(super) head: &'a Head,
     /// The numbers of each column; none of the time, and of what holds no numbers.
     pub(super) signals: &'a [Option<Signal>],
-    /// Words that every column of numbers has, as the name of the machine before each: they say of
-    /// no joint which it is.
-    common: Vec<String>,
+    /// Of each column that may be one of a joint.
+    names: Vec<Option<Name>>,
+    /// These columns.
+    moving: Vec<usize>,
+    /// Words that each of these has, as the name of the machine: they say of no joint which it is.
+    common: BTreeSet<String>,
+}
+
+/// Further columns that are compared with those of a joint.
+const COMPARED: usize = 100;
+
+/// An input and an output.
+pub(super) struct Pair {
+    pub(super) input: usize,
+    pub(super) output: usize,
+    /// What both names say of which joint it is.
+    shared: BTreeSet<String>,
+    /// Whether no other input could be meant.
+    pub(super) is_only: bool,
+}
+
+impl Pair {
+    fn alone(input: usize, output: usize, is_only: bool) -> Self {
+        Self { input, output, shared: BTreeSet::new(), is_only }
+    }
+
+    fn reversed(self) -> Self {
+        Self { input: self.output, output: self.input, ..self }
+    }
 }
 
 impl<'a> Columns<'a> {
+    /// The columns that hold numbers which change.
     pub(super) fn of(head: &'a Head, signals: &'a [Option<Signal>]) -> Self {
-        let columns = head.headers.iter().zip(signals).filter(|(_, signal)| signal.is_some());
-        let mut columns = columns.map(|(header, _)| words(&header.name));
-        let mut common = columns.next().unwrap_or_default();
-        for words in columns {
-            common.retain(|word| words.contains(word));
+        let moves = |signal: &Option<Signal>| signal.as_ref().is_some_and(|s| !s.is_constant());
+        let moving = (0..signals.len()).filter(|column| signals.get(*column).is_some_and(moves));
+        Self::among(head, signals, moving.collect())
+    }
+
+    /// These columns, whatever they hold.
+    pub(super) fn among(head: &'a Head, signals: &'a [Option<Signal>], moving: Vec<usize>) -> Self {
+        let mut names: Vec<Option<Name>> = vec![None; head.headers.len()];
+        for column in &moving {
+            if let (Some(name), Some(header)) = (names.get_mut(*column), head.headers.get(*column))
+            {
+                *name = Some(Name::of(header));
+            }
         }
-        Self { head, signals, common }
+        let mut all = names.iter().flatten();
+        let mut common = all.next().map(Name::parts).unwrap_or_default();
+        for name in all {
+            common = &common & &name.parts();
+        }
+        Self { head, signals, names, moving, common }
     }
 }
 
 impl Columns<'_> {
-    /// The joints: those whose columns have native names, else those whose names say so, else
-    /// the one that the data show.
+    /// The joints: those whose columns have native names, else those that share words which say so, else
+    /// those of outputs that follow one input and no other.
     pub(super) fn joints(&self) -> Vec<FoundJoint> {
         let native = self.native();
         if !native.is_empty() {
             return native;
         }
-        let mut outputs = self.named(&OUTPUT_WORDS);
-        outputs.retain(|column| rank(&self.words(*column), &WANTED_WORDS).is_none());
-        let mut inputs = self.named(&INPUT_WORDS);
-        inputs.retain(|column| !outputs.contains(column));
-        let mut joints = self.by_names(&inputs, &outputs);
-        if joints.is_empty()
-            && let [input] = inputs.as_slice()
-        {
-            let follower = self.follower(*input, &outputs);
-            let is_sure = follower.is_some() || outputs.len() == 1;
-            let is_sure = is_sure && (!self.is_bare(*input) || self.are_the_only(*input, &outputs));
-            let output = follower.or(outputs.first().copied());
-            let joint = |output| FoundJoint { is_sure, ..self.joint(None, *input, output) };
-            joints.extend(output.map(joint));
-        }
-        joints.retain(|joint| !self.is_doubtful(joint));
-        if joints.is_empty() { self.by_data(&outputs).into_iter().collect() } else { joints }
-    }
-
-    /// For each of `joints` the columns that are named like what drives it, too, and are no joint's.
-    pub(super) fn further_inputs(&self, joints: &[FoundJoint]) -> Vec<(String, usize)> {
-        let taken: HashSet<usize> =
-            joints.iter().flat_map(|joint| [joint.input, joint.output]).collect();
-        let mut inputs = self.named(&INPUT_WORDS);
-        inputs.retain(|column| {
-            !taken.contains(column) && self.rank(*column, &OUTPUT_WORDS).is_none()
-        });
-        inputs.sort_unstable();
-        let of_joint = |column: usize| {
-            let words = self.own_words(column);
-            let shares = |joint: &&FoundJoint| {
-                self.own_words(joint.output).iter().any(|word| words.contains(word))
-            };
-            joints.iter().find(shares).map(|joint| (joint.name.clone(), column))
-        };
-        inputs.into_iter().filter_map(of_joint).collect()
+        let named = self.judged(self.by_names());
+        if named.is_empty() { self.judged(self.by_data()) } else { named }
     }
 
     /// Joints whose columns have native names.
@@ -90,196 +98,345 @@ impl Columns<'_> {
         let headers = self.head.headers.iter().enumerate();
         // Of two with one name the first.
         let places: HashMap<&str, usize> =
-            headers.rev().map(|(index, header)| (header.name.as_str(), index)).collect();
-        let place = |name: &str| places.get(name).copied();
+            headers.clone().rev().map(|(place, header)| (header.name.as_str(), place)).collect();
         let joint = |(input, header): (usize, &Header)| {
             let name = header.name.strip_suffix(".input")?.to_owned();
-            let output = place(&format!("{name}.output"))?;
+            let output = *places.get(&*format!("{name}.output"))?;
             let why = ["its name ends in .input", "its name ends in .output"].map(str::to_owned);
-            Some(FoundJoint { name, input, output, why, is_sure: true })
+            Some(FoundJoint { name, input, output, why, is_sure: true, instead: Vec::new() })
         };
-        self.head.headers.iter().enumerate().filter_map(joint).collect()
+        headers.filter_map(joint).collect()
     }
 
-    /// Pairs whose names share the words that say which joint: those that share most first, and
-    /// of these the likeliest. In the order of the file.
-    fn by_names(&self, inputs: &[usize], outputs: &[usize]) -> Vec<FoundJoint> {
-        let Some(mut pairs) = self.sharing(inputs, outputs) else { return Vec::new() };
-        pairs.sort_by_key(|(shared, ..)| std::cmp::Reverse(shared.len()));
-        let (mut joints, mut columns, mut names) = (Vec::new(), HashSet::new(), HashSet::new());
-        for (shared, input, output) in pairs {
-            let name = self.distinguishing(shared).join("_");
-            let is_taken =
-                columns.contains(&input) || columns.contains(&output) || names.contains(&name);
-            if !is_taken {
-                columns.extend([input, output]);
-                names.insert(name.clone());
-                joints.push(self.joint(Some(name), input, output));
+    /// Inputs and outputs by their names that share words of a joint: those that share most first, and of
+    /// these the likeliest. Each column stands in one pair.
+    pub(super) fn by_names(&self) -> Vec<Pair> {
+        let mut inputs: Vec<usize> = self.on(Side::Input).collect();
+        let mut outputs: Vec<usize> = self.on(Side::Output).collect();
+        let is_named = !inputs.is_empty();
+        if !is_named {
+            // Where nothing is named like an input, the speed of a joint may be what is given.
+            let is_speed = |column: &usize| self.name(*column).is_some_and(Name::is_speed);
+            (inputs, outputs) = outputs.into_iter().partition(is_speed);
+        }
+        let pairs = self.sharing(&inputs, &outputs, |name| &name.own - &self.common, is_named);
+        let is_one = inputs.len() == 1 || outputs.len() == 1;
+        if !pairs.is_empty() || !is_one {
+            return pairs;
+        }
+        self.sharing(&inputs, &outputs, |name| name.own.clone(), is_named)
+    }
+
+    /// The pairs of these columns that share words of those which names have as their `own`.
+    fn sharing(
+        &self,
+        inputs: &[usize],
+        outputs: &[usize],
+        own: impl Fn(&Name) -> BTreeSet<String>,
+        is_only: bool,
+    ) -> Vec<Pair> {
+        /// Pairs that are compared: those of a thousand inputs with as many outputs.
+        const MOST: usize = 1_000_000;
+        let own = |column: usize| self.name(column).map(&own).unwrap_or_default();
+        let mut with: HashMap<String, Vec<usize>> = HashMap::new();
+        for output in outputs {
+            for word in own(*output) {
+                with.entry(word).or_default().push(*output);
+            }
+        }
+        let (mut pairs, mut compared) = (Vec::new(), 0);
+        for input in inputs {
+            let words = own(*input);
+            let near: BTreeSet<usize> =
+                words.iter().filter_map(|word| with.get(word)).flatten().copied().collect();
+            compared += near.len();
+            if compared > MOST {
+                return Vec::new();
+            }
+            for output in near {
+                let shared = &words & &own(output);
+                pairs.push(Pair { input: *input, output, shared, is_only });
+            }
+        }
+        pairs.sort_by_key(|pair| {
+            let grades = [pair.input, pair.output].map(|column| self.likelihood(column));
+            (Reverse(pair.shared.len()), grades, pair.input)
+        });
+        each_column_once(pairs)
+    }
+
+    /// The outputs that follow an input, and no other more, of the columns whose names say most; where names
+    /// say nothing, what holds levels drives. Each column stands in one pair.
+    fn by_data(&self) -> Vec<Pair> {
+        /// Pairs that are compared, which takes a second.
+        const MOST: usize = 2_500;
+        let inputs = self.likely_inputs();
+        let outputs = self.best_on(Side::Output, &inputs);
+        if let ([input], [output]) = (&*inputs, &*outputs) {
+            return vec![Pair::alone(*input, *output, true)];
+        }
+        if inputs.len() * outputs.len() > MOST {
+            return Vec::new();
+        }
+        let mut found = Vec::new();
+        for output in outputs {
+            let follows = |input: &usize| Some((self.following(*input, output)?.abs(), *input));
+            let of_inputs: Vec<(f64, usize)> = inputs.iter().filter_map(follows).collect();
+            let most = of_inputs.iter().fold(0.0, |most: f64, (follows, _)| most.max(*follows));
+            let near = of_inputs.into_iter().filter(|(follows, _)| is_alike(*follows, most));
+            found.extend(near.map(|(follows, input)| (follows, input, output)));
+        }
+        // Of a position and its speed, which follow alike, the likelier name stands first.
+        let fifths = |follows: f64| (5.0 * follows).floor();
+        found.sort_by(|(a, input, output), (b, other_input, other_output)| {
+            let by_data = fifths(*b).total_cmp(&fifths(*a));
+            let key = |input: usize, output: usize| (self.likelihood(output), input, output);
+            by_data.then_with(|| key(*input, *output).cmp(&key(*other_input, *other_output)))
+        });
+        let is_only = inputs.len() == 1;
+        let pairs = found.into_iter().map(|(_, input, output)| Pair::alone(input, output, is_only));
+        each_column_once(pairs.collect())
+    }
+
+    /// The columns whose names say most that they drive; else those that hold levels.
+    fn likely_inputs(&self) -> Vec<usize> {
+        let inputs = self.best_on(Side::Input, &[]);
+        if !inputs.is_empty() {
+            return inputs;
+        }
+        let holds = |column: usize| self.signal(column).is_some_and(Signal::holds_levels);
+        let is_open = |column: usize| self.name(column).is_some_and(|name| !name.is_neither());
+        self.moving.iter().copied().filter(|column| holds(*column) && is_open(*column)).collect()
+    }
+
+    /// The joints of `pairs` whose names say so, or whose data do; it is sure what names alone say, or what
+    /// weaker names and the data say together where nothing else moves.
+    fn judged(&self, mut pairs: Vec<Pair>) -> Vec<FoundJoint> {
+        let grade = |pair: &Pair| {
+            self.grade(pair.input, Side::Input).max(self.grade(pair.output, Side::Output))
+        };
+        let best = pairs.iter().map(grade).min();
+        // A setpoint and a pressure beside real joints are none.
+        pairs.retain(|pair| grade(pair) < Grade::Beside || best >= Some(Grade::Beside));
+        let are_all = self.moving.len() == 2 * pairs.len();
+        let taken: HashSet<usize> = pairs.iter().flat_map(|p| [p.input, p.output]).collect();
+        let free: Vec<usize> = self.free_inputs(&taken).take(COMPARED).collect();
+        let is_one = pairs.len() == 1;
+        let (mut joints, mut names) = (Vec::new(), HashSet::new());
+        for pair in pairs {
+            // `AnalogOut` drives, and `AnalogIn` measures; a setpoint is never what follows.
+            let is_reversed = grade(&pair) > Grade::Word && self.is_reversed(&pair);
+            if is_reversed && self.grade(pair.input, Side::Input) == Grade::Beside {
+                continue;
+            }
+            let pair = if is_reversed { pair.reversed() } else { pair };
+            let follows = self.following(pair.input, pair.output);
+            let is_sure = pair.is_only
+                && self.is_said(&pair, follows.is_some(), are_all)
+                && !self.has_rival(&pair, follows, &free, is_one);
+            let name = self.joint_name(&pair);
+            let is_speed = !pair.is_only && !pair.shared.is_empty();
+            if (is_sure || is_speed || follows.is_some()) && names.insert(name.clone()) {
+                let instead =
+                    if is_sure { Vec::new() } else { self.instead(&pair, follows, &taken) };
+                let why = self.reasons(&pair, follows);
+                let (input, output) = (pair.input, pair.output);
+                joints.push(FoundJoint { name, input, output, why, is_sure, instead });
             }
         }
         joints.sort_by_key(|joint| joint.input);
         joints
     }
 
-    /// The pairs of an input and an output that share words, with these; none where there are so many
-    /// that their names say nothing.
-    fn sharing(
+    /// Whether names say that a pair is a joint, with the data where they say it less clearly.
+    fn is_said(&self, pair: &Pair, follows: bool, are_all: bool) -> bool {
+        let (input, output) =
+            (self.grade(pair.input, Side::Input), self.grade(pair.output, Side::Output));
+        let is_clear = input == Grade::Word || input == Grade::Letter && !pair.shared.is_empty();
+        match input.max(output) {
+            Grade::Word | Grade::Letter => is_clear || are_all,
+            Grade::Unit => follows && (is_clear || are_all),
+            Grade::Beside => follows && are_all,
+            Grade::Silent => false,
+        }
+    }
+
+    /// Whether the output follows one of the `free` inputs clearly more, which is named like one of this joint,
+    /// too.
+    fn has_rival(&self, pair: &Pair, follows: Option<f64>, free: &[usize], is_one: bool) -> bool {
+        let own = follows.map_or(0.0, f64::abs);
+        let words = self.own(pair.output, is_one);
+        free.iter().filter(|input| !self.own(**input, is_one).is_disjoint(&words)).any(|input| {
+            self.following(*input, pair.output).is_some_and(|f| !is_alike(own, f.abs()))
+        })
+    }
+
+    /// The columns whose names say that they are inputs, but for those that are `taken`.
+    fn free_inputs(&self, taken: &HashSet<usize>) -> impl Iterator<Item = usize> {
+        self.on(Side::Input).filter(|input| {
+            !taken.contains(input) && self.grade(*input, Side::Input) == Grade::Word
+        })
+    }
+
+    /// What of a name says which joint: of several joints, not what all columns have.
+    fn own(&self, column: usize, is_one: bool) -> BTreeSet<String> {
+        let own = self.name(column).map(|name| name.own.clone()).unwrap_or_default();
+        if is_one { own } else { &own - &self.common }
+    }
+
+    /// Whether the input follows the output more than the output follows the input.
+    fn is_reversed(&self, pair: &Pair) -> bool {
+        let follows = |a: usize, b: usize| self.following(a, b).map_or(0.0, f64::abs);
+        follows(pair.output, pair.input) > follows(pair.input, pair.output)
+    }
+
+    /// What may as well be the output of this input, or the input of this output, of the columns that are not
+    /// `taken`.
+    fn instead(
         &self,
-        inputs: &[usize],
-        outputs: &[usize],
-    ) -> Option<Vec<(Vec<String>, usize, usize)>> {
-        /// Pairs that are compared: those of a thousand inputs with as many outputs.
-        const MOST: usize = 1_000_000;
-        let words_of: Vec<BTreeSet<String>> =
-            outputs.iter().map(|output| self.own_words(*output).into_iter().collect()).collect();
-        let mut with: HashMap<&str, Vec<usize>> = HashMap::new();
-        for (place, words) in words_of.iter().enumerate() {
-            for word in words {
-                with.entry(word).or_default().push(place);
+        pair: &Pair,
+        follows: Option<f64>,
+        taken: &HashSet<usize>,
+    ) -> Vec<([usize; 2], String)> {
+        /// Pairs that are said.
+        const SAID: usize = 3;
+        let own = follows.map_or(0.0, f64::abs);
+        let free = self.moving.iter().copied().filter(|column| !taken.contains(column));
+        let free = free.filter(|column| self.name(*column).is_some_and(|name| !name.is_neither()));
+        let mut found = Vec::new();
+        for column in free.take(COMPARED) {
+            let holds = self.signal(column).is_some_and(Signal::holds_levels);
+            let as_joint = if holds { [column, pair.output] } else { [pair.input, column] };
+            let [input, output] = as_joint;
+            if self.following(input, output).is_some_and(|f| is_alike(f.abs(), own)) {
+                found.push((as_joint, self.joint_name(&Pair::alone(input, output, false))));
             }
         }
-        let (mut pairs, mut compared) = (Vec::new(), 0);
-        for input in inputs {
-            let words = self.own_words(*input);
-            let near = words.iter().filter_map(|word| with.get(word.as_str()));
-            compared += near.clone().map(Vec::len).sum::<usize>();
-            if compared > MOST {
-                return None;
-            }
-            let places: BTreeSet<usize> = near.flatten().copied().collect();
-            for (others, output) in places.iter().map(|place| (&words_of[*place], outputs[*place]))
-            {
-                let shared = words.iter().filter(|word| others.contains(*word)).cloned().collect();
-                pairs.push((shared, *input, output));
-            }
-        }
-        Some(pairs)
+        found.truncate(SAID);
+        found
     }
 
-    /// Where names say nothing: what holds levels drives, what follows it best is driven.
-    fn by_data(&self, outputs: &[usize]) -> Option<FoundJoint> {
-        let all = 0..self.head.headers.len();
-        let holds = |column: &usize| self.signal(*column).is_some_and(Signal::holds_levels);
-        let held: Vec<usize> = all.clone().filter(holds).collect();
-        let [input] = held.as_slice() else { return None };
-        let moving = |column: &usize| column != input && self.signal(*column).is_some();
-        let others: Vec<usize> = all.filter(moving).collect();
-        let output = self.follower(*input, if outputs.is_empty() { &others } else { outputs })?;
-        Some(FoundJoint { is_sure: false, ..self.joint(None, *input, output) })
-    }
-
-    /// Whether a name is no more than a word of block diagrams, which any column may have.
-    fn is_bare(&self, column: usize) -> bool {
-        const BARE: [&str; 5] = ["u", "in", "input", "control", "signal"];
-        matches!(self.words(column).as_slice(), [word] if BARE.contains(&word.as_str()))
-    }
-
-    /// Whether the input and the one output are all that moves beside the time: then what else
-    /// could be meant?
-    fn are_the_only(&self, input: usize, outputs: &[usize]) -> bool {
-        let moving = (0..self.head.headers.len()).filter(|column| self.signal(*column).is_some());
-        let others: Vec<usize> = moving.filter(|column| *column != input).collect();
-        others.as_slice() == outputs && outputs.len() == 1
-    }
-
-    /// Whether nothing but the little word `in` says that a joint's input is one: neither another
-    /// word of its name, nor an output that follows it.
-    fn is_doubtful(&self, joint: &FoundJoint) -> bool {
-        let mut words = self.words(joint.input);
-        words.retain(|word| word != "in");
-        rank(&words, &INPUT_WORDS).is_none() && self.following(joint.input, joint.output).is_none()
-    }
-
-    fn joint(&self, name: Option<String>, input: usize, output: usize) -> FoundJoint {
-        let word = |column: usize, known: &[&str]| {
-            let words = self.words(column);
-            let found = rank(&words, known).and_then(|rank| known.get(rank).copied());
-            found.map_or_else(String::new, |word| format!("`{word}` in its name; "))
-        };
-        let says = |column: usize| self.signal(column).map_or_else(String::new, Signal::says);
-        let own = self.own_words(output).into_iter().chain(self.own_words(input)).collect();
-        let own = self.distinguishing(own).into_iter().next();
-        let mut why = [
-            format!("{}{}", word(input, &INPUT_WORDS), says(input)),
-            format!("{}{}", word(output, &OUTPUT_WORDS), says(output)),
-        ];
-        if let Some(follows) = self.following(input, output) {
+    /// Why a pair is taken for a joint: of the input, and of the output.
+    fn reasons(&self, pair: &Pair, follows: Option<f64>) -> [String; 2] {
+        let mut why =
+            [(pair.input, Side::Input), (pair.output, Side::Output)].map(|(column, side)| {
+                let by = self.name(column).filter(|name| name.side == Some(side)).map(|n| &*n.by);
+                let says = self.signal(column).map(Signal::says);
+                format!("{}{}", by.unwrap_or_default(), says.unwrap_or_default())
+            });
+        if let Some(follows) = follows {
             let [_, output] = &mut why;
-            *output = format!("{output}; its rate follows the input (correlation {follows:+.2})");
+            *output += &format!("; its rate follows the input (correlation {follows:+.2})");
         }
-        let name = name.or(own).unwrap_or_else(|| "joint".to_owned());
-        FoundJoint { name, input, output, why, is_sure: true }
+        why
     }
 
-    fn words(&self, column: usize) -> Vec<String> {
-        self.head.headers.get(column).map(|header| words(&header.name)).unwrap_or_default()
-    }
-
-    /// The words of a name that say which joint, and not what of it.
-    fn own_words(&self, column: usize) -> Vec<String> {
-        let mut words = self.words(column);
-        let is_kind = |word: &String| {
-            let word = word.as_str();
-            INPUT_WORDS.contains(&word) && word != "stick"
-                || OUTPUT_WORDS.contains(&word)
-                || OTHER_WORDS.contains(&word)
-                || unit::is_unit(word)
-                || unit::is_unit(&word.to_uppercase())
+    /// The words that both names share, but for what all columns have where there is more; else the output's.
+    fn joint_name(&self, pair: &Pair) -> String {
+        let [Some(input), Some(output)] = [pair.input, pair.output].map(|c| self.name(c)) else {
+            return String::new();
         };
-        words.retain(|word| !is_kind(word));
-        words
+        let all_shared = &input.own & &output.own;
+        let shared = if pair.shared.is_empty() { &all_shared } else { &pair.shared };
+        let is_shared = |word: &&String| {
+            let parts = parts(word);
+            parts.iter().all(|part| all_shared.contains(part))
+                && parts.iter().any(|part| shared.contains(part))
+        };
+        let is_number = |word: &&String| word.bytes().all(|byte| byte.is_ascii_digit());
+        let mut words: Vec<&String> = output.words.iter().filter(is_shared).collect();
+        if words.iter().all(is_number) {
+            let says = |word: &&String| is_shared(word) || !is_number(word);
+            words = output.words.iter().filter(says).collect();
+            if words.iter().any(|word| !self.common.contains(*word)) {
+                words.retain(|word| !self.common.contains(*word));
+            }
+        }
+        // `f` of `fBoom` says what type a number has.
+        let is_letter = |word: &&String| word.chars().count() == 1 && !is_number(word);
+        if !words.iter().all(|word| is_letter(word) || is_number(word)) {
+            words.retain(|word| !is_letter(word));
+        }
+        match &*words {
+            [] => "joint".to_owned(),
+            words => words.iter().map(|word| word.as_str()).collect::<Vec<_>>().join("_"),
+        }
     }
 
-    /// Those of a joint's `words` that say which it is; all of them where none does.
-    fn distinguishing(&self, words: Vec<String>) -> Vec<String> {
-        let rest: Vec<_> =
-            words.iter().filter(|word| !self.common.contains(word)).cloned().collect();
-        if rest.is_empty() { words } else { rest }
+    /// For each of `joints` the columns that are named like what drives it, too, and are no joint's.
+    pub(super) fn further_inputs(&self, joints: &[FoundJoint]) -> Vec<(String, String)> {
+        let is_one = joints.len() == 1;
+        let taken = joints.iter().flat_map(|joint| [joint.input, joint.output]).collect();
+        let mut by_word: HashMap<String, &FoundJoint> = HashMap::new();
+        for joint in joints {
+            for word in self.own(joint.output, is_one) {
+                by_word.entry(word).or_insert(joint);
+            }
+        }
+        let mut found = Vec::new();
+        for input in self.free_inputs(&taken) {
+            let words = self.own(input, is_one);
+            if let Some(joint) = words.iter().find_map(|word| by_word.get(word)) {
+                found.push((joint.name.clone(), self.head.text(input)));
+            }
+        }
+        found
+    }
+
+    fn name(&self, column: usize) -> Option<&Name> {
+        self.names.get(column)?.as_ref()
     }
 
     fn signal(&self, column: usize) -> Option<&Signal> {
-        self.signals.get(column)?.as_ref().filter(|signal| !signal.is_constant())
+        self.signals.get(column)?.as_ref()
     }
 
-    /// The first pair that its names say is a joint, of the columns that `is_free` says are none's.
-    pub(super) fn first_by_names(&self, is_free: impl Fn(usize) -> bool) -> Option<(usize, usize)> {
-        let named = |known: &[&str]| -> Vec<usize> {
-            let all = (0..self.head.headers.len()).filter(|column| is_free(*column));
-            all.filter(|column| self.rank(*column, known).is_some()).collect()
+    /// How well its name says that a column stands on this side.
+    fn grade(&self, column: usize, side: Side) -> Grade {
+        let name = self.name(column).filter(|name| name.side == Some(side));
+        name.map_or(Grade::Silent, |name| name.grade)
+    }
+
+    fn likelihood(&self, column: usize) -> (Grade, usize) {
+        self.name(column).map_or((Grade::Silent, 0), |name| (name.grade, name.rank))
+    }
+
+    /// The columns whose names say that they stand on this side.
+    fn on(&self, side: Side) -> impl Iterator<Item = usize> {
+        let is_on = move |column: &usize| self.name(*column).is_some_and(|n| n.side == Some(side));
+        self.moving.iter().copied().filter(is_on)
+    }
+
+    /// Those of them whose names say it best, but for the `others`; where no name says it, those of which
+    /// names say nothing, if any output is looked for.
+    fn best_on(&self, side: Side, others: &[usize]) -> Vec<usize> {
+        let is_free = |column: &usize| !others.contains(column);
+        let best = self.on(side).filter(is_free).map(|column| self.grade(column, side)).min();
+        let is_best = |column: &usize| match best {
+            Some(best) => self.grade(*column, side) == best,
+            None => side == Side::Output && self.likelihood(*column).0 == Grade::Silent,
         };
-        let outputs = named(&OUTPUT_WORDS);
-        let mut inputs = named(&INPUT_WORDS);
-        inputs.retain(|column| !outputs.contains(column));
-        let pairs = self.sharing(&inputs, &outputs)?;
-        pairs.into_iter().map(|(_, input, output)| (input, output)).min()
+        self.moving.iter().copied().filter(is_free).filter(is_best).collect()
     }
 
-    /// The place among these words of the one that a name has, and no word of something else.
-    fn rank(&self, column: usize, known: &[&str]) -> Option<usize> {
-        let words = self.words(column);
-        rank(&words, known).filter(|_| rank(&words, &OTHER_WORDS).is_none())
-    }
-
-    /// Columns that move and whose names have one of these words, the likeliest first.
-    fn named(&self, known: &[&str]) -> Vec<usize> {
-        let ranked = |column: usize| {
-            self.signal(column)?;
-            self.rank(column, known).map(|rank| (rank, column))
-        };
-        let mut found: Vec<_> = (0..self.head.headers.len()).filter_map(ranked).collect();
-        found.sort_unstable();
-        found.into_iter().map(|(_, column)| column).collect()
-    }
-
-    /// The one of `outputs` whose rate follows `input` best.
-    fn follower(&self, input: usize, outputs: &[usize]) -> Option<usize> {
-        let follows = |&output: &usize| Some((self.following(input, output)?.abs(), output));
-        let best = outputs.iter().filter_map(follows).max_by(|a, b| a.0.total_cmp(&b.0));
-        best.map(|(_, output)| output)
-    }
-
-    /// The correlation of the output's rate with the input, where it is clear.
+    /// How the output's rate follows the input, where that is clear.
     fn following(&self, input: usize, output: usize) -> Option<f64> {
         self.signal(output)?.follows(self.signal(input)?)
     }
+}
+
+/// Whether one follows about as much as the one that does most.
+fn is_alike(follows: f64, most: f64) -> bool {
+    follows >= 0.8 * most
+}
+
+/// The first of `pairs` that have columns which no pair before has.
+fn each_column_once(mut pairs: Vec<Pair>) -> Vec<Pair> {
+    let mut taken = HashSet::new();
+    pairs.retain(|pair| {
+        let is_free = !taken.contains(&pair.input) && !taken.contains(&pair.output);
+        taken.extend([pair.input, pair.output].into_iter().filter(|_| is_free));
+        is_free
+    });
+    pairs
 }

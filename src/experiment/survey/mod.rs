@@ -35,6 +35,8 @@ pub struct Survey {
     pub open: Vec<String>,
     /// Joints, and columns that are named like what drives them, too.
     pub further_inputs: Vec<(String, String)>,
+    /// Mappings that could be meant as well, where it is not sure.
+    pub alternatives: Vec<ColumnMap>,
 }
 
 /// A column and what it is taken for.
@@ -102,26 +104,6 @@ impl Survey {
         }
         let columns = Columns::of(head, &signals);
         let joints = columns.joints();
-        columns.survey(time, trial, &joints)
-    }
-}
-
-/// The names of an input and an output that look like one more joint beside those whose columns are `taken`.
-pub(super) fn further_joint<'h>(head: &'h Head, taken: &HashSet<usize>) -> Option<[&'h str; 2]> {
-    let is_free = |column: usize| {
-        // Names with a point are native, as `boom.pressure`.
-        let header = head.headers.get(column);
-        !taken.contains(&column) && header.is_some_and(|header| !header.name.contains('.'))
-    };
-    let (input, output) = Columns::of(head, &[]).first_by_names(is_free)?;
-    Some([head.headers.get(input)?.text.as_str(), head.headers.get(output)?.text.as_str()])
-}
-
-impl Columns<'_> {
-    fn survey(&self, time: Option<usize>, trial: Option<usize>, joints: &[FoundJoint]) -> Survey {
-        let name = |column: usize| {
-            self.head.headers.get(column).map_or_else(String::new, |header| header.text.clone())
-        };
         let mut open = Vec::new();
         if time.is_none() {
             open.push(
@@ -134,57 +116,95 @@ impl Columns<'_> {
                     .to_owned(),
             );
         }
-        let columns = 0..self.head.headers.len();
-        let mut of_joints: HashMap<usize, (Role, &str)> = HashMap::new();
-        for joint in joints {
-            let [input, output] = &joint.why;
-            of_joints.entry(joint.input).or_insert((Role::Input(joint.name.clone()), input));
-            of_joints.entry(joint.output).or_insert((Role::Output(joint.name.clone()), output));
-        }
-        let columns = columns.map(|column| self.column(column, time, trial, &of_joints)).collect();
-        let joint = |joint: &FoundJoint| {
-            JointColumns::new(&joint.name, &name(joint.input), &name(joint.output))
-        };
-        let map = ColumnMap {
-            time: time.map(name),
-            trial: trial.map(name),
-            sample_period_s: None,
-            joints: joints.iter().map(joint).collect(),
+        let found: Vec<JointColumns> =
+            joints.iter().map(|j| columns.joint_columns([j.input, j.output], &j.name)).collect();
+        let map = |joints| ColumnMap {
+            time: time.map(|column| head.text(column)),
+            trial: trial.map(|column| head.text(column)),
+            joints,
             ..ColumnMap::default()
         };
-        let is_sure = joints.iter().all(|joint| joint.is_sure);
-        let further_inputs = self.further_inputs(joints).into_iter();
-        let further_inputs = further_inputs.map(|(joint, column)| (joint, name(column))).collect();
-        let path = self.head.path.clone();
-        Survey { path, columns, map, is_sure, open, further_inputs }
+        Self {
+            path: head.path.clone(),
+            columns: columns.surveyed([time, trial], &joints),
+            is_sure: joints.iter().all(|joint| joint.is_sure),
+            open,
+            further_inputs: columns.further_inputs(&joints),
+            alternatives: columns.alternatives(&joints, &found).into_iter().map(map).collect(),
+            map: map(found),
+        }
     }
 
-    fn column(
+    /// What may be the joints, the likeliest first: of each its name, its input and its output.
+    pub(crate) fn named_joints(&self) -> Vec<Vec<[String; 3]>> {
+        let maps = std::iter::once(&self.map).chain(&self.alternatives);
+        maps.map(ColumnMap::named_joints).filter(|joints| !joints.is_empty()).collect()
+    }
+}
+
+/// The names of an input and an output that look like one more joint beside those whose columns are `taken`.
+pub(super) fn further_joint(head: &Head, taken: &HashSet<usize>) -> Option<[String; 2]> {
+    // Names with a point are native, as `boom.pressure`.
+    let headers = head.headers.iter().enumerate();
+    let free = headers.filter(|(column, h)| !taken.contains(column) && !h.name.contains('.'));
+    let columns = Columns::among(head, &[], free.map(|(column, _)| column).collect());
+    let pairs = columns.by_names().into_iter().filter(|pair| pair.is_only);
+    let first = pairs.min_by_key(|pair| pair.input)?;
+    Some([first.input, first.output].map(|column| head.text(column)))
+}
+
+impl Columns<'_> {
+    fn joint_columns(&self, [input, output]: [usize; 2], name: &str) -> JointColumns {
+        JointColumns::new(name, &self.head.text(input), &self.head.text(output))
+    }
+
+    /// `found` with one of the `joints` having other columns that could be meant as well.
+    fn alternatives(
         &self,
-        column: usize,
-        time: Option<usize>,
-        trial: Option<usize>,
-        of_joints: &HashMap<usize, (Role, &str)>,
-    ) -> SurveyedColumn {
-        let header = self.head.headers.get(column);
-        let (name, stated) = header
-            .map_or_else(Default::default, |header| (header.text.clone(), header.unit.clone()));
-        let bare = header.map_or("", |header| header.name.as_str());
-        let mut unit = stated.or_else(|| unit::of_signal(bare));
-        let (role, why) = if Some(column) == time {
-            unit = unit.or_else(|| unit::of_time(bare).map(str::to_owned));
-            let taken =
-                if unit.is_some() { "" } else { ", taken for seconds, or judged by its size" };
-            (Role::Time, format!("its name{taken}"))
-        } else if Some(column) == trial {
-            (Role::Trial, "its name".to_owned())
-        } else if let Some((role, why)) = of_joints.get(&column) {
-            (role.clone(), (*why).to_owned())
-        } else {
-            let says = self.signals.get(column).and_then(Option::as_ref).map(Signal::says);
-            (Role::Other, says.unwrap_or_else(|| "it does not hold numbers".to_owned()))
-        };
-        SurveyedColumn { name, unit, role, why }
+        joints: &[FoundJoint],
+        found: &[JointColumns],
+    ) -> Vec<Vec<JointColumns>> {
+        let mut alternatives = Vec::new();
+        for (place, joint) in joints.iter().enumerate() {
+            for (columns, name) in &joint.instead {
+                let mut others = found.to_vec();
+                others.splice(place..=place, [self.joint_columns(*columns, name)]);
+                alternatives.push(others);
+            }
+        }
+        alternatives
+    }
+
+    /// What each column is taken for, and why.
+    fn surveyed(
+        &self,
+        [time, trial]: [Option<usize>; 2],
+        joints: &[FoundJoint],
+    ) -> Vec<SurveyedColumn> {
+        let mut roles: HashMap<usize, (Role, String)> = HashMap::new();
+        for FoundJoint { name, input, output, why: [input_why, output_why], .. } in joints {
+            roles.entry(*input).or_insert((Role::Input(name.clone()), input_why.clone()));
+            roles.entry(*output).or_insert((Role::Output(name.clone()), output_why.clone()));
+        }
+        let mut columns = Vec::new();
+        for (column, header) in self.head.headers.iter().enumerate() {
+            let mut unit = header.unit.clone().or_else(|| unit::of_signal(&header.name));
+            let (role, why) = if Some(column) == time {
+                unit = unit.or_else(|| unit::of_time(&header.name).map(str::to_owned));
+                let guess = ", taken for seconds, or judged by its size";
+                (Role::Time, format!("its name{}", if unit.is_some() { "" } else { guess }))
+            } else if Some(column) == trial {
+                (Role::Trial, "its name".to_owned())
+            } else if let Some(role) = roles.remove(&column) {
+                role
+            } else {
+                let signal = self.signals.get(column).and_then(Option::as_ref);
+                let says = signal.map(Signal::says);
+                (Role::Other, says.unwrap_or_else(|| "it does not hold numbers".to_owned()))
+            };
+            columns.push(SurveyedColumn { name: header.text.clone(), unit, role, why });
+        }
+        columns
     }
 }
 
@@ -289,7 +309,7 @@ mod tests {
             std::fs::write(&path, text).unwrap();
             let survey = Survey::of(&path, MemoryLimit::default()).unwrap();
             let names: Vec<&str> = header.split(',').collect();
-            assert_eq!(survey.map.joints, [JointColumns::new("joint", names[1], names[2])]);
+            assert_eq!(survey.map.joints, [JointColumns::new(names[2], names[1], names[2])]);
             assert_eq!(survey.is_sure, is_sure, "{header}");
         }
     }

@@ -65,25 +65,27 @@ impl Signal {
         }
     }
 
-    /// The correlation of its rate with `input` some samples before, where it is clear.
+    /// The correlation of its rate with `input` some samples before, where it is clear: the partial one given
+    /// its level, so that what comes to rest at a level of its input follows as well as what goes on moving.
     pub(super) fn follows(&self, input: &Self) -> Option<f64> {
-        /// Rows over which a rate is taken, rows that a reaction may come late, and rows
-        /// that are looked at.
+        /// Rows over which a rate is taken, and rows that a reaction may come late.
         const OVER: usize = 5;
-        const LATE: usize = 50;
-        const ROWS: usize = 20_000;
+        const LATE: [usize; 14] = [0, 5, 10, 15, 20, 25, 30, 35, 40, 50, 70, 100, 150, 200];
+        /// Rows that are looked at, spread over the record.
+        const ROWS: usize = 2_000;
         /// Correlation from which one follows the other.
         const CLEAR: f64 = 0.3;
         let (u, y) = (&input.values, &self.values);
-        let rows = u.len().min(y.len()).min(ROWS);
-        let at = |values: &[f64], k: usize| values.get(k).copied().unwrap_or(f64::NAN);
-        let rate = |k: usize| at(y, k + OVER) - at(y, k);
-        let correlation = |late: usize| {
-            let pairs = (late..rows.saturating_sub(OVER)).map(|k| (at(u, k - late), rate(k)));
-            correlation(pairs.filter(|(a, b)| a.is_finite() && b.is_finite()))
-        };
-        let lags = (0..LATE).step_by(OVER).map(correlation);
-        let best = lags.max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+        let rows = u.len().min(y.len()).saturating_sub(OVER);
+        let mut best = 0.0_f64;
+        for late in LATE.into_iter().filter(|late| 4 * late <= rows) {
+            let sampled = (late..rows).step_by(rows.div_ceil(ROWS).max(1));
+            let triple =
+                |k: usize| Some([*u.get(k - late)?, *y.get(k)?, y.get(k + OVER)? - y.get(k)?]);
+            let known = sampled.filter_map(triple).filter(|t| t.iter().all(|x| x.is_finite()));
+            let found = partial_correlation(&known.collect::<Vec<_>>());
+            best = if found.abs() > best.abs() { found } else { best };
+        }
         (best.abs() >= CLEAR).then_some(best)
     }
 }
@@ -100,17 +102,19 @@ fn is_number_like(bad: &BadCell) -> bool {
     }
 }
 
-/// Pearson's correlation; 0 of what does not vary.
-fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
-    let pairs: Vec<(f64, f64)> = pairs.collect();
-    let n = pairs.len().max(1) as f64;
-    let (a, b) = pairs.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
-    let (mut xy, mut xx, mut yy) = (0.0, 0.0, 0.0);
-    for (x, y) in pairs {
-        xy += (x - a) * (y - b);
-        xx += (x - a) * (x - a);
-        yy += (y - b) * (y - b);
-    }
-    let scale: f64 = xx * yy;
-    if scale > 0.0 { xy / scale.sqrt() } else { 0.0 }
+/// The correlation of the first with the third number, each without what the second explains of it; 0 where
+/// nothing varies.
+fn partial_correlation(rows: &[[f64; 3]]) -> f64 {
+    let mean = |of: usize| rows.iter().map(|row| row[of]).sum::<f64>() / rows.len().max(1) as f64;
+    let means = [mean(0), mean(1), mean(2)];
+    let product = |a: usize, b: usize| {
+        rows.iter().map(|row| (row[a] - means[a]) * (row[b] - means[b])).sum::<f64>()
+    };
+    let correlation = |a: usize, b: usize| {
+        let scale = (product(a, a) * product(b, b)).sqrt();
+        if scale > 0.0 { product(a, b) / scale } else { 0.0 }
+    };
+    let (uy, ur, yr) = (correlation(0, 1), correlation(0, 2), correlation(1, 2));
+    let scale = ((1.0 - uy * uy) * (1.0 - yr * yr)).sqrt();
+    if scale > f64::EPSILON { (ur - uy * yr) / scale } else { 0.0 }
 }

@@ -17,6 +17,9 @@ pub(crate) struct ColumnsJson<'a> {
     open: &'a [String],
     options: &'a str,
     mended: &'a [String],
+    /// The options of mappings that could be meant as well.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    alternatives: &'a [String],
 }
 
 #[derive(Debug, Serialize)]
@@ -35,9 +38,17 @@ struct JointJson<'a> {
 }
 
 impl<'a> ColumnsJson<'a> {
-    /// The JSON of `survey`, with the mapping as `options` on the command line and what is `mended` in the
-    /// log.
-    pub(crate) fn new(survey: &'a Survey, options: &'a str, mended: &'a [String]) -> Self {
+    /// The JSON of `survey`, with the mappings as `options` on the command line, the likeliest first, and
+    /// what is `mended` in the log.
+    pub(crate) fn new(
+        survey: &'a Survey,
+        options: &'a [String],
+        mended: &'a [String],
+    ) -> Self {
+        let (options, alternatives) = match options {
+            [first, others @ ..] => (first.as_str(), others),
+            [] => ("", options),
+        };
         let column = |column: &'a SurveyedColumn| ColumnJson {
             column: &column.name,
             unit: column.unit.as_deref(),
@@ -57,6 +68,7 @@ impl<'a> ColumnsJson<'a> {
             open: &survey.open,
             options,
             mended,
+            alternatives,
         }
     }
 }
