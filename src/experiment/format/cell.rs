@@ -27,15 +27,14 @@ const MISSING: [&str; 19] = [
     "-1.#snan",
 ];
 
-/// What spreadsheet programs write for a value that is none, behind a `#`. At the beginning of a line,
-/// where that would be the mark of a comment, it is taken off.
-pub(super) const NO_VALUES: [&str; 12] = [
+/// What spreadsheet programs write for a value that is none, behind a `#`.
+const NO_VALUES: [&str; 12] = [
     "N/A", "NV", "REF!", "BEZUG!", "DIV/0!", "VALUE!", "WERT!", "NAME?", "NUM!", "ZAHL!", "NULL!",
     "SPILL!",
 ];
 
 /// Whether a cell says that it has no value.
-fn is_missing(text: &str) -> bool {
+pub(super) fn is_missing(text: &str) -> bool {
     let is_one_of =
         |text: &str, words: &[&str]| words.iter().any(|word| text.eq_ignore_ascii_case(word));
     let without_mark = text.strip_prefix('#').unwrap_or(text);

@@ -66,7 +66,7 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
     let text = text_of(&range).map_err(|error| damaged(error.to_string()))?;
     drop((range, workbook));
     budget.give_back(texts);
-    let (bytes, start) = Bytes::made(text, path);
+    let (bytes, start) = Bytes::made(text);
     let OpenTable { head, rows } = table(path, bytes, &start, Some(b','), budget)?;
     let note = (count > 1).then(|| {
         format!("{}: the sheet `{}` of {count} is read", path.display(), on_one_line(name))
