@@ -136,6 +136,10 @@ fn usual_width(rows: &[Row]) -> Option<usize> {
 fn header_among(above: &[Row], (width, ends_blank): (usize, bool), mark: u8) -> Option<usize> {
     let mut found: Option<(usize, usize)> = None;
     for (at, Row { cells, numbers }) in above.iter().enumerate().rev() {
+        // What has numbers and stands above a header says something of the whole log: `Rate,100,Hz`.
+        if found.is_some() && *numbers > 0 {
+            break;
+        }
         // A mark behind the last cell makes none.
         let has_one_more =
             cells.len() == width + 1 && cells.iter().last().is_some_and(<[u8]>::is_empty);
