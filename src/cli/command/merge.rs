@@ -49,7 +49,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     tables.check(&kept_in(&args.folders)?)?;
     let Merged { command, results, failures, notes } = read_folders(&args.folders)?;
     if !args.quiet {
-        notes.iter().for_each(|note| message("note", note));
+        for note in &notes {
+            message("note", note);
+        }
     }
     let report = FolderReport::new(&command, results);
     if command != "estimate" && tables.decisions.is_some() {

@@ -142,7 +142,7 @@ fn header_among(above: &[Row], (width, ends_blank): (usize, bool), mark: u8) -> 
         }
         // A mark behind the last cell makes none.
         let has_one_more =
-            cells.len() == width + 1 && cells.iter().last().is_some_and(<[u8]>::is_empty);
+            cells.len() == width + 1 && cells.iter().next_back().is_some_and(<[u8]>::is_empty);
         let has_one_less = cells.len() + 1 == width && ends_blank;
         if cells.len() == width || has_one_more || has_one_less {
             let is_fuller = found.is_none_or(|(_, most)| filled(cells) >= most);

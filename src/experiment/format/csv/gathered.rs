@@ -1,7 +1,7 @@
 //! Rows of a table of text as they come, and the words below it.
 
 use super::super::cell::{DecimalMarks, Time, parse_cell, parse_time};
-use super::super::spelling::{are_units, is_remark};
+use super::super::spelling::{are_units, is_over_lines, is_remark};
 use super::lines::Place;
 use super::milliseconds::Milliseconds;
 use crate::experiment::error::ReadError;
@@ -57,7 +57,7 @@ impl<'w> Gathered<'w> {
             delimiter,
             marks: DecimalMarks::of(wanted.numeric.len(), delimiter),
             are_times_in_words: None,
-            milliseconds: Milliseconds::default(),
+            milliseconds: Milliseconds::new(),
             table,
             labels: wanted.label.map(|_| Labels::default()),
             held_back: Vec::new(),
@@ -85,16 +85,10 @@ impl<'w> Gathered<'w> {
 
     /// Takes a row, or holds it back where it may be words below the table, or what a power cut left. A row that
     /// is wrong because it is cut off is left out.
-    pub(super) fn add(
-        &mut self,
-        record: &csv::ByteRecord,
-        place: Place,
-        is_cut_off: bool,
-    ) -> Result<(), ReadError> {
+    pub(super) fn add(&mut self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
         let is_odd = is_remark(record, self.delimiter) || has_zero_bytes(record);
-        let is_short = record.as_slice().len() <= LONGEST_REMARK;
-        if is_odd && is_short && !self.table.rows.is_empty() && self.held_back.len() < MOST_REMARKS
-        {
+        let is_held = record.as_slice().len() <= LONGEST_REMARK;
+        if is_odd && is_held && !self.table.rows.is_empty() && self.held_back.len() < MOST_REMARKS {
             self.held_back.push((record.clone(), place));
             return Ok(());
         }
@@ -107,7 +101,8 @@ impl<'w> Gathered<'w> {
             }
         }
         let taken = self.take(record, place);
-        if is_cut_off && taken.is_err() {
+        let is_short = record.len() < self.wanted.head.headers.len();
+        if place.is_open && is_short && !is_over_lines(record) && taken.is_err() {
             self.note(&format!("the last row, {}, is cut off and left out", place.row));
             return Ok(());
         }
@@ -171,14 +166,14 @@ impl<'w> Gathered<'w> {
         if is_as_wide || lacks_comment {
             return Ok(());
         }
-        let (path, Place { row, lines }) = (self.wanted.path().to_owned(), place);
+        let (path, Place { row, lines, .. }) = (self.wanted.path().to_owned(), place);
         Err(ReadError::UnequalRow { path, row, found, expected: width, lines })
     }
 
     /// Refuses a row one cell of which holds further rows: a quotation mark in it is never closed, or far
     /// behind.
     fn check_quotation(&self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
-        let Place { row, lines } = place;
+        let Place { row, lines, .. } = place;
         let marks = self.wanted.head.headers.len().saturating_sub(1);
         if lines < 2 || marks == 0 {
             return Ok(());

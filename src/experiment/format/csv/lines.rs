@@ -35,6 +35,8 @@ pub(super) struct Place {
     pub(super) row: u64,
     /// Lines it takes up.
     pub(super) lines: u64,
+    /// Whether its last line has no end, as only the last one of a file may: it may be cut off.
+    pub(super) is_open: bool,
 }
 
 impl Records {
@@ -54,14 +56,9 @@ impl Records {
         self.reader.get_mut().begin_record();
         let more = self.reader.read_byte_record(&mut self.record);
         let more = more.map_err(|source| ReadError::Csv { path: path.to_owned(), source })?;
-        let Lines { count, first, .. } = *self.reader.get_ref();
-        Ok(more.then_some(Place { row: first, lines: count + 1 - first }))
-    }
-
-    /// Whether the last line has no end: it may be cut off.
-    pub(super) fn is_cut(&self) -> bool {
-        let line = &self.reader.get_ref().line;
-        !line.last().is_some_and(|byte| b"\r\n".contains(byte))
+        let Lines { count, first, ref line, .. } = *self.reader.get_ref();
+        let is_open = !line.last().is_some_and(|byte| b"\r\n".contains(byte));
+        Ok(more.then_some(Place { row: first, lines: count + 1 - first, is_open }))
     }
 
     pub(super) fn comments(&mut self) -> &mut Comments {

@@ -2,12 +2,10 @@
 //! 100.
 
 /// What the decimals of the times say.
-#[derive(Default)]
 pub(super) struct Milliseconds {
-    /// What each time changes by, in seconds, if its decimals are milliseconds.
-    changes: Vec<f64>,
-    /// Whether one time at least has decimals that are none.
-    are_none: bool,
+    /// What each time changes by, in seconds, if its decimals are milliseconds; none where one time at least
+    /// has other decimals.
+    changes: Option<Vec<f64>>,
     /// Whether a time has decimals that end in a zero, as no decimals do that are shortened.
     ends_in_zero: bool,
     /// Whether a time has three decimals, and another one fewer, as no milliseconds do that are filled up.
@@ -16,13 +14,16 @@ pub(super) struct Milliseconds {
 }
 
 impl Milliseconds {
+    pub(super) fn new() -> Self {
+        let changes = Some(Vec::new());
+        Self { changes, ends_in_zero: false, has_three: false, has_fewer: false }
+    }
+
     /// Takes the cell of the next time.
     pub(super) fn take(&mut self, cell: &[u8]) {
-        if self.are_none {
-            return;
-        }
+        let Some(changes) = &mut self.changes else { return };
         let Some(decimals) = decimals(cell) else {
-            (self.are_none, self.changes) = (true, Vec::new());
+            self.changes = None;
             return;
         };
         self.has_three |= decimals.len() == 3;
@@ -30,18 +31,18 @@ impl Milliseconds {
         self.ends_in_zero |= decimals.len() > 1 && decimals.ends_with('0');
         let number: f64 = decimals.parse().unwrap_or_default();
         let shown = decimals.bytes().fold(1.0, |scale, _| 10.0 * scale);
-        self.changes.push(number / 1000.0 - number / shown);
+        changes.push(number / 1000.0 - number / shown);
     }
 
     /// Changes the `times` that were taken, where they all are milliseconds without leading zeros;
     /// whether they are.
     pub(super) fn apply(&self, times: &mut [f64]) -> bool {
-        let are_milliseconds =
-            !self.are_none && self.ends_in_zero && self.has_three && self.has_fewer;
-        if are_milliseconds {
-            times.iter_mut().zip(&self.changes).for_each(|(time, change)| *time += change);
-        }
-        are_milliseconds
+        let are_milliseconds = self.ends_in_zero && self.has_three && self.has_fewer;
+        let Some(changes) = self.changes.as_ref().filter(|_| are_milliseconds) else {
+            return false;
+        };
+        times.iter_mut().zip(changes).for_each(|(time, change)| *time += change);
+        true
     }
 }
 
@@ -60,7 +61,7 @@ mod tests {
     use super::*;
 
     fn changed(cells: &[&str]) -> Vec<f64> {
-        let mut milliseconds = Milliseconds::default();
+        let mut milliseconds = Milliseconds::new();
         cells.iter().for_each(|cell| milliseconds.take(cell.as_bytes()));
         let decimals = cells.iter().map(|cell| cell.split_once('.').map_or("0", |(_, part)| part));
         let mut times: Vec<f64> =

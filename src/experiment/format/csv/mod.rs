@@ -9,7 +9,7 @@ mod milliseconds;
 use std::io::{self, Read as _};
 use std::path::Path;
 
-use super::spelling::{Spelling, is_over_lines};
+use super::spelling::Spelling;
 use super::text::Bytes;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
@@ -82,12 +82,7 @@ impl Rows for Unread {
         gathered.note_above(above);
         let mut next = first;
         while let Some(place) = next {
-            let record = &records.record;
-            // Only the last line may have no end.
-            let is_cut_off = records.is_cut()
-                && record.len() < wanted.head.headers.len()
-                && !is_over_lines(record);
-            gathered.add(record, place, is_cut_off)?;
+            gathered.add(&records.record, place)?;
             next = records.next(wanted.path())?;
         }
         records.comments().check_labels(wanted)?;
