@@ -60,9 +60,6 @@ def texts():
     }
     for name, text in files.items():
         write("csv", name, text)
-        # Read as it is, without a mapping; its first byte says how long its pieces are.
-        if "a.input" in text:
-            write("growing", name, b"\x07" + text.encode())
     write("csv", "sixteen_bits", plain.encode("utf-16"))
 
 

@@ -281,10 +281,30 @@ fn what_makes_no_sense_is_refused_with_the_remedy() {
             .is_refused_with("the result of a log has this name");
     }
     workspace.run("estimate logs --results new --summary new/all.csv").is_whole();
-    fs::write(workspace.path("one/other.json"), "{}").unwrap();
+    fs::write(workspace.path("one/other.json"), "{\"cut\": ").unwrap();
     left_out("other.json: not a result of tauscope; remove it");
     fs::write(workspace.path("empty/other.json"), "{}").unwrap();
-    workspace.run("merge empty").is_refused_with("other.json: not a result of tauscope; remove it");
+    workspace.run("merge empty").is_refused_with("other.json: no result of tauscope");
+}
+
+#[test]
+fn json_of_another_program_is_left_alone() {
+    let workspace = Workspace::with_logs(2);
+    workspace.run("estimate logs --results kept").is_whole();
+    let foreign = "{\"schema\": \"of/another/1\", \"key\": 3}";
+    fs::write(workspace.path("kept/other.json"), foreign).unwrap();
+    workspace.run("estimate logs --results kept").is_whole();
+    let merged = workspace.run("merge kept");
+    merged.is_whole().says("note: kept/other.json: no result of tauscope, and left alone");
+    // Under the name of a result it is not replaced: the other logs are done all the same.
+    let result = fs::read_dir(workspace.path("kept")).unwrap().map(|entry| entry.unwrap().path());
+    let result = result.filter(|path| !path.ends_with("other.json")).min().unwrap();
+    fs::write(&result, foreign).unwrap();
+    let again = workspace.run("estimate logs --results kept --summary all.csv");
+    assert_eq!(again.status, Some(1));
+    again.says("no result of tauscope has the name of one; move it");
+    assert_eq!(fs::read_to_string(result).unwrap(), foreign);
+    assert_eq!(workspace.read("all.csv").lines().count(), 1 + 2);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use tauscope::Settings;
 use tauscope::delay::EstimateError;
 use tauscope::effect::{Definition, InputChange, Moment, OwnParameter, Stage, expression};
 use tauscope::experiment::{
-    ColumnMap, Experiment, GrowingLog, Joint, JointColumns, MemoryLimit, ReadOptions, Survey,
+    ColumnMap, Experiment, Joint, JointColumns, MemoryLimit, ReadOptions, Survey,
 };
 use tauscope::explain::Sequential;
 use tauscope::export::{Export, Units, by_ending, endings};
@@ -181,26 +181,6 @@ pub fn review(bytes: &[u8]) -> bool {
         assert!(!note.to_string().is_empty());
     }
     true
-}
-
-/// A log that grows by pieces, whose length the first byte says; in the end it says what the
-/// same file does at once.
-pub fn growing(bytes: &[u8]) -> bool {
-    let Some((length, text)) = bytes.split_first() else { return false };
-    let path = file("grows.csv", text);
-    let mut log = GrowingLog::new(&path, options(ColumnMap::default()));
-    for piece in text.chunks(1 + text.len() / (1 + usize::from(*length))) {
-        if log.push(piece) {
-            check(&log.experiment().joints);
-        }
-    }
-    let grown = log.experiment();
-    // What stands behind the last whole line, and a quotation that is open, are waited for.
-    if text.ends_with(b"\n") && log.waiting() == 0 && GrowingLog::is_text(&path, text) {
-        let whole = Experiment::read(&[path], &options(ColumnMap::default()));
-        assert_eq!(grown.joints, whole.joints);
-    }
-    !grown.joints.is_empty()
 }
 
 /// A log of one joint that steps and follows.

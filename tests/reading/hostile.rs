@@ -162,12 +162,12 @@ fn a_header_that_names_its_parts_twice_is_refused_and_not_followed() {
 }
 
 #[test]
-fn rows_of_words_that_are_held_back_count_as_well() {
+fn rows_of_words_longer_than_any_remark_are_not_held_back() {
     let folder = TempDir::new().unwrap();
     let words = "a,".repeat(100_000);
     let log = format!("time_s,a.input,a.output\n0,1,2\n{}", format!("{words}\n").repeat(10));
     let path = file(&folder, "words.csv", log.as_bytes());
-    assert_says(&path, &["--max-memory", "8MB"], "--max-memory");
+    assert_says(&path, &["--max-memory", "8MB"], "row 3: 100001 cells");
 }
 
 #[test]

@@ -129,29 +129,6 @@ fn change_words(text: &str, rng: &mut ChaCha8Rng) -> String {
 }
 
 #[test]
-fn growing_logs_with_some_bytes_and_words_changed_say_what_the_whole_file_says() {
-    let seeds = fs::read_dir("fuzz/seeds/growing").unwrap();
-    let mut seeds: Vec<_> = seeds.map(|seed| seed.unwrap().path()).collect();
-    seeds.sort();
-    for path in seeds {
-        let seed = fs::read(&path).unwrap();
-        for number in 0..count(20) {
-            let mut rng = ChaCha8Rng::seed_from_u64(number);
-            // The first byte says how long the pieces are.
-            let (length, text) = seed.split_first().unwrap();
-            let mut text = change_words(&String::from_utf8_lossy(text), &mut rng).into_bytes();
-            if number % 2 == 0 {
-                mutate(&mut text, &mut rng);
-            }
-            let length = length.wrapping_add(number.to_le_bytes()[0]);
-            let bytes = [&[length], text.as_slice()].concat();
-            let done = std::panic::catch_unwind(|| attempts::growing(&bytes));
-            assert!(done.is_ok(), "{}, mutation {number}", path.display());
-        }
-    }
-}
-
-#[test]
 fn models_plants_and_mappings_with_some_words_changed_are_read_or_refused() {
     let mapping = "time = \"t\"\ntrial = \"none\"\n[joint.boom]\ninput = \"u\"\noutput = \"y\"\n";
     let texts = [
@@ -170,17 +147,5 @@ fn models_plants_and_mappings_with_some_words_changed_are_read_or_refused() {
             });
             assert!(read.is_ok(), "number {number}: {text}");
         }
-    }
-}
-
-#[test]
-fn a_log_that_grows_by_any_bytes_is_read_or_refused() {
-    for number in 0..count(60) {
-        let mut rng = ChaCha8Rng::seed_from_u64(number);
-        let mut text = log_text().into_bytes();
-        mutate(&mut text, &mut rng);
-        text.insert(0, 7);
-        let grown = std::panic::catch_unwind(|| attempts::growing(&text));
-        assert!(grown.is_ok(), "number {number}");
     }
 }

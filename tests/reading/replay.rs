@@ -12,7 +12,6 @@ const TARGETS: &[Target] = &[
     ("columns", attempts::columns),
     ("csv", |bytes| attempts::log("log.csv", bytes)),
     ("expression", attempts::expression),
-    ("growing", attempts::growing),
     #[cfg(feature = "mat")]
     ("mat5", |bytes| attempts::log("log.mat", bytes)),
     #[cfg(feature = "mat")]

@@ -144,11 +144,6 @@ impl DataArgs {
         self.reading.options()
     }
 
-    /// Reads `path` in place of all logs.
-    pub(crate) fn read_only(&self, path: &Path) -> anyhow::Result<Experiment> {
-        Ok(Experiment::read(&[path.to_owned()], &self.options()?))
-    }
-
     /// Whether no joint is named, so that all of the logs are used.
     pub(crate) fn has_all_joints(&self) -> bool {
         self.reading.joint.is_empty()

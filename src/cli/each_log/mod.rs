@@ -24,7 +24,7 @@ use crate::cli::output::{CsvText, check_outputs, check_tables, target_of, write_
 
 pub(crate) use each::Each;
 use store::name_of;
-pub(crate) use store::{kept_in, read_folders};
+pub(crate) use store::{Merged, kept_in, read_folders};
 pub(crate) use with_parent::end_with_parent;
 
 /// Many logs, each by itself.

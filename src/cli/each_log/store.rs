@@ -78,6 +78,17 @@ impl Kept {
     }
 }
 
+/// Whether a file holds JSON of another program, which is nobody's result: not even a damaged one.
+pub(crate) fn is_foreign(path: &Path) -> bool {
+    let is_file = path.metadata().is_ok_and(|found| found.is_file());
+    let text = if is_file { std::fs::read(path).unwrap_or_default() } else { Vec::new() };
+    let is_result = |document: &Value| {
+        let schema = document.get("schema").and_then(Value::as_str);
+        schema.is_some_and(|schema| schema.starts_with("tauscope/result/"))
+    };
+    serde_json::from_slice(&text).is_ok_and(|document| !is_result(&document))
+}
+
 /// Refuses what is not a file of its own under the name of a result: it may lead to a log, or be a pipe
 /// that nobody reads.
 pub(crate) fn check_own_file(path: &Path) -> anyhow::Result<()> {
@@ -105,16 +116,28 @@ pub(crate) fn text_of(name: &OsStr) -> String {
     name.to_str().map_or_else(escaped, str::to_owned)
 }
 
-/// All results of some folders, by the names of their logs; and what is not as it should be.
-pub(crate) fn read_folders(
-    folders: &[PathBuf],
-) -> anyhow::Result<(String, Vec<LogResult>, Vec<String>)> {
+/// All results of some folders, by the names of their logs.
+pub(crate) struct Merged {
+    pub(crate) command: String,
+    pub(crate) results: Vec<LogResult>,
+    /// What is not as it should be.
+    pub(crate) failures: Vec<String>,
+    /// Files that are no results.
+    pub(crate) notes: Vec<String>,
+}
+
+/// Reads all results of some folders.
+pub(crate) fn read_folders(folders: &[PathBuf]) -> anyhow::Result<Merged> {
     // A result is told by the name of its file, too, which has a hash of the log's.
     let mut found: BTreeMap<(String, OsString), (PathBuf, Kept)> = BTreeMap::new();
-    let mut unread = Vec::new();
+    let (mut unread, mut foreign) = (Vec::new(), Vec::new());
     for path in results_in(folders)? {
         let kept = match Kept::read(&path) {
             Ok(kept) => kept,
+            Err(_) if is_foreign(&path) => {
+                foreign.push(format!("{}: no result of tauscope, and left alone", path.display()));
+                continue;
+            }
             Err(error) => {
                 unread.push(format!("{error:#}"));
                 continue;
@@ -148,7 +171,7 @@ pub(crate) fn read_folders(
     }
     let of = found.values().map(|(_, kept)| kept.of).max().unwrap_or_default();
     let Some(command) = found.values().next().map(|(_, kept)| kept.command.clone()) else {
-        if let Some(first) = unread.first() {
+        if let Some(first) = unread.iter().chain(&foreign).next() {
             bail!("{first}");
         }
         bail!("no result in these folders; give those of `--results`");
@@ -158,7 +181,8 @@ pub(crate) fn read_folders(
         format!("{missing} of {of} logs have no result yet; run the command again for them")
     });
     let results = found.into_values().map(|(_, kept)| kept.result()).collect();
-    Ok((command, results, unread.into_iter().chain(missing).collect()))
+    let failures = unread.into_iter().chain(missing).collect();
+    Ok(Merged { command, results, failures, notes: foreign })
 }
 
 impl Kept {

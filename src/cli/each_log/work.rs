@@ -13,7 +13,7 @@ use anyhow::{Context as _, anyhow, bail};
 use sha2::{Digest as _, Sha256};
 
 use super::each::Each;
-use super::store::{Kept, check_own_file, name_of, text_of};
+use super::store::{Kept, check_own_file, is_foreign, name_of, text_of};
 use super::typed::Typed;
 use super::with_parent;
 use crate::cli::console::{Bar, Verbosity, message};
@@ -154,6 +154,10 @@ impl Work<'_> {
 
     /// Stands for all that the result of a log depends on.
     fn key(&self, log: &Path) -> anyhow::Result<String> {
+        let place = self.place(log);
+        if is_foreign(&place) {
+            bail!("{}: no result of tauscope has the name of one; move it", place.display());
+        }
         // It is read twice: for its hash, and by the program that works on it.
         if log.metadata().is_ok_and(|found| !found.is_file()) {
             bail!(

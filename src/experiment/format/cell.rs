@@ -3,43 +3,22 @@
 use super::date::{seconds_of_compact_date, seconds_of_date};
 use crate::experiment::table::BadCell;
 
-/// What programs write for a value that is missing, in lower case: `\n` is a database's, those with
-/// `ind` and `nan` the C libraries' of Windows.
-const MISSING: [&str; 19] = [
-    "na",
-    "n/a",
-    "nv",
-    "null",
-    "none",
-    "nan",
-    "-",
-    "--",
-    "\\n",
-    "nan(ind)",
-    "-nan(ind)",
-    "nan(snan)",
-    "-nan(snan)",
-    "1.#ind",
-    "-1.#ind",
-    "1.#qnan",
-    "-1.#qnan",
-    "1.#snan",
-    "-1.#snan",
-];
+/// What programs write for a value that is missing, in lower case and without a sign: `\n` is a database's,
+/// those with `ind` and `nan` the C libraries' of Windows.
+const MISSING: &str = "na n/a nv null none nan - \\n nan(ind) nan(snan) 1.#ind 1.#qnan 1.#snan";
 
-/// What spreadsheet programs write for a value that is none, behind a `#`. At the beginning of a line,
-/// where that would be the mark of a comment, it is taken off.
-pub(super) const NO_VALUES: [&str; 12] = [
+/// What spreadsheet programs write for a value that is none, behind a `#`.
+const NO_VALUES: [&str; 12] = [
     "N/A", "NV", "REF!", "BEZUG!", "DIV/0!", "VALUE!", "WERT!", "NAME?", "NUM!", "ZAHL!", "NULL!",
     "SPILL!",
 ];
 
 /// Whether a cell says that it has no value.
-fn is_missing(text: &str) -> bool {
-    let is_one_of =
-        |text: &str, words: &[&str]| words.iter().any(|word| text.eq_ignore_ascii_case(word));
-    let without_mark = text.strip_prefix('#').unwrap_or(text);
-    is_one_of(text, &MISSING) || is_one_of(without_mark, &NO_VALUES)
+pub(super) fn is_missing(text: &str) -> bool {
+    let unsigned = text.strip_prefix('-').filter(|rest| !rest.is_empty()).unwrap_or(text);
+    let no_value = text.strip_prefix('#').unwrap_or(text);
+    MISSING.split(' ').any(|word| unsigned.eq_ignore_ascii_case(word))
+        || NO_VALUES.iter().any(|word| no_value.eq_ignore_ascii_case(word))
 }
 
 /// The number in a cell; NaN where there is none. A comma may stand for the point where it
@@ -236,6 +215,10 @@ mod tests {
             "2024-05-01T14:00:00.25+02:00",
             "2024/05/01 12:00:00.25",
             "01-May-2024 12:00:00.25",
+            "2024-05-01 12:00:00.25 UTC",
+            "2024-05-01 14:00:00.25 +0200",
+            "2024-05-01 14:00:00.25 +02:00",
+            "2024-05-01T14:00:00.25+02:00[Europe/Berlin]",
         ] {
             assert!((time(text) - 1_714_564_800.25).abs() < 1e-6, "{text}: {}", time(text));
         }
@@ -246,6 +229,7 @@ mod tests {
             ("26:00:00.25", 93_600.25),
             ("00:01.5", 1.5),
             ("1.5 sec", 1.5),
+            ("1.5 s", 1.5),
             ("0 days 00:00:01.010000", 1.01),
             ("1 day, 0:00:02", 86_402.0),
             ("-1 days +23:59:59.5", -0.5),

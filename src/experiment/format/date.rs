@@ -4,8 +4,20 @@ use jiff::Timestamp;
 use jiff::civil::{Date, DateTime, Time};
 use jiff::tz::TimeZone;
 
-/// Seconds since 1970 of a date and time of ISO 8601, since midnight of a time of day, or of a time that
-/// has passed.
+/// Dates whose order their form tells: with dots the day is first, as everywhere; where clocks count to twelve,
+/// the month is. Which comes first in `3/1/2026 10:15:00` is not known.
+const FORMS: [&str; 8] = [
+    "%d.%m.%Y %H:%M:%S%.f",
+    "%d.%m.%Y %H:%M",
+    "%Y/%m/%d %H:%M:%S%.f",
+    "%Y/%m/%d %H:%M",
+    "%d-%b-%Y %H:%M:%S%.f",
+    "%d-%b-%Y %H:%M",
+    "%m/%d/%Y %I:%M:%S%.f %p",
+    "%m/%d/%Y %I:%M %p",
+];
+
+/// Seconds since 1970 of a date and time, since midnight of a time of day, or of a time that has passed.
 pub(super) fn seconds_of_date(text: &str) -> Option<f64> {
     let text = text.trim().trim_matches('"');
     // Most words are known at once to be no date.
@@ -13,20 +25,15 @@ pub(super) fn seconds_of_date(text: &str) -> Option<f64> {
         return None;
     }
     let text = with_point(&text.replace(',', "."));
-    if let Some(seconds) = text.strip_suffix(" sec") {
+    if let Some(seconds) = text.strip_suffix(" sec").or_else(|| text.strip_suffix(" s")) {
         return seconds.parse().ok();
     }
-    let text = with_dashes(&text).unwrap_or(text);
-    if let Some(civil) = spelled(&text).and_then(|civil| civil.to_zoned(TimeZone::UTC).ok()) {
-        return Some(seconds(civil.timestamp()));
-    }
-    if let Ok(stamp) = text.parse::<Timestamp>() {
+    if let Ok(stamp) = with_zone(&text).parse::<Timestamp>() {
         return Some(seconds(stamp));
     }
-    let midnight = Date::constant(1970, 1, 1);
     let civil = match text.parse::<Time>() {
-        Ok(time) if !text.contains('-') => Some(midnight.to_datetime(time)),
-        _ => text.parse::<DateTime>().ok(),
+        Ok(time) if !text.contains('-') => Some(Date::constant(1970, 1, 1).to_datetime(time)),
+        _ => text.parse().ok().or_else(|| spelled(&text)),
     };
     let zoned = civil.and_then(|civil| civil.to_zoned(TimeZone::UTC).ok());
     zoned.map_or_else(|| passed(&text), |zoned| Some(seconds(zoned.timestamp())))
@@ -36,17 +43,21 @@ fn seconds(stamp: Timestamp) -> f64 {
     stamp.as_second() as f64 + f64::from(stamp.subsec_nanosecond()) * 1e-9
 }
 
-/// A date whose order its form tells: `01.03.2026 10:15:00`, with its day first, as everywhere where
-/// dots stand between, and `3/1/2026 10:15:00 AM`, with its month first, as everywhere where clocks count
-/// to twelve. Which comes first in `3/1/2026 10:15:00` is not known.
+/// `2026-03-01 10:15:00+01:00`, of which databases write `2026-03-01 10:15:00 +0100`, and `… UTC`.
+fn with_zone(text: &str) -> String {
+    match text.rsplit_once(' ') {
+        Some((date, "UTC" | "GMT" | "Z")) => format!("{date}Z"),
+        Some((date, zone)) if zone.starts_with(['+', '-']) => format!("{date}{zone}"),
+        _ => text.to_owned(),
+    }
+}
+
+/// A date in one of the forms.
 fn spelled(text: &str) -> Option<DateTime> {
-    const DAY_FIRST: [&str; 2] = ["%d.%m.%Y %H:%M:%S%.f", "%d.%m.%Y %H:%M"];
-    const MONTH_FIRST: [&str; 2] = ["%m/%d/%Y %I:%M:%S%.f %p", "%m/%d/%Y %I:%M %p"];
     let (date, _) = text.split_once(' ')?;
-    let (mark, forms) = if date.contains('.') { ('.', DAY_FIRST) } else { ('/', MONTH_FIRST) };
     // Of two digits it is not known which century they are of.
-    date.rsplit_once(mark).filter(|(_, year)| year.len() == 4)?;
-    forms.iter().find_map(|form| DateTime::strptime(form, text).ok())
+    date.split(['.', '/', '-']).find(|part| part.len() == 4)?;
+    FORMS.iter().find_map(|form| DateTime::strptime(form, text).ok())
 }
 
 /// Seconds since 1970 of `20260301101500`, or with milliseconds, `20260301101500120`. Counts of seconds,
@@ -67,34 +78,12 @@ pub(super) fn seconds_of_compact_date(text: &str) -> Option<f64> {
 
 /// `10:00:01.250`, with the milliseconds behind a point that some loggers write behind a colon.
 fn with_point(text: &str) -> String {
-    let clock = text
-        .rsplit_once(' ')
-        .filter(|(_, half)| half.eq_ignore_ascii_case("am") || half.eq_ignore_ascii_case("pm"));
-    let clock = clock.map_or(text, |(clock, _)| clock);
-    match clock.rsplit_once(':') {
-        Some((before, millis)) if millis.len() == 3 && before.matches(':').count() == 2 => {
-            let behind = text.get(clock.len()..).unwrap_or_default();
-            format!("{before}.{millis}{behind}")
-        }
+    let parts = text.rsplit_once(':').filter(|(before, _)| before.matches(':').count() == 2);
+    let digits = |behind: &str| behind.bytes().take_while(u8::is_ascii_digit).count();
+    match parts {
+        Some((before, millis)) if digits(millis) == 3 => format!("{before}.{millis}"),
         _ => text.to_owned(),
     }
-}
-
-/// The date of ISO 8601 that `2026/03/01 10:15` and MATLAB's `01-Mar-2026 10:15` are.
-fn with_dashes(text: &str) -> Option<String> {
-    const MONTHS: [&str; 12] =
-        ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
-    let (date, time) = text.split_once(' ')?;
-    let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
-    let parts: Vec<&str> = date.split(['/', '-']).collect();
-    let [first, second, third] = parts.as_slice() else { return None };
-    if first.len() == 4 && date.contains('/') && [first, second, third].iter().all(|p| is_number(p))
-    {
-        return Some(format!("{first}-{second:0>2}-{third:0>2} {time}"));
-    }
-    let month = MONTHS.iter().position(|month| second.eq_ignore_ascii_case(month))? + 1;
-    let is_date = third.len() == 4 && is_number(first) && is_number(third);
-    is_date.then(|| format!("{third}-{month:02}-{first:0>2} {time}"))
 }
 
 /// Seconds of a time that has passed: `1 days 02:03:04.5` as pandas writes it, `26:03:04.5`, or `03:04.5`,

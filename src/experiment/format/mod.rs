@@ -22,8 +22,7 @@ mod text;
 #[cfg(feature = "xlsx")]
 mod xlsx;
 
-pub(super) use csv::GrowingRows;
 pub(super) use date::date_of_seconds;
-pub(crate) use registry::format_names;
-pub(super) use registry::{endings, is_named_like_a_log, is_text, open};
+pub(super) use registry::{endings, is_named_like_a_log, open};
+pub(crate) use registry::{format_names, line_end_of};
 pub(super) use text::text_of;

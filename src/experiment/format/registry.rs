@@ -11,6 +11,7 @@ use super::mat;
 use super::mcap;
 #[cfg(feature = "parquet")]
 use super::parquet;
+use super::text;
 #[cfg(feature = "xlsx")]
 use super::xlsx;
 use crate::experiment::error::ReadError;
@@ -202,11 +203,15 @@ fn foreign(start: &[u8]) -> Option<&'static Foreign> {
     FOREIGN.iter().find(|foreign| (foreign.starts)(start))
 }
 
-/// Whether a log that begins like this, or will be called so, is text.
-pub(in crate::experiment) fn is_text(path: &Path, start: &[u8]) -> bool {
+/// The bytes that end a line of a log that begins like this, or will be called so; none where it is no text.
+pub(crate) fn line_end_of(path: &Path, start: &[u8]) -> &'static [u8] {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let other = |format: &&Format| format.ends(&name) || (format.starts)(start);
-    !is_gzip(start) && foreign(start).is_none() && FORMATS.iter().filter(other).all(Format::is_text)
+    let is_other =
+        |format: &Format| !format.is_text() && (format.ends(&name) || (format.starts)(start));
+    if is_gzip(start) || foreign(start).is_some() || FORMATS.iter().any(is_other) {
+        return b"";
+    }
+    text::line_end_of(start)
 }
 
 impl Format {

@@ -1,159 +1,122 @@
 //! Bytes of a file as UTF-8 text: unpacked, decoded, and with its hash at the end.
 
+use std::cell::RefCell;
 use std::fs::File;
-use std::io::{self, Chain, Cursor, Read};
-use std::path::{Path, PathBuf};
+use std::io::{self, Cursor, Read};
+use std::path::Path;
+use std::rc::Rc;
 
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use encoding_rs_io::DecodeReaderBytesBuilder;
 use flate2::read::MultiGzDecoder;
 
-use super::blanks::Tabbed;
 use super::first_bytes::is_gzip;
 use crate::experiment::error::ReadError;
 use crate::experiment::source::{Hashing, Source, source_of};
 
 /// Bytes that are looked at to find out how a text is written.
-pub(super) const SNIFFED_BYTES: usize = 64 * 1024;
+const SNIFFED_BYTES: usize = 64 * 1024;
 
-/// A file whose first bytes were looked at.
-type Plain = Hashing<Chain<Cursor<Vec<u8>>, File>>;
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// The bytes of a text, and where they come from.
-pub(super) enum Bytes {
-    /// As they stand in the file.
-    Plain(Plain),
-    /// Unpacked or decoded from those of the file.
-    Made(Box<dyn Read>, PathBuf),
+/// The bytes of a text, without a byte order mark, and where they come from.
+pub(super) struct Bytes {
+    text: Box<dyn Read>,
+    /// The file, whose bytes are hashed as they are read; none of a text that was made of a workbook.
+    file: Option<Rc<RefCell<Hashing<File>>>>,
+}
+
+/// A file from which the layers above it read, and whose hash is asked for at the end.
+struct Shared(Rc<RefCell<Hashing<File>>>);
+
+impl Read for Shared {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.0.borrow_mut().read(buffer)
+    }
 }
 
 impl Bytes {
-    /// Opens the file, and its first bytes as text.
+    /// Opens the file, and its first bytes as text with a line feed at the end of each line.
     pub(super) fn open(path: &Path) -> Result<(Self, Vec<u8>), ReadError> {
         let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-        let mut file = File::open(path).map_err(io_error)?;
-        let start = start_of(&mut file).map_err(io_error)?;
-        let whole = Cursor::new(start.clone()).chain(file);
-        if !is_gzip(&start) {
-            return match encoding_of(&start) {
-                None if has_old_line_ends(&start) => Ok(Self::with_line_feeds(path, whole, start)),
-                None => Ok((Self::Plain(Hashing::new(whole)), start)),
-                Some(encoding) => Self::decoded(path, whole, encoding),
-            };
+        let file = Rc::new(RefCell::new(Hashing::new(File::open(path).map_err(io_error)?)));
+        let (mut start, mut text) = looked_at(Shared(Rc::clone(&file))).map_err(io_error)?;
+        if is_gzip(&start) {
+            let unpacked = looked_at(MultiGzDecoder::new(text));
+            (start, text) = unpacked.map_err(|error| damaged(path, error.to_string()))?;
+            if encoding_of(&start).is_none() && start.contains(&0) {
+                return Err(damaged(path, "what is packed is no text".to_owned()));
+            }
         }
-        let mut unpacked = MultiGzDecoder::new(whole);
-        let start = start_of(&mut unpacked).map_err(|error| damaged(path, &error))?;
-        if encoding_of(&start).is_none() && start.contains(&0) {
-            return Err(ReadError::Format {
-                path: path.to_owned(),
-                format: "CSV packed by gzip",
-                reason: "what is packed is no text".to_owned(),
-                remedy: "unpack it with `gunzip`",
-            });
+        if let Some(encoding) = encoding_of(&start) {
+            // Decoded piece by piece: bytes that never end are never held.
+            let mut builder = DecodeReaderBytesBuilder::new();
+            let decoded = builder.encoding(Some(encoding)).bom_override(true).build(text);
+            (start, text) = looked_at(decoded).map_err(io_error)?;
         }
-        let whole = Cursor::new(start.clone()).chain(unpacked);
-        match encoding_of(&start) {
-            None => Ok(Self::unpacked(path, whole, start)),
-            Some(encoding) => Self::decoded(path, whole, encoding),
-        }
-    }
-
-    /// Text that was made of the file at `path`, and its first bytes.
-    fn unpacked(path: &Path, whole: impl Read + 'static, start: Vec<u8>) -> (Self, Vec<u8>) {
-        if has_old_line_ends(&start) {
-            return Self::with_line_feeds(path, whole, start);
-        }
-        (Self::Made(Box::new(whole), path.to_owned()), start)
-    }
-
-    /// A text whose lines end with a carriage return alone.
-    fn with_line_feeds(path: &Path, whole: impl Read + 'static, start: Vec<u8>) -> (Self, Vec<u8>) {
-        let mut start = start;
-        with_feeds(&mut start);
-        (Self::Made(Box::new(LineFeeds(whole)), path.to_owned()), start)
-    }
-
-    /// What is still unread, with a tab for each run of blanks.
-    pub(super) fn tabbed(self, path: &Path) -> Self {
-        Self::Made(Box::new(Tabbed::new(self)), path.to_owned())
+        Ok((Self { text, file: Some(file) }, with_line_feeds(start)))
     }
 
     /// A text that was made of a file of another kind.
     #[cfg(feature = "xlsx")]
-    pub(super) fn made(text: Vec<u8>, path: &Path) -> (Self, Vec<u8>) {
+    pub(super) fn made(text: Vec<u8>) -> (Self, Vec<u8>) {
         let start = text.get(..SNIFFED_BYTES).unwrap_or(&text).to_vec();
-        (Self::Made(Box::new(Cursor::new(text)), path.to_owned()), start)
+        (Self { text: Box::new(Cursor::new(text)), file: None }, start)
     }
 
-    /// Decoded piece by piece: bytes that never end are never held.
-    fn decoded(
-        path: &Path,
-        whole: impl Read + 'static,
-        encoding: &'static Encoding,
-    ) -> Result<(Self, Vec<u8>), ReadError> {
-        let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-        let mut builder = DecodeReaderBytesBuilder::new();
-        let mut text = builder.encoding(Some(encoding)).bom_override(true).build(whole);
-        let start = start_of(&mut text).map_err(io_error)?;
-        let whole = Cursor::new(start.clone()).chain(text);
-        Ok(Self::unpacked(path, whole, start))
-    }
-
-    /// The file that was read, all of it.
+    /// The file at `path` that was read, all of it.
     pub(super) fn finish(self, path: &Path) -> Result<Source, ReadError> {
-        match self {
-            Self::Plain(bytes) => bytes.finish(path),
-            Self::Made(_, path) => source_of(&path),
+        drop(self.text);
+        match self.file.and_then(Rc::into_inner) {
+            Some(file) => file.into_inner().finish(path),
+            None => source_of(path),
         }
     }
 }
 
 impl Read for Bytes {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        match self {
-            Self::Plain(bytes) => bytes.read(buffer),
-            Self::Made(bytes, _) => bytes.read(buffer),
-        }
+        self.text.read(buffer)
     }
 }
 
-/// Bytes with a line feed for each carriage return.
-struct LineFeeds<R>(R);
-
-impl<R: Read> Read for LineFeeds<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.0.read(buffer)?;
-        with_feeds(buffer.get_mut(..count).unwrap_or_default());
-        Ok(count)
-    }
-}
-
-fn with_feeds(bytes: &mut [u8]) {
-    for byte in bytes.iter_mut().filter(|byte| **byte == b'\r') {
-        *byte = b'\n';
-    }
-}
-
-/// Whether the lines of a text that starts so end with a carriage return alone, as those of old
-/// computers do: a comment would go on to the end of the file.
-fn has_old_line_ends(start: &[u8]) -> bool {
-    // The last byte may be the first half of a line end.
-    let before = start.split_last().map_or(start, |(_, before)| before);
-    before.contains(&b'\r') && !start.contains(&b'\n')
-}
-
-fn start_of(bytes: &mut impl Read) -> io::Result<Vec<u8>> {
+/// The first bytes of a text, and all of it.
+fn looked_at(mut bytes: impl Read + 'static) -> io::Result<(Vec<u8>, Box<dyn Read>)> {
     let mut start = Vec::new();
     bytes.by_ref().take(SNIFFED_BYTES as u64).read_to_end(&mut start)?;
-    Ok(start)
+    if start.starts_with(BYTE_ORDER_MARK) {
+        start.drain(..BYTE_ORDER_MARK.len());
+    }
+    Ok((start.clone(), Box::new(Cursor::new(start).chain(bytes))))
 }
 
-fn damaged(path: &Path, error: &io::Error) -> ReadError {
+/// A text with a line feed for each carriage return that ends a line alone, as on old computers.
+fn with_line_feeds(mut text: Vec<u8>) -> Vec<u8> {
+    for at in 1..text.len() {
+        if let Some([end @ b'\r', next]) = text.get_mut(at - 1..=at)
+            && !b"\r\n".contains(next)
+        {
+            *end = b'\n';
+        }
+    }
+    text
+}
+
+/// The bytes that end a line of a text that starts so.
+pub(super) fn line_end_of(start: &[u8]) -> &'static [u8] {
+    match encoding_of(start) {
+        Some(encoding) if encoding == UTF_16LE => b"\n\0",
+        Some(encoding) if encoding == UTF_16BE => b"\0\n",
+        _ => b"\n",
+    }
+}
+
+fn damaged(path: &Path, reason: String) -> ReadError {
     ReadError::Format {
         path: path.to_owned(),
         format: "CSV packed by gzip",
-        reason: error.to_string(),
-        remedy: "pack it again, or rename it if it is of another format",
+        reason,
+        remedy: "pack it again, or unpack it if it is of another format",
     }
 }
 

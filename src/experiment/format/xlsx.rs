@@ -98,7 +98,7 @@ fn of_sheet(
 ) -> Result<OpenTable, ReadError> {
     let text = text_of(range).map_err(|error| damaged(path, &error))?;
     budget.take(text.len() as u64).map_err(|error| error.refuse(path))?;
-    let (bytes, start) = Bytes::made(text, path);
+    let (bytes, start) = Bytes::made(text);
     let OpenTable { head, rows } = table(path, bytes, &start, Some(b','), budget.rest())?;
     Ok(OpenTable { head, rows: Box::new(OfSheet { name, count, rows }) })
 }

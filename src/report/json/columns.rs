@@ -40,11 +40,7 @@ struct JointJson<'a> {
 impl<'a> ColumnsJson<'a> {
     /// The JSON of `survey`, with the mappings as `options` on the command line, the likeliest first, and
     /// what is `mended` in the log.
-    pub(crate) fn new(
-        survey: &'a Survey,
-        options: &'a [String],
-        mended: &'a [String],
-    ) -> Self {
+    pub(crate) fn new(survey: &'a Survey, options: &'a [String], mended: &'a [String]) -> Self {
         let (options, alternatives) = match options {
             [first, others @ ..] => (first.as_str(), others),
             [] => ("", options),

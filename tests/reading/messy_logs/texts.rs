@@ -53,6 +53,23 @@ pub(crate) fn texts() -> Vec<Messy> {
             format!("\"Run 7\";;\nDate;01.03.2026;\n;;\n{}", all.replace(',', ";")),
             SAME,
         ),
+        messy("preamble_as_wide.csv", format!("Operator,by,hand\nRate,100,Hz\n{all}"), SAME),
+        messy("blank_lines_above.csv", format!("\n  \n{all}"), SAME),
+        messy(
+            "names_between_single_marks.csv",
+            all.replacen(HEADER, "'time_s','boom.input','boom.output'", 1),
+            SAME,
+        ),
+        messy(
+            "more_names_than_columns.csv",
+            all.replacen(HEADER, "time_s,boom.input,boom.output,further,signals", 1),
+            Expected::Refused(&["row 2", "3 cells", "the header has 5"]),
+        ),
+        messy(
+            "sep_of_a_sheet.csv",
+            format!("sep=;\r\n{}", table(&semicolon, &rows, ";", comma)),
+            SAME,
+        ),
         messy(
             "footer.csv",
             format!("{all}End of measurement\n"),
@@ -225,11 +242,8 @@ pub(crate) fn blanks() -> Vec<Messy> {
         messy("units_below.dat", format!("t  boom.input boom.output\n s V   deg\n{below}"), SAME),
         messy("behind_a_mark.txt", format!("\u{feff}  {aligned}"), SAME),
         messy("numpy_behind_a_mark.txt", format!("\u{feff}# {all}"), SAME),
-        messy(
-            "words_above.dat",
-            format!("Made by hand\n{all}"),
-            Expected::Refused(&["words_above.dat", "below row 1", "leave out lines above"]),
-        ),
+        messy("words_above.dat", format!("Made by hand\n{all}"), SAME),
+        messy("comments_of_another_mark.dat", format!("; exported\n; rig 7\n{all}"), SAME),
         messy(
             "short_row.dat",
             cell(&plain(&rows), 617, 1, "").replacen(",,", ",", 1).replace(',', " "),

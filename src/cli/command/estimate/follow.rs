@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::batch::Threads;
 use crate::delay::{Automatic, InputKind, Settings, Verdict, check_growing, final_part};
-use crate::experiment::{Experiment, GrowingLog, Joint};
+use crate::experiment::{Experiment, Joint, ReadOptions, line_end_of};
 use crate::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
 use crate::study::{JointEstimate, estimate_each};
 use anyhow::{Context as _, bail};
@@ -40,7 +40,7 @@ pub(crate) fn follow(args: &Args, runs: &[Settings], stream: &Stream) -> anyhow:
         bail!("--follow: `auto` looks at the whole record; give a number");
     }
     let path = args.data.only_file().context("--follow")?;
-    let mut log = Followed::of(&path, args);
+    let mut log = Followed::of(&path, args)?;
     let interrupt = Interrupt::watch("at the log's end; Ctrl-C again ends at once");
     let mut reported = Reported::default();
     let work = || watch(args, settings, stream, &mut log, interrupt, &mut reported);
@@ -58,7 +58,7 @@ fn watch(
     args: &Args,
     settings: &Settings,
     stream: &Stream,
-    log: &mut Followed<'_>,
+    log: &mut Followed,
     interrupt: Interrupt,
     reported: &mut Reported,
 ) -> anyhow::Result<()> {
@@ -79,72 +79,75 @@ fn watch(
 }
 
 /// A log that somebody else still writes.
-struct Followed<'a> {
-    args: &'a Args,
+struct Followed {
     path: PathBuf,
+    options: ReadOptions,
     /// Bytes of the log that were read.
     read: u64,
     /// The last of them, by which the log is known again.
     tail: Vec<u8>,
-    kept: Kept,
+    copy: Copied,
 }
 
-/// What is kept of what was read.
-enum Kept {
-    /// Nothing was read yet.
-    Nothing,
-    /// What the text says.
-    Text(Box<GrowingLog>),
-    /// A copy, which is read whole at each look.
-    Copy(Copied),
-}
-
-/// What has come of a log that is no text.
+/// What has come of a log: of a text its whole lines, else all of it.
 struct Copied {
     /// Holds it, in a file with the log's name.
     _folder: tempfile::TempDir,
     file: PathBuf,
+    /// Whether something was written to the file.
+    is_begun: bool,
+    /// What ends a line of the log: nothing where it is no text.
+    line_end: &'static [u8],
+    /// What has come behind the last whole line.
+    rest: Vec<u8>,
 }
 
 impl Copied {
     fn of(path: &Path) -> anyhow::Result<Self> {
         let folder = tempfile::tempdir().context("no temporary folder can be made")?;
         let file = folder.path().join(path.file_name().unwrap_or_default());
-        Ok(Self { _folder: folder, file })
+        Ok(Self { _folder: folder, file, is_begun: false, line_end: b"", rest: Vec::new() })
     }
 
-    /// Takes in what has come: it has no lines to wait for.
-    fn push(&self, bytes: &[u8]) -> anyhow::Result<bool> {
+    /// Takes in what has come; whether that made a line whole, or the log has none.
+    fn push(&mut self, bytes: &[u8]) -> anyhow::Result<bool> {
+        self.rest.extend_from_slice(bytes);
+        if !self.is_begun {
+            self.line_end = line_end_of(&self.file, &self.rest);
+        }
+        let whole = match self.line_end.len() {
+            0 => self.rest.len(),
+            // A line feed of UTF-16 has two bytes, and begins at an even one.
+            width => {
+                let end = self.rest.chunks(width).rposition(|letter| letter == self.line_end);
+                end.map_or(0, |end| (end + 1) * width)
+            }
+        };
+        if whole == 0 {
+            return Ok(false);
+        }
         let mut copy = File::options().create(true).append(true).open(&self.file)?;
-        copy.write_all(bytes)?;
+        copy.write_all(self.rest.get(..whole).unwrap_or_default())?;
+        self.rest.drain(..whole);
+        self.is_begun = true;
         Ok(true)
+    }
+
+    fn is_text(&self) -> bool {
+        !self.line_end.is_empty()
     }
 }
 
-impl<'a> Followed<'a> {
-    fn of(path: &Path, args: &'a Args) -> Self {
-        Self { args, path: path.to_owned(), read: 0, tail: Vec::new(), kept: Kept::Nothing }
+impl Followed {
+    fn of(path: &Path, args: &Args) -> anyhow::Result<Self> {
+        let (options, copy) = (args.data.options()?, Copied::of(path)?);
+        Ok(Self { path: path.to_owned(), options, read: 0, tail: Vec::new(), copy })
     }
 
     /// Takes in what has come since; whether that made a line of a text whole. A log that is not there
     /// yet may come.
     fn catch_up(&mut self) -> anyhow::Result<bool> {
-        let Some(bytes) = self.news()? else { return Ok(false) };
-        if let Kept::Nothing = self.kept {
-            self.kept = if GrowingLog::is_text(&self.path, &bytes) {
-                let mut options = self.args.data.options()?;
-                // What is reported stands: nothing may depend on rows that are still to come.
-                options.repair.as_it_stands = true;
-                Kept::Text(Box::new(GrowingLog::new(&self.path, options)))
-            } else {
-                Kept::Copy(Copied::of(&self.path)?)
-            };
-        }
-        match &mut self.kept {
-            Kept::Nothing => Ok(false),
-            Kept::Text(log) => Ok(log.push(&bytes)),
-            Kept::Copy(copy) => copy.push(&bytes),
-        }
+        self.news()?.map_or(Ok(false), |bytes| self.copy.push(&bytes))
     }
 
     /// What was appended since the last look; nothing else is read.
@@ -181,24 +184,20 @@ impl<'a> Followed<'a> {
     }
 
     /// What its whole lines say, or all of it where it has none; joints that say nothing yet are left out.
-    fn experiment(&mut self) -> anyhow::Result<Experiment> {
-        match &mut self.kept {
-            Kept::Nothing => Ok(Experiment::default()),
-            Kept::Text(log) => Ok(log.experiment()),
-            Kept::Copy(copy) => {
-                let mut experiment = self.args.data.read_only(&copy.file)?;
-                for source in &mut experiment.sources {
-                    source.path.clone_from(&self.path);
-                }
-                Ok(experiment)
-            }
+    fn experiment(&self) -> Experiment {
+        let mut options = self.options.clone();
+        // What is reported of a text stands: nothing may depend on rows that are still to come.
+        options.repair.as_it_stands |= self.copy.is_text();
+        let mut experiment = Experiment::read(std::slice::from_ref(&self.copy.file), &options);
+        for source in &mut experiment.sources {
+            source.path.clone_from(&self.path);
         }
+        experiment
     }
 
     /// An error on a copy, as one on the log.
     fn named(&self, error: &str) -> String {
-        let Kept::Copy(copy) = &self.kept else { return error.to_owned() };
-        error.replace(&copy.file.display().to_string(), &self.path.display().to_string())
+        error.replace(&self.copy.file.display().to_string(), &self.path.display().to_string())
     }
 }
 
@@ -228,9 +227,9 @@ impl Reported {
         args: &Args,
         settings: &Settings,
         stream: &Stream,
-        log: &mut Followed<'_>,
+        log: &Followed,
     ) -> anyhow::Result<()> {
-        let experiment = log.experiment()?;
+        let experiment = log.experiment();
         self.say_failures(args, &experiment, log);
         let own = OwnSettings::of(&experiment.options)?;
         let asked = (settings.clone(), Automatic::default());
@@ -290,7 +289,7 @@ impl Reported {
     }
 
     /// Says what cannot be read, when that has changed: more of the log may mend it.
-    fn say_failures(&mut self, args: &Args, experiment: &Experiment, log: &Followed<'_>) {
+    fn say_failures(&mut self, args: &Args, experiment: &Experiment, log: &Followed) {
         let failures = experiment.failures.iter();
         let failures: Vec<_> = failures.map(|f| log.named(&said(&f.error))).collect();
         if args.output.run.verbosity() == Verbosity::Normal && failures != self.failures {
@@ -356,7 +355,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
         let args = asked(&path);
-        assert!(!Followed::of(&path, &args).catch_up().unwrap(), "there is no log yet");
+        assert!(!Followed::of(&path, &args).unwrap().catch_up().unwrap(), "there is no log yet");
         let mut file = File::create(&path).unwrap();
         file.write_all(start.as_bytes()).unwrap();
         (folder, file, args, path)
@@ -365,7 +364,7 @@ mod tests {
     #[test]
     fn a_look_reads_what_was_appended_and_no_more() {
         let (_folder, mut file, args, path) = begun("log.csv", "t,a.input,a.output\n");
-        let mut log = Followed::of(&path, &args);
+        let mut log = Followed::of(&path, &args).unwrap();
         assert!(log.catch_up().unwrap());
         let mut samples = 0_u32;
         for rows in [20_000, 1, 0, 3] {
@@ -382,9 +381,7 @@ mod tests {
             assert_eq!(log.catch_up().unwrap(), rows > 0);
             assert_eq!(log.read - before, text.len() as u64);
             samples += rows;
-            assert_eq!(log.experiment().unwrap().joints[0].trials[0].len(), samples as usize);
-            let Kept::Text(text) = &log.kept else { panic!("a text") };
-            assert_eq!(text.waiting(), 0, "none of it is parsed again");
+            assert_eq!(log.experiment().joints[0].trials[0].len(), samples as usize);
         }
         std::fs::write(&path, "a").unwrap();
         assert!(log.catch_up().unwrap_err().to_string().contains("became shorter"));
@@ -393,15 +390,51 @@ mod tests {
     #[test]
     fn what_is_no_text_is_read_from_a_copy() {
         let (_folder, mut file, args, path) = begun("log.mcap", "a");
-        let mut log = Followed::of(&path, &args);
+        let mut log = Followed::of(&path, &args).unwrap();
         assert!(log.catch_up().unwrap());
         file.write_all(b"b\nc").unwrap();
         assert!(log.catch_up().unwrap());
         assert!(!log.catch_up().unwrap(), "nothing came");
-        let Kept::Copy(copy) = &log.kept else { panic!("no text") };
-        assert_eq!(std::fs::read(&copy.file).unwrap(), b"ab\nc");
-        let failures = log.experiment().unwrap().failures;
+        assert_eq!(std::fs::read(&log.copy.file).unwrap(), b"ab\nc");
+        let failures = log.experiment().failures;
         let told = log.named(&failures[0].error.to_string());
         assert!(told.starts_with(&path.display().to_string()), "{told}");
+    }
+
+    #[test]
+    fn the_lines_of_utf_16_are_whole_at_their_own_line_feeds() {
+        // The Gurmukhi letter U+0A15 and U+150A have the byte of a line feed.
+        let text = "\u{feff}t,a.input,a.output,\u{a15}\u{150a}\n0,1,2,\n1,1,3,\u{150a}\n";
+        for to_bytes in [u16::to_le_bytes, u16::to_be_bytes] {
+            let bytes: Vec<u8> = text.encode_utf16().flat_map(to_bytes).collect();
+            let (_folder, _, args, path) = begun("log.csv", "");
+            let mut log = Followed::of(&path, &args).unwrap();
+            let mut whole = 0;
+            for come in 2..=bytes.len() {
+                std::fs::write(&path, &bytes[..come]).unwrap();
+                whole += usize::from(log.catch_up().unwrap());
+            }
+            assert_eq!(whole, 3);
+            let joint = &log.experiment().joints[0];
+            assert_eq!(joint.trials[0].output(), [2.0, 3.0]);
+        }
+    }
+
+    #[test]
+    fn a_row_that_is_not_whole_is_waited_for() {
+        let (_folder, mut file, args, path) = begun("log.csv", "t,a.input,a.output,note\n");
+        let mut log = Followed::of(&path, &args).unwrap();
+        for (text, rows) in [
+            ("0,1,2,\n1,1,3,\n", 2),
+            ("2,1,4,\"two\n", 0),
+            ("lines\"\n3,1,", 3),
+            ("5,\nend of the test,,,\n", 4),
+            ("4,0,6,\n", 0),
+        ] {
+            file.write_all(text.as_bytes()).unwrap();
+            assert!(log.catch_up().unwrap());
+            let joints = log.experiment().joints;
+            assert_eq!(joints.first().map_or(0, |joint| joint.trials[0].len()), rows, "{text}");
+        }
     }
 }

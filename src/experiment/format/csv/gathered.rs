@@ -1,7 +1,7 @@
 //! Rows of a table of text as they come, and the words below it.
 
 use super::super::cell::{DecimalMarks, Time, parse_cell, parse_time};
-use super::super::spelling::{are_units, is_remark};
+use super::super::spelling::{are_units, is_over_lines, is_remark};
 use super::lines::Place;
 use super::milliseconds::Milliseconds;
 use crate::experiment::error::ReadError;
@@ -10,8 +10,9 @@ use crate::experiment::names::shown;
 use crate::experiment::source::Source;
 use crate::experiment::table::{BadCell, Column, Header, Labels, RowNumbers, Table, Wanted};
 
-/// Rows of words that may stand below a table.
+/// Rows of words that may stand below a table, and bytes that each may have.
 const MOST_REMARKS: usize = 20;
+const LONGEST_REMARK: usize = 1 << 16;
 
 /// The last column of a log of LabVIEW, which rows without a comment do not have.
 const COMMENT: &str = "Comment";
@@ -19,35 +20,30 @@ const COMMENT: &str = "Comment";
 /// Memory of a number: itself, and what its vector has to spare.
 const NUMBER_SIZE: usize = 2 * size_of::<f64>();
 
-/// What is said of such times.
-const IN_MILLISECONDS: &str = "the decimals of the times are milliseconds without leading zeros: \
-     `.10` is 10 ms";
-
 /// Rows as they come.
-pub(super) struct Gathered {
+pub(super) struct Gathered<'w> {
+    wanted: &'w Wanted<'w>,
     delimiter: u8,
     marks: DecimalMarks,
     /// Whether times are dates or times of day, as the first one shows.
     are_times_in_words: Option<bool>,
     milliseconds: Milliseconds,
-    /// The column of times, among those of numbers.
-    time: Option<usize>,
     pub(super) table: Table,
     labels: Option<Labels>,
     /// Rows of words and of zero bytes, which belong to the table if rows of numbers follow.
     held_back: Vec<(csv::ByteRecord, Place)>,
-    /// The first row among those of numbers that says what the header or the rows of words below it say,
-    /// where logs were put behind one another or a logger writes its header anew.
-    repeat: Option<u64>,
+    /// Whether one among those of numbers says what the header or the rows of words below it say, where logs
+    /// were put behind one another or a logger writes its header anew.
+    repeats_head: bool,
     /// The rows of words below the header.
-    above: Vec<csv::ByteRecord>,
+    above: Vec<(csv::ByteRecord, Place)>,
     /// Cells of each row, which the first one shows.
     width: Option<usize>,
     budget: Budget,
 }
 
-impl Gathered {
-    pub(super) fn new(wanted: &Wanted<'_>, delimiter: u8, budget: Budget) -> Self {
+impl<'w> Gathered<'w> {
+    pub(super) fn new(wanted: &'w Wanted<'w>, delimiter: u8, budget: Budget) -> Self {
         let path = wanted.path().to_owned();
         let table = Table {
             source: Source { path, sha256: String::new(), bytes: 0 },
@@ -56,55 +52,96 @@ impl Gathered {
             trials: Vec::new(),
             notes: Vec::new(),
         };
-        let labels = wanted.label.map(|_| Labels::default());
-        let (marks, held_back) = (DecimalMarks::of(wanted.numeric.len(), delimiter), Vec::new());
         Self {
+            wanted,
             delimiter,
-            marks,
+            marks: DecimalMarks::of(wanted.numeric.len(), delimiter),
             are_times_in_words: None,
             milliseconds: Milliseconds::new(),
-            time: wanted.numeric.iter().position(|column| wanted.time == Some(*column)),
             table,
-            labels,
-            held_back,
-            repeat: None,
+            labels: wanted.label.map(|_| Labels::default()),
+            held_back: Vec::new(),
+            repeats_head: false,
             above: Vec::new(),
             width: None,
             budget,
         }
     }
 
-    pub(super) fn take(
-        &mut self,
-        record: &csv::ByteRecord,
-        place: &Place,
-        wanted: &Wanted<'_>,
-    ) -> Result<(), ReadError> {
-        self.check_width(wanted, place, record)?;
-        self.check_quotation(wanted, place, record)?;
+    fn note(&mut self, note: &str) {
+        self.table.notes.push(format!("{}: {note}", self.wanted.path().display()));
+    }
+
+    /// Says which rows below the header were left out that are no units.
+    pub(super) fn note_above(&mut self, above: Vec<(csv::ByteRecord, Place)>) {
+        for (record, Place { row, .. }) in above.iter().filter(|(record, _)| !are_units(record)) {
+            let says = says(record);
+            self.note(&format!(
+                "row {row}, below the header, is left out: it holds no number and no time (`{says}`)"
+            ));
+        }
+        self.above = above;
+    }
+
+    /// Takes a row, or holds it back where it may be words below the table, or what a power cut left. A row that
+    /// is wrong because it is cut off is left out.
+    pub(super) fn add(&mut self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
+        let is_odd = is_remark(record, self.delimiter) || has_zero_bytes(record);
+        let is_held = record.as_slice().len() <= LONGEST_REMARK;
+        if is_odd && is_held && !self.table.rows.is_empty() && self.held_back.len() < MOST_REMARKS {
+            self.held_back.push((record.clone(), place));
+            return Ok(());
+        }
+        for (record, place) in std::mem::take(&mut self.held_back) {
+            if !self.repeats_head(&record) {
+                self.take(&record, place)?;
+            } else if !std::mem::replace(&mut self.repeats_head, true) {
+                let row = place.row;
+                self.note(&format!("row {row} repeats the header: such rows are left out"));
+            }
+        }
+        let taken = self.take(record, place);
+        let is_short = record.len() < self.wanted.head.headers.len();
+        if place.is_open && is_short && !is_over_lines(record) && taken.is_err() {
+            self.note(&format!("the last row, {}, is cut off and left out", place.row));
+            return Ok(());
+        }
+        taken
+    }
+
+    /// Whether a row says what the header or a row of words below it says.
+    fn repeats_head(&self, record: &csv::ByteRecord) -> bool {
+        let headers = &self.wanted.head.headers;
+        let is_name = |(cell, header): (&[u8], &Header)| {
+            String::from_utf8_lossy(cell).trim() == header.text.trim()
+        };
+        let is_header = record.len() == headers.len() && record.iter().zip(headers).all(is_name);
+        is_header || self.above.iter().any(|(above, _)| above == record)
+    }
+
+    fn take(&mut self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
+        let wanted = self.wanted;
+        self.check_width(record, place)?;
+        self.check_quotation(record, place)?;
         let row = place.row;
         let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
         let label = wanted.label.map_or(&b""[..], cell);
-        let numbers = wanted.numeric.len() + usize::from(self.milliseconds.is_open());
-        let size = numbers * NUMBER_SIZE + label.len();
+        let size = (wanted.numeric.len() + 1) * NUMBER_SIZE + label.len();
         self.budget.take_values(1, size).map_err(|error| error.refuse(wanted.path()))?;
         let index = self.table.rows.len();
         self.table.rows.push(row);
-        for (place, (column, wanted_at)) in
-            self.table.columns.iter_mut().zip(wanted.numeric).enumerate()
-        {
+        let columns = self.table.columns.iter_mut().zip(wanted.numeric).enumerate();
+        for (place, (column, wanted_at)) in columns {
             let cell = cell(*wanted_at);
             let parsed = if wanted.time == Some(*wanted_at) {
                 let time = time_in(cell, self.delimiter, &mut self.are_times_in_words);
                 column.are_dates = self.are_times_in_words == Some(true);
+                self.milliseconds.take(cell);
                 time
             } else {
                 parse_cell(cell, self.delimiter)
             };
             column.push(self.marks.agreed(cell, parsed, place, (row, index)), row);
-            if self.time == Some(place) {
-                self.milliseconds.take(cell, column.values.len());
-            }
         }
         if let Some(labels) = &mut self.labels {
             let memory = (wanted.path(), &self.budget);
@@ -115,13 +152,8 @@ impl Gathered {
 
     /// Refuses a row of more or fewer cells than the first one. That one may have a mark behind its last
     /// cell which the header does not have, or the other way round; such a mark makes no cell.
-    fn check_width(
-        &mut self,
-        wanted: &Wanted<'_>,
-        place: &Place,
-        record: &csv::ByteRecord,
-    ) -> Result<(), ReadError> {
-        let (headers, found) = (&wanted.head.headers, record.len());
+    fn check_width(&mut self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
+        let (headers, found) = (&self.wanted.head.headers, record.len());
         let expected = headers.len();
         let last = headers.last().map(|header| header.name.as_str());
         let ends_blank = record.iter().next_back().is_some_and(|cell| cell.trim_ascii().is_empty());
@@ -134,141 +166,60 @@ impl Gathered {
         if is_as_wide || lacks_comment {
             return Ok(());
         }
-        let (path, row, lines) = (wanted.path().to_owned(), place.row, place.lines);
+        let (path, Place { row, lines, .. }) = (self.wanted.path().to_owned(), place);
         Err(ReadError::UnequalRow { path, row, found, expected: width, lines })
     }
 
     /// Refuses a row one cell of which holds further rows: a quotation mark in it is never closed, or far
     /// behind.
-    fn check_quotation(
-        &self,
-        wanted: &Wanted<'_>,
-        place: &Place,
-        record: &csv::ByteRecord,
-    ) -> Result<(), ReadError> {
-        if place.lines < 2 {
+    fn check_quotation(&self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
+        let Place { row, lines, .. } = place;
+        let marks = self.wanted.head.headers.len().saturating_sub(1);
+        if lines < 2 || marks == 0 {
             return Ok(());
         }
-        let marks = wanted.head.headers.len().saturating_sub(1);
-        let is_row = |line: &[u8]| {
-            // A row of `marks + 1` cells.
-            marks > 0 && line.split(|byte| *byte == self.delimiter).nth(marks).is_some()
-        };
+        let is_row = |line: &[u8]| line.split(|byte| *byte == self.delimiter).nth(marks).is_some();
         // The first line of a cell is the rest of its own row.
         let holds_rows = |cell: &[u8]| cell.split(|byte| *byte == b'\n').skip(1).any(is_row);
         if !record.iter().any(holds_rows) {
             return Ok(());
         }
-        let (path, row, lines) = (wanted.path().to_owned(), place.row, place.lines);
-        Err(ReadError::OpenQuotation { path, row, lines })
+        Err(ReadError::OpenQuotation { path: self.wanted.path().to_owned(), row, lines })
     }
 
-    /// Says which rows below the header were left out that are no units.
-    pub(super) fn note_above(&mut self, above: &[(csv::ByteRecord, Place)], wanted: &Wanted<'_>) {
-        self.above = above.iter().map(|(record, _)| record.clone()).collect();
-        for (record, place) in above.iter().filter(|(record, _)| !are_units(record)) {
-            let (path, row) = (wanted.path().display(), place.row);
-            let says = says(record);
-            self.table.notes.push(format!(
-                "{path}: row {row}, below the header, is left out: it holds no number and no time \
-                 (`{says}`)"
-            ));
-        }
-    }
-
-    /// Holds a row back that may be words below the table, or what a power cut left; whether it does.
-    pub(super) fn holds_back(
-        &mut self,
-        record: &csv::ByteRecord,
-        place: &Place,
-        wanted: &Wanted<'_>,
-    ) -> Result<bool, ReadError> {
-        let is_held = !self.table.rows.is_empty()
-            && self.held_back.len() < MOST_REMARKS
-            && (is_remark(record, self.delimiter) || has_zero_bytes(record));
-        if is_held {
-            let memory = self.budget.take(memory_of(record));
-            memory.map_err(|error| error.refuse(wanted.path()))?;
-            self.held_back.push((record.clone(), *place));
-        }
-        Ok(is_held)
-    }
-
-    /// Takes the rows that were held back, as more follows, but for those that say what the header says.
-    pub(super) fn release(&mut self, wanted: &Wanted<'_>) -> Result<(), ReadError> {
-        for (record, place) in self.take_held_back() {
-            if self.repeats_head(&record, wanted) {
-                self.repeat.get_or_insert(place.row);
-            } else {
-                self.take(&record, &place, wanted)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Whether a row says what the header or a row of words below it says.
-    fn repeats_head(&self, record: &csv::ByteRecord, wanted: &Wanted<'_>) -> bool {
-        let headers = &wanted.head.headers;
-        let is_name = |(cell, header): (&[u8], &Header)| {
-            String::from_utf8_lossy(cell).trim() == header.text.trim()
-        };
-        let is_header = record.len() == headers.len() && record.iter().zip(headers).all(is_name);
-        is_header || self.above.contains(record)
-    }
-
-    /// The rows that were held back, and are no longer.
-    pub(super) fn take_held_back(&mut self) -> Vec<(csv::ByteRecord, Place)> {
-        let held_back = std::mem::take(&mut self.held_back);
-        self.budget.give_back(held_back.iter().map(|(record, _)| memory_of(record)).sum());
-        held_back
-    }
-
-    /// Says that words below the table, which were held back, are no rows of it.
-    pub(super) fn leave_out(&mut self, wanted: &Wanted<'_>) {
-        let Some((first, place)) = self.held_back.first() else { return };
-        let (rows, hold) = match self.held_back.len() {
-            1 => (format!("the last row, {}, is left out", place.row), "it holds"),
-            count => {
-                let rows = format!("the last {count} rows, from {} on, are left out", place.row);
-                (rows, "they hold")
-            }
-        };
-        let what = if has_zero_bytes(first) {
-            "bytes of zero, as a power cut leaves them".to_owned()
-        } else {
-            format!("no number and no time (`{}`)", says(first))
-        };
-        let path = wanted.path().display();
-        self.table.notes.push(format!("{path}: {rows}: {hold} {what}"));
-    }
-
-    fn note_once(&mut self, note: String) {
-        if !self.table.notes.contains(&note) {
-            self.table.notes.push(note);
-        }
-    }
-
-    /// What came so far, of this much of the file.
-    pub(super) fn table_of(&mut self, source: Source) -> &Table {
-        self.table.source = source;
+    /// The table of all rows, which were read from this file. What was held back is no row of it.
+    pub(super) fn finish(mut self, source: Source) -> Table {
+        self.note_held_back();
         for (place, column) in self.table.columns.iter_mut().enumerate() {
             if let Some((row, index, cell)) = self.marks.doubtful(place) {
                 column.values.truncate(*index);
                 column.error = Some((*row, BadCell::Thousands(cell.clone())));
             }
         }
-        let time = self.time.and_then(|time| self.table.columns.get_mut(time));
+        let time = self.wanted.numeric.iter().position(|column| self.wanted.time == Some(*column));
+        let time = time.and_then(|time| self.table.columns.get_mut(time));
         if time.is_some_and(|time| self.milliseconds.apply(&mut time.values)) {
-            let note = format!("{}: {IN_MILLISECONDS}", self.table.source.path.display());
-            self.note_once(note);
+            self.note(
+                "the decimals of the times are milliseconds without leading zeros: `.10` is 10 ms",
+            );
         }
-        if let Some(row) = self.repeat {
-            let path = self.table.source.path.display();
-            let note = format!("{path}: row {row} repeats the header: such rows are left out");
-            self.note_once(note);
-        }
-        self.table.trials = self.labels.as_ref().map_or_else(Vec::new, Labels::runs);
-        &self.table
+        let trials = self.labels.as_ref().map_or_else(Vec::new, Labels::runs);
+        Table { source, trials, ..self.table }
+    }
+
+    fn note_held_back(&mut self) {
+        let count = self.held_back.len();
+        let Some((first, place)) = self.held_back.first() else { return };
+        let what = if has_zero_bytes(first) {
+            "bytes of zero, as a power cut leaves them".to_owned()
+        } else {
+            format!("no number and no time (`{}`)", says(first))
+        };
+        let row = place.row;
+        self.note(&match count {
+            1 => format!("the last row, {row}, is left out: it holds {what}"),
+            _ => format!("the last {count} rows, from {row} on, are left out: they hold {what}"),
+        });
     }
 }
 
@@ -295,11 +246,4 @@ fn says(record: &csv::ByteRecord) -> String {
     let cells = record.iter().map(String::from_utf8_lossy);
     let first = cells.map(|cell| cell.trim().to_owned()).find(|cell| !cell.is_empty());
     shown(&first.unwrap_or_default())
-}
-
-/// Memory of a row that is kept: its text, and the ends of its cells with what a list that grows has to
-/// spare.
-pub(super) fn memory_of(record: &csv::ByteRecord) -> u64 {
-    const CELL: u64 = 2 * size_of::<usize>() as u64;
-    record.as_slice().len() as u64 + CELL * record.len() as u64
 }

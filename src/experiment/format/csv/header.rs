@@ -38,30 +38,21 @@ pub(super) fn check_parted(head: &Head, first: &csv::ByteRecord) -> Result<(), R
     if first.len() > 1 || names < 2 || values < 2 {
         return Ok(());
     }
-    let (reason, remedy) = if names == values {
-        let row = head.header_row;
-        (
-            format!(
-                "its cells are parted by blanks, and below row {row}, which has {names} words, the rows \
-                 are not all of {names} numbers"
-            ),
-            "leave out lines above the header, or part the cells by commas, semicolons or tabs",
-        )
-    } else {
-        (
-            format!(
-                "its cells are parted by blanks, {names} words in the header and {values} in the first row"
-            ),
-            "part them by commas, semicolons or tabs, or write each name as one word",
-        )
-    };
-    Err(ReadError::Format { path: head.path.clone(), format: "a table of text", reason, remedy })
+    Err(ReadError::Format {
+        path: head.path.clone(),
+        format: "a table of text",
+        reason: format!(
+            "its cells are parted by blanks, {names} words in row {} and {values} in the row below it",
+            head.header_row
+        ),
+        remedy: "part them by commas, semicolons or tabs, or write each name as one word",
+    })
 }
 
-/// A name without the quotation marks that a blank before them makes part of the cell.
+/// A name without the quotation marks that a blank before them makes part of the cell, or single ones.
 fn unquoted(cell: &str) -> &str {
-    let behind = cell.trim().strip_prefix('"');
-    behind.and_then(|name| name.strip_suffix('"')).unwrap_or(cell)
+    let inner = |mark: char| cell.trim().strip_prefix(mark)?.strip_suffix(mark);
+    inner('"').or_else(|| inner('\'')).unwrap_or(cell)
 }
 
 /// Refuses a table whose first row of numbers, `first`, has one cell more than there are names: the header
@@ -101,7 +92,7 @@ pub(super) fn describes(
     before: usize,
 ) -> bool {
     let are_all_units = are_units(record);
-    if !are_all_units && (before >= MOST_ABOVE || !is_remark(record, delimiter)) {
+    if before >= MOST_ABOVE || !are_all_units && !is_remark(record, delimiter) {
         return false;
     }
     let time = find_time_column(head);

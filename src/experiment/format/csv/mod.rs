@@ -2,7 +2,6 @@
 
 mod comments;
 mod gathered;
-mod growing;
 mod header;
 mod lines;
 mod milliseconds;
@@ -10,25 +9,23 @@ mod milliseconds;
 use std::io::{self, Read as _};
 use std::path::Path;
 
-use super::spelling::{Spelling, is_over_lines};
+use super::spelling::Spelling;
 use super::text::Bytes;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
-use gathered::{Gathered, memory_of};
+use gathered::Gathered;
 use header::{check_header_size, check_last_name, check_parted, describes, head};
-use lines::{LineEnds, Lines, Place, next, place_just_read, reader};
-
-pub(in crate::experiment) use growing::GrowingRows;
+use lines::{Place, Records};
 
 /// What follows the header, still unread.
 struct Unread {
-    reader: csv::Reader<Lines<Bytes>>,
+    records: Records,
     delimiter: u8,
     /// Rows of words between the header and the first row.
     above: Vec<(csv::ByteRecord, Place)>,
-    /// The first row.
-    first: Option<(csv::ByteRecord, Place)>,
+    /// Where the first row is, which was read.
+    first: Option<Place>,
     budget: Budget,
 }
 
@@ -49,85 +46,48 @@ pub(super) fn table(
 ) -> Result<OpenTable, ReadError> {
     let io_error = |source| ReadError::Io { path: path.to_owned(), source };
     let (spelling, is_text) = (Spelling::of(start, delimiter), delimiter.is_none());
-    let (delimiter, (before, lines)) = (spelling.mark(), spelling.preamble);
+    let (before, _) = spelling.preamble;
     io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink()).map_err(io_error)?;
-    if spelling.is_of_blanks() {
-        bytes = bytes.tabbed(path);
-    }
-    let lines = LineEnds::after(bytes, lines).within(&budget);
-    let mut reader = reader(delimiter, lines);
-    let mut record = csv::ByteRecord::new();
-    if !next(&mut reader, &mut record, path)? {
+    let delimiter = spelling.mark();
+    let mut records = Records::of(bytes, spelling, &budget);
+    let Some(place) = records.next(path)? else {
         return Err(ReadError::Empty { path: path.to_owned() });
+    };
+    check_header_size(path, records.record.len(), &budget)?;
+    let mut head = head(path, &records.record, place.row)?;
+    records.comments().width = head.headers.len();
+    let mut above = Vec::new();
+    let mut first = records.next(path)?;
+    if first.is_some() {
+        check_parted(&head, &records.record)?;
     }
-    check_header_size(path, record.len(), &budget)?;
-    let mut head = head(path, &record, place_just_read(&mut reader, &record).row)?;
-    let (mut above, mut first) = (Vec::new(), None);
-    while first.is_none() && next(&mut reader, &mut record, path)? {
-        if above.is_empty() {
-            check_parted(&head, &record)?;
-        }
-        budget.take(memory_of(&record)).map_err(|error| error.refuse(path))?;
-        let row = (record.clone(), place_just_read(&mut reader, &record));
-        if describes(&mut head, &record, delimiter, above.len()) {
-            above.push(row);
-        } else {
+    while let Some(place) = first {
+        if !describes(&mut head, &records.record, delimiter, above.len()) {
             // Sheets say which cell is of which column.
             if is_text {
-                check_last_name(&head, &record, row.1.row)?;
+                check_last_name(&head, &records.record, place.row)?;
             }
-            first = Some(row);
+            break;
         }
+        above.push((records.record.clone(), place));
+        first = records.next(path)?;
     }
-    Ok(OpenTable { head, rows: Box::new(Unread { reader, delimiter, above, first, budget }) })
+    Ok(OpenTable { head, rows: Box::new(Unread { records, delimiter, above, first, budget }) })
 }
 
 impl Rows for Unread {
-    fn read(mut self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let mut gathered = Gathered::new(wanted, self.delimiter, self.budget.rest());
-        gathered.note_above(&self.above, wanted);
-        if let Some((record, place)) = self.first.take() {
-            gathered.take(&record, &place, wanted)?;
+    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+        let Self { mut records, delimiter, above, first, budget } = *self;
+        let mut gathered = Gathered::new(wanted, delimiter, budget);
+        gathered.note_above(above);
+        let mut next = first;
+        while let Some(place) = next {
+            gathered.add(&records.record, place)?;
+            next = records.next(wanted.path())?;
         }
-        let mut record = csv::ByteRecord::new();
-        while next(&mut self.reader, &mut record, wanted.path())? {
-            let place = place_just_read(&mut self.reader, &record);
-            if gathered.holds_back(&record, &place, wanted)? {
-                continue;
-            }
-            gathered.release(wanted)?;
-            if let Err(error) = gathered.take(&record, &place, wanted) {
-                if !self.is_cut_off(&record, wanted)? {
-                    return Err(error);
-                }
-                gathered.table.notes.push(format!(
-                    "{}: the last row, {}, is cut off and left out",
-                    wanted.path().display(),
-                    place.row
-                ));
-            }
-        }
-        let comments = self.reader.get_ref().get_ref().0.comments();
-        comments.check_labels(wanted)?;
-        gathered.table.notes.extend(comments.on_wide(wanted));
-        gathered.leave_out(wanted);
-        let bytes = self.reader.into_inner().into_inner().0.inner;
-        gathered.table_of(bytes.finish(wanted.path())?);
-        Ok(gathered.table)
-    }
-}
-
-impl Unread {
-    /// Whether the row just read is the last one, and was not written to its end.
-    fn is_cut_off(
-        &mut self,
-        record: &csv::ByteRecord,
-        wanted: &Wanted<'_>,
-    ) -> Result<bool, ReadError> {
-        let is_short = record.len() < wanted.head.headers.len() && !is_over_lines(record);
-        let is_last =
-            is_short && !next(&mut self.reader, &mut csv::ByteRecord::new(), wanted.path())?;
-        Ok(is_last && self.reader.get_mut().get_mut().0.last != b'\n')
+        records.comments().check_labels(wanted)?;
+        gathered.table.notes.extend(records.comments().on_wide(wanted));
+        Ok(gathered.finish(records.into_bytes().finish(wanted.path())?))
     }
 }
 
