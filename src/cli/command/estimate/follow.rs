@@ -426,7 +426,8 @@ mod tests {
         let mut log = Followed::of(&path, &args).unwrap();
         for (text, rows) in [
             ("0,1,2,\n1,1,3,\n", 2),
-            ("2,1,4,\"two\n", 0),
+            // Its numbers are whole.
+            ("2,1,4,\"two\n", 3),
             ("lines\"\n3,1,", 3),
             ("5,\nend of the test,,,\n", 4),
             ("4,0,6,\n", 0),

@@ -62,7 +62,9 @@ mod tests {
 
     fn changed(cells: &[&str]) -> Vec<f64> {
         let mut milliseconds = Milliseconds::new();
-        cells.iter().for_each(|cell| milliseconds.take(cell.as_bytes()));
+        for cell in cells {
+            milliseconds.take(cell.as_bytes());
+        }
         let decimals = cells.iter().map(|cell| cell.split_once('.').map_or("0", |(_, part)| part));
         let mut times: Vec<f64> =
             decimals.map(|decimals| format!("0.{decimals}").parse().unwrap()).collect();
