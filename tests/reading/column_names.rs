@@ -92,7 +92,7 @@ fn log(header: &str) -> String {
     let names = header.split(',').count();
     let mut columns: Vec<Vec<f64>> = [joint(0), joint(1)].into_iter().flatten().collect();
     columns.truncate((names - 1) / 2 * 2);
-    if names % 2 == 0 {
+    if names.is_multiple_of(2) {
         columns.push((0..ROWS).map(|row| 100.0 + (row * 104_729 % 89) as f64 / 89.0).collect());
     }
     let mut text = format!("{header}\n");
