@@ -7,6 +7,9 @@ use std::path::PathBuf;
 use super::joint::TrialError;
 use super::names::{did_you_mean, shown};
 
+/// The column of a time, and mappings: of each joint its name, its input and its output.
+type Likely = (Option<String>, Vec<Vec<[String; 3]>>);
+
 /// Why a log, or one joint of it, could not be read.
 ///
 /// `row` is the line of the file, counted from 1, as an editor shows it; where a file has no
@@ -300,7 +303,7 @@ pub enum ReadError {
         available: String,
         /// What names and data suggest, though not for sure: the column of the time, and the name, the
         /// input and the output of each joint, the likeliest of several mappings first.
-        likely: Box<(Option<String>, Vec<Vec<[String; 3]>>)>,
+        likely: Box<Likely>,
     },
     /// A joint that was asked for is not in the log.
     #[error(

@@ -262,13 +262,14 @@ fn read_log(
     let open = || format::open(path, budget.rest());
     let table = open()?;
     let (mut layout, mut found) = match laid_out(&table.head, options) {
-        Err(ReadError::NoJoints { .. }) => match ColumnMap::kept_beside(path) {
-            Some((file, kept)) => laid_out_as_kept(&table.head, &file, kept, options)?,
-            None => {
+        Err(ReadError::NoJoints { .. }) => {
+            if let Some((file, kept)) = ColumnMap::kept_beside(path) {
+                laid_out_as_kept(&table.head, &file, kept, options)?
+            } else {
                 let survey = Survey::of(path, options.memory)?;
                 laid_out_by_names(&table.head, &survey, options)?
             }
-        },
+        }
         found => found?,
     };
     let unequal = layout.without_unequal(&table.head, |column| table.rows.rows_of(column));

@@ -12,12 +12,13 @@ pub(crate) fn columns_table(survey: &Survey, options: &[String], mended: &[Strin
         table.row([column.name.clone(), role(column), unit, column.why.clone()]);
     }
     let mut text = format!("{table}\n");
-    for line in &survey.open {
-        text += &format!("{line}\n");
-    }
+    let mut lines = survey.open.clone();
     for (place, options) in options.iter().enumerate() {
-        let kind = if place == 0 { "as options" } else { "or" };
-        text += &format!("{kind}: {options}\n");
+        lines.push(format!("{}: {options}", if place == 0 { "as options" } else { "or" }));
+    }
+    for line in lines {
+        text += &line;
+        text.push('\n');
     }
     for what in mended {
         text += &format!("where it is read: {what}\n");

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
+use std::process::Command;
 
 use tauscope::experiment::{
     ColumnMap, Experiment, JointColumns, MemoryLimit, ReadError, ReadOptions, Survey,
@@ -91,7 +92,7 @@ fn log(header: &str) -> String {
     let names = header.split(',').count();
     let mut columns: Vec<Vec<f64>> = [joint(0), joint(1)].into_iter().flatten().collect();
     columns.truncate((names - 1) / 2 * 2);
-    if names % 2 == 0 {
+    if names.is_multiple_of(2) {
         columns.push((0..ROWS).map(|row| 100.0 + (row * 104_729 % 89) as f64 / 89.0).collect());
     }
     let mut text = format!("{header}\n");
@@ -166,6 +167,21 @@ fn of_several_inputs_of_a_joint_the_one_that_moves_it_is_not_guessed() {
     let maps = std::iter::once(&survey.map).chain(&survey.alternatives);
     let valve = JointColumns::new("boom", "boom_valve_cmd", "boom_angle");
     assert!(!survey.is_sure && maps.flat_map(|map| &map.joints).any(|joint| *joint == valve));
+}
+
+#[test]
+fn what_a_person_confirms_once_is_read_from_then_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.csv");
+    fs::write(&path, log("Time,Q1,T1")).unwrap();
+    let run = |arguments: &[&str]| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_tauscope"));
+        program.args(arguments).current_dir(folder.path()).output().unwrap()
+    };
+    let refused = String::from_utf8(run(&["estimate", "log.csv"]).stderr).unwrap();
+    assert!(refused.contains("`--time Time --joint 't1=Q1:T1'`"), "{refused}");
+    assert!(run(&["columns", "log.csv", "-w"]).status.success());
+    assert!(run(&["estimate", "log.csv"]).status.success());
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! `tauscope columns`: what a log's columns are taken for, and the mapping that follows.
 
+use std::ffi::OsString;
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use clap::Args as ClapArgs;
@@ -26,8 +27,8 @@ pub(crate) struct Args {
     log: PathBuf,
 
     /// Write the mapping for `--columns` [default file: `columns.toml` beside the log, which is read unasked]
-    #[arg(short = 'w', long = "write", value_name = "FILE.toml", num_args = 0..=1)]
-    write: Option<Option<PathBuf>>,
+    #[arg(short = 'w', long = "write", value_name = "FILE.toml", num_args = 0..=1, default_missing_value = "")]
+    write: Option<OsString>,
 
     #[command(flatten)]
     memory: MemoryArgs,
@@ -39,7 +40,8 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let survey = Survey::of(&args.log, args.memory.limit())?;
     if let Some(path) = &args.write {
-        let path = &path.clone().unwrap_or_else(|| args.log.with_file_name(KEPT));
+        let beside = args.log.with_file_name(KEPT);
+        let path = if path.is_empty() { &beside } else { Path::new(path) };
         check_outputs(&[path], std::slice::from_ref(&args.log))?;
         let mapping = survey.map.to_toml();
         // A mapping may have been corrected by hand.

@@ -46,8 +46,8 @@ pub(super) struct Pair {
 }
 
 impl Pair {
-    fn alone(input: usize, output: usize, is_only: bool) -> Self {
-        Self { input, output, shared: BTreeSet::new(), is_only }
+    fn alone(input: usize, output: usize) -> Self {
+        Self { input, output, shared: BTreeSet::new(), is_only: false }
     }
 
     fn reversed(self) -> Self {
@@ -119,12 +119,15 @@ impl Columns<'_> {
             let is_speed = |column: &usize| self.name(*column).is_some_and(Name::is_speed);
             (inputs, outputs) = outputs.into_iter().partition(is_speed);
         }
-        let pairs = self.sharing(&inputs, &outputs, |name| &name.own - &self.common, is_named);
+        let mut pairs = self.sharing(&inputs, &outputs, |name| &name.own - &self.common);
         let is_one = inputs.len() == 1 || outputs.len() == 1;
-        if !pairs.is_empty() || !is_one {
-            return pairs;
+        if pairs.is_empty() && is_one {
+            pairs = self.sharing(&inputs, &outputs, |name| name.own.clone());
         }
-        self.sharing(&inputs, &outputs, |name| name.own.clone(), is_named)
+        for pair in &mut pairs {
+            pair.is_only = is_named;
+        }
+        pairs
     }
 
     /// The pairs of these columns that share words of those which names have as their `own`.
@@ -133,7 +136,6 @@ impl Columns<'_> {
         inputs: &[usize],
         outputs: &[usize],
         own: impl Fn(&Name) -> BTreeSet<String>,
-        is_only: bool,
     ) -> Vec<Pair> {
         /// Pairs that are compared: those of a thousand inputs with as many outputs.
         const MOST: usize = 1_000_000;
@@ -155,7 +157,7 @@ impl Columns<'_> {
             }
             for output in near {
                 let shared = &words & &own(output);
-                pairs.push(Pair { input: *input, output, shared, is_only });
+                pairs.push(Pair { shared, ..Pair::alone(*input, output) });
             }
         }
         pairs.sort_by_key(|pair| {
@@ -173,7 +175,7 @@ impl Columns<'_> {
         let inputs = self.likely_inputs();
         let outputs = self.best_on(Side::Output, &inputs);
         if let ([input], [output]) = (&*inputs, &*outputs) {
-            return vec![Pair::alone(*input, *output, true)];
+            return vec![Pair { is_only: true, ..Pair::alone(*input, *output) }];
         }
         if inputs.len() * outputs.len() > MOST {
             return Vec::new();
@@ -194,7 +196,8 @@ impl Columns<'_> {
             by_data.then_with(|| key(*input, *output).cmp(&key(*other_input, *other_output)))
         });
         let is_only = inputs.len() == 1;
-        let pairs = found.into_iter().map(|(_, input, output)| Pair::alone(input, output, is_only));
+        let pair = |(_, input, output)| Pair { is_only, ..Pair::alone(input, output) };
+        let pairs = found.into_iter().map(pair);
         each_column_once(pairs.collect())
     }
 
@@ -218,10 +221,10 @@ impl Columns<'_> {
         let best = pairs.iter().map(grade).min();
         // A setpoint and a pressure beside real joints are none.
         pairs.retain(|pair| grade(pair) < Grade::Beside || best >= Some(Grade::Beside));
-        let are_all = self.moving.len() == 2 * pairs.len();
+        let others = self.moving.len().saturating_sub(2 * pairs.len());
         let taken: HashSet<usize> = pairs.iter().flat_map(|p| [p.input, p.output]).collect();
         let free: Vec<usize> = self.free_inputs(&taken).take(COMPARED).collect();
-        let is_one = pairs.len() == 1;
+        let count = pairs.len();
         let (mut joints, mut names) = (Vec::new(), HashSet::new());
         for pair in pairs {
             // `AnalogOut` drives, and `AnalogIn` measures; a setpoint is never what follows.
@@ -232,8 +235,8 @@ impl Columns<'_> {
             let pair = if is_reversed { pair.reversed() } else { pair };
             let follows = self.following(pair.input, pair.output);
             let is_sure = pair.is_only
-                && self.is_said(&pair, follows.is_some(), are_all)
-                && !self.has_rival(&pair, follows, &free, is_one);
+                && self.is_said(&pair, follows, others)
+                && !self.has_rival(&pair, follows, &free, count);
             let name = self.joint_name(&pair);
             let is_speed = !pair.is_only && !pair.shared.is_empty();
             if (is_sure || is_speed || follows.is_some()) && names.insert(name.clone()) {
@@ -248,11 +251,13 @@ impl Columns<'_> {
         joints
     }
 
-    /// Whether names say that a pair is a joint, with the data where they say it less clearly.
-    fn is_said(&self, pair: &Pair, follows: bool, are_all: bool) -> bool {
+    /// Whether names say that a pair is a joint, with the data where they say it less clearly, where so many
+    /// `others` move.
+    fn is_said(&self, pair: &Pair, follows: Option<f64>, others: usize) -> bool {
         let (input, output) =
             (self.grade(pair.input, Side::Input), self.grade(pair.output, Side::Output));
         let is_clear = input == Grade::Word || input == Grade::Letter && !pair.shared.is_empty();
+        let (follows, are_all) = (follows.is_some(), others == 0);
         match input.max(output) {
             Grade::Word | Grade::Letter => is_clear || are_all,
             Grade::Unit => follows && (is_clear || are_all),
@@ -263,10 +268,10 @@ impl Columns<'_> {
 
     /// Whether the output follows one of the `free` inputs clearly more, which is named like one of this joint,
     /// too.
-    fn has_rival(&self, pair: &Pair, follows: Option<f64>, free: &[usize], is_one: bool) -> bool {
+    fn has_rival(&self, pair: &Pair, follows: Option<f64>, free: &[usize], joints: usize) -> bool {
         let own = follows.map_or(0.0, f64::abs);
-        let words = self.own(pair.output, is_one);
-        free.iter().filter(|input| !self.own(**input, is_one).is_disjoint(&words)).any(|input| {
+        let words = self.own(pair.output, joints);
+        free.iter().filter(|input| !self.own(**input, joints).is_disjoint(&words)).any(|input| {
             self.following(*input, pair.output).is_some_and(|f| !is_alike(own, f.abs()))
         })
     }
@@ -278,10 +283,10 @@ impl Columns<'_> {
         })
     }
 
-    /// What of a name says which joint: of several joints, not what all columns have.
-    fn own(&self, column: usize, is_one: bool) -> BTreeSet<String> {
+    /// What of a name says which joint: of several `joints`, not what all columns have.
+    fn own(&self, column: usize, joints: usize) -> BTreeSet<String> {
         let own = self.name(column).map(|name| name.own.clone()).unwrap_or_default();
-        if is_one { own } else { &own - &self.common }
+        if joints == 1 { own } else { &own - &self.common }
     }
 
     /// Whether the input follows the output more than the output follows the input.
@@ -309,7 +314,7 @@ impl Columns<'_> {
             let as_joint = if holds { [column, pair.output] } else { [pair.input, column] };
             let [input, output] = as_joint;
             if self.following(input, output).is_some_and(|f| is_alike(f.abs(), own)) {
-                found.push((as_joint, self.joint_name(&Pair::alone(input, output, false))));
+                found.push((as_joint, self.joint_name(&Pair::alone(input, output))));
             }
         }
         found.truncate(SAID);
@@ -326,7 +331,7 @@ impl Columns<'_> {
             });
         if let Some(follows) = follows {
             let [_, output] = &mut why;
-            *output += &format!("; its rate follows the input (correlation {follows:+.2})");
+            *output = format!("{output}; its rate follows the input (correlation {follows:+.2})");
         }
         why
     }
@@ -365,17 +370,16 @@ impl Columns<'_> {
 
     /// For each of `joints` the columns that are named like what drives it, too, and are no joint's.
     pub(super) fn further_inputs(&self, joints: &[FoundJoint]) -> Vec<(String, String)> {
-        let is_one = joints.len() == 1;
         let taken = joints.iter().flat_map(|joint| [joint.input, joint.output]).collect();
         let mut by_word: HashMap<String, &FoundJoint> = HashMap::new();
         for joint in joints {
-            for word in self.own(joint.output, is_one) {
+            for word in self.own(joint.output, joints.len()) {
                 by_word.entry(word).or_insert(joint);
             }
         }
         let mut found = Vec::new();
         for input in self.free_inputs(&taken) {
-            let words = self.own(input, is_one);
+            let words = self.own(input, joints.len());
             if let Some(joint) = words.iter().find_map(|word| by_word.get(word)) {
                 found.push((joint.name.clone(), self.head.text(input)));
             }
