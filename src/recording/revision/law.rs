@@ -126,7 +126,7 @@ mod tests {
             input_unit: None,
             output_unit: Some("deg".to_owned()),
             covariates: Vec::new(),
-            trials: vec![trial(vec![-2.0, 2.0, 1.0], vec![0.0, 5.0, 3.0])],
+            trials: [trial(vec![-2.0, 2.0, 1.0], vec![0.0, 5.0, 3.0])].into(),
         }
     }
 
