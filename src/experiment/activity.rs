@@ -3,7 +3,8 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::OnceLock;
 
-use super::joint::{Joint, Trial};
+use super::joint::Joint;
+use super::trial::Trial;
 
 /// Another joint of the log, and its delay in seconds: 0 where none is known.
 #[derive(Clone, Copy, Debug)]

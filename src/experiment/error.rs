@@ -4,8 +4,8 @@ mod place;
 
 use std::path::PathBuf;
 
-use super::joint::TrialError;
 use super::names::{did_you_mean, shown};
+use super::trial::TrialError;
 
 /// The column of a time, and mappings: of each joint its name, its input and its output.
 type Likely = (Option<String>, Vec<Vec<[String; 3]>>);

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::joint::{Joint, Trial};
+use super::joint::Joint;
+use super::trial::Trial;
 use crate::numerics::to_digits_by;
 use crate::units::floor_to_index;
 

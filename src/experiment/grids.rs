@@ -262,7 +262,7 @@ impl Findings<'_> {
         )
     }
 
-    /// Rows that are lost; other uneven samples are interpolated anyhow.
+    /// Rows that are lost or come more slowly; other uneven samples are interpolated anyhow.
     fn on_gaps(&self) -> Option<String> {
         let gaps = self.trials.iter().enumerate().filter_map(|(trial, laid)| {
             let is_even = laid.clock.evenness != Evenness::Uneven;
@@ -276,8 +276,8 @@ impl Findings<'_> {
         let longest = gaps.iter().map(|(_, (_, periods, _))| *periods).max()?;
         let gaps = if many == 1 { "gap" } else { "gaps" };
         Some(format!(
-            "rows are lost in {many} {gaps} of up to {longest} periods (first before row {row}): \
-             they are filled, the output in a line, the input held"
+            "{many} {gaps} of up to {longest} periods (first before row {row}), where rows are lost or the \
+             logger is slower: they are filled, the output interpolated, the input held"
         ))
     }
 }

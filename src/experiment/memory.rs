@@ -94,6 +94,7 @@ impl Budget {
     }
 
     /// Gives back bytes that were taken and are free again.
+    #[cfg(feature = "mat")]
     pub(super) fn give_back(&self, bytes: u64) {
         self.taken.set(self.taken.get().saturating_sub(bytes));
     }

@@ -10,7 +10,7 @@ use super::columns::{ColumnMap, JointColumns};
 use super::error::ReadError;
 use super::format::{self, is_named_like_a_log};
 use super::grid::Repair;
-use super::joint::{Joint, Trial};
+use super::joint::Joint;
 use super::layout::{JointLayout, Layout};
 use super::log::Log;
 use super::memory::{Budget, MemoryLimit};
@@ -21,6 +21,7 @@ use super::source::{Source, source_of};
 use super::survey::{Survey, further_joint};
 use super::table::{Head, OpenTable};
 use super::time_column::{find_time_column, note_on_times};
+use super::trial::Trial;
 use crate::units::SamplePeriod;
 
 /// How logs are read.

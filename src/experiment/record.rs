@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::ops::Deref;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::joint::Trial;
+use super::trial::Trial;
 
 /// What can be found from the trials of a joint alone, whatever the settings.
 pub trait Property: Sized + Send + Sync + 'static {

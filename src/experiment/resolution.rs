@@ -1,6 +1,6 @@
 //! How coarse a sensor is beside the motion that it measures.
 
-use super::joint::Trial;
+use super::trial::Trial;
 use crate::numerics::median;
 
 /// The count of a sensor, and how long the joint takes for one.

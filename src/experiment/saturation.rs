@@ -1,6 +1,6 @@
 //! Sensors and converters whose range ends before the motion does.
 
-use super::joint::Trial;
+use super::trial::Trial;
 use crate::numerics::{least_change, robust_scale};
 
 /// Samples in a row at the end of a range that are no chance.

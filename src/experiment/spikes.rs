@@ -9,8 +9,8 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::joint::Trial;
 use super::record::Record;
+use super::trial::Trial;
 use crate::numerics::{quantile, robust_scale};
 
 /// Samples on either side that a spike is held against.

@@ -37,7 +37,7 @@ impl Property for Extent {
         let (low, high) = ends(inputs());
         let outputs: Vec<_> =
             record.iter().map(|trial| ends(trial.output().iter().copied())).collect();
-        let starts_s = starts_of(record);
+        let starts_s = trial_starts(record);
         let ends_s = record.iter().zip(&starts_s).map(|(trial, start_s)| start_s + length_s(trial));
         let of_covariate = |index: usize| {
             let values = record.iter().filter_map(|trial| trial.covariates().get(index)).flatten();
@@ -74,7 +74,7 @@ fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
 ///
 /// Where their times overlap, as when each counts from zero, they are taken to have followed
 /// one another without a pause: what warms in one trial is warm in the next.
-fn starts_of(trials: &[Trial]) -> Vec<f64> {
+fn trial_starts(trials: &[Trial]) -> Vec<f64> {
     let times = || trials.iter().map(|trial| trial.time_s(1));
     let ends = trials.iter().map(|trial| trial.time_s(1) + length_s(trial));
     // Times are rounded: an end may seem to lie a little behind the next start.
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn trials_that_each_count_from_zero_follow_one_another() {
-        assert_eq!(starts_of(&[trial(7.0, 4), trial(20.0, 4)]), [0.0, 13.0]);
-        assert_eq!(starts_of(&[trial(0.0, 4), trial(0.0, 6), trial(0.0, 2)]), [0.0, 2.0, 5.0]);
+        assert_eq!(trial_starts(&[trial(7.0, 4), trial(20.0, 4)]), [0.0, 13.0]);
+        assert_eq!(trial_starts(&[trial(0.0, 4), trial(0.0, 6), trial(0.0, 2)]), [0.0, 2.0, 5.0]);
     }
 }

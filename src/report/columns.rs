@@ -16,12 +16,10 @@ pub(crate) fn columns_table(survey: &Survey, options: &[String], mended: &[Strin
     for (place, options) in options.iter().enumerate() {
         lines.push(format!("{}: {options}", if place == 0 { "as options" } else { "or" }));
     }
+    lines.extend(mended.iter().map(|what| format!("where it is read: {what}")));
     for line in lines {
         text += &line;
         text.push('\n');
-    }
-    for what in mended {
-        text += &format!("where it is read: {what}\n");
     }
     text
 }

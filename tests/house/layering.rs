@@ -269,7 +269,7 @@ fn a_tie_of_the_maker_of_test_data_is_seen() {
 }
 
 /// Libraries, and the places that may name them.
-const PLACES: [(&str, &[&str]); 19] = [
+const PLACES: [(&str, &[&str]); 21] = [
     ("rayon", &["src/batch.rs"]),
     ("rerun", &["src/recording"]),
     ("sci_rs", &["src/numerics/filter.rs"]),
@@ -282,7 +282,9 @@ const PLACES: [(&str, &[&str]); 19] = [
     ("flate2", &["src/experiment/format"]),
     ("encoding_rs", &["src/experiment/format/text.rs"]),
     ("jiff", &["src/experiment/format/date.rs"]),
-    ("arrow_ipc", &["src/experiment/format/parquet"]),
+    ("arrow_array", &["src/experiment/format/parquet.rs"]),
+    ("arrow_cast", &["src/experiment/format/parquet.rs"]),
+    ("arrow_schema", &["src/experiment/format/parquet.rs"]),
     ("calamine", &["src/experiment/format/xlsx.rs"]),
     ("hdf5_pure", &["src/experiment/format/mat"]),
     ("zip", &["src/export/fmu", "src/experiment/format/xlsx.rs"]),

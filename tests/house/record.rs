@@ -11,7 +11,7 @@ const FINDERS: [(&str, &[&str]); 6] = [
     ("held_inputs(", &["delay/held_input.rs", "fit/mended.rs"]),
     ("Spikes::of(", &["fit/mended.rs"]),
     ("Follower::shown(", &["fit/first_order.rs"]),
-    ("starts_of(", &["fit/extent.rs"]),
+    ("trial_starts(", &["fit/extent.rs"]),
 ];
 
 /// The code of a file without its unit tests and comments.

@@ -121,7 +121,7 @@ impl Record {
 /// });
 /// let period = SamplePeriod::from_seconds(0.01).unwrap();
 /// let trial = Trial::new("swing", 0.0, period, input, output.collect()).unwrap();
-/// let Finding::Known(found) = dead_time(&[trial].into(), &Settings::default()).finding else {
+/// let Finding::Known(found) = dead_time(&[trial], &Settings::default()).finding else {
 ///     panic!()
 /// };
 /// assert!((found.value_s - 0.12).abs() < 0.005);

@@ -4,9 +4,10 @@ use super::cells::Log;
 use crate::experiment::error::ReadError;
 use crate::experiment::gaps::{gap_with_all_steps_s, unlogged};
 use crate::experiment::grid::{Grid, Piece, Repair, Signals};
-use crate::experiment::joint::{Joint, Signal, Trial};
+use crate::experiment::joint::{Joint, Signal};
 use crate::experiment::layout::JointLayout;
 use crate::experiment::table::{Coarse, TrialRows};
+use crate::experiment::trial::Trial;
 use crate::numerics::to_digits_by;
 
 /// Memory of a sample of a signal: the number as it was read, on its grid and in its trial, and

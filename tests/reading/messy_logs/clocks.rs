@@ -85,7 +85,7 @@ pub(crate) fn jumps() -> Vec<Messy> {
         .map(|(_, row)| row)
         .collect();
     vec![
-        messy("lost_rows.csv", plain(&lost), read(0.051, "rows are lost in 4 gaps")),
+        messy("lost_rows.csv", plain(&lost), read(0.051, "4 gaps of")),
         messy("pause.csv", plain(&pause), read(0.051, "(of 12.4 s, before row 872)")),
         messy(
             "clock_anew.csv",
@@ -98,7 +98,10 @@ pub(crate) fn jumps() -> Vec<Messy> {
         messy(
             "other_rate.csv",
             plain(&slower),
-            read(0.055, "rows are lost in 449 gaps of up to 2 periods (first before row 903)"),
+            read(
+                0.055,
+                "449 gaps of up to 2 periods (first before row 903), where rows are lost or the logger is slower",
+            ),
         ),
         messy(
             "stamp_of_nonsense.csv",
