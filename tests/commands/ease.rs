@@ -1,6 +1,7 @@
 //! What makes the program easy to use: completions, manual pages, `doctor`, colours, names
 //! that were mistyped.
 
+use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::{Command, Output, Stdio};
 
@@ -292,7 +293,7 @@ fn columns_says_what_is_mended_in_the_log() {
         let level = [0.0, 3.0, 0.0, -2.0][(k / 200) % 4];
         let angle = (700.0 * (k as f64 / 500.0).sin()).rem_euclid(360.0);
         let angle = if k == 1234 { String::new() } else { format!("{angle:.3}") };
-        text += &format!("{:.2},{level},{angle}\n", 0.01 * k as f64);
+        writeln!(text, "{:.2},{level},{angle}", 0.01 * k as f64).unwrap();
     }
     std::fs::write(&path, text).unwrap();
     let path = path.to_str().unwrap();
@@ -300,7 +301,7 @@ fn columns_says_what_is_mended_in_the_log() {
     let json = printed(&tauscope(&["columns", path, "--format", "json"]).output().unwrap());
     let json: Value = serde_json::from_str(&json).unwrap();
     let mended: Vec<&str> =
-        json["mended"].as_array().unwrap().iter().flat_map(Value::as_str).collect();
+        json["mended"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
     let expected =
         ["the newest row is first", "wraps at a turn of 360 deg", "1 cell is empty or NaN"];
     assert_eq!(mended.len(), expected.len(), "{mended:?}");

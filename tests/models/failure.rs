@@ -204,7 +204,6 @@ fn planted_failures_are_found_whatever_the_noise() {
 fn assert_seldom_reported(name: &str, make: impl Fn(u64) -> ResidualRecord) {
     let records = size(50, 200);
     let reports = (0..records).filter(|seed| !fails_where(&make(*seed)).is_empty()).count();
-    println!("{name}: {reports} of {records}");
     assert!(reports <= size(4, 10), "{name}: {reports} of {records}");
 }
 

@@ -60,6 +60,7 @@ fn every_messy_log_is_read_as_the_clean_one_or_refused_with_the_remedy() {
         marks::ends_and_comments(),
         marks::cells_and_units(),
         texts::texts(),
+        texts::ends(),
         texts::cells_and_rows(),
         texts::programs(),
         texts::marks(),

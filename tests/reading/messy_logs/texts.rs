@@ -70,6 +70,13 @@ pub(crate) fn texts() -> Vec<Messy> {
             format!("sep=;\r\n{}", table(&semicolon, &rows, ";", comma)),
             SAME,
         ),
+    ]
+}
+
+/// Lines below the table, and units at the ends of names.
+pub(crate) fn ends() -> Vec<Messy> {
+    let all = plain(&clean());
+    vec![
         messy(
             "footer.csv",
             format!("{all}End of measurement\n"),
