@@ -3,7 +3,8 @@
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use tauscope::experiment::{
-    Experiment, HandedColumn, HandedLog, HandedValues, Joint, ReadOptions, Trial, TrialError,
+    Experiment, HandedColumn, HandedLog, HandedValues, Joint, ReadOptions, Record, Trial,
+    TrialError,
 };
 use tauscope::units::SamplePeriod;
 
@@ -93,7 +94,7 @@ fn joint_of(
         let trial = Trial::new(label, 0.0, period, copied(&input), copied(&output));
         trial.map_err(|error| refused(&name, &error))
     };
-    let trials = trials.into_iter().map(trial).collect::<PyResult<_>>()?;
+    let trials = trials.into_iter().map(trial).collect::<PyResult<Record>>()?;
     Ok(Joint { input_unit, output_unit, ..Joint::new(name, trials) })
 }
 
