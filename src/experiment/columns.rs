@@ -123,11 +123,17 @@ impl ColumnMap {
     }
 
     /// The mapping that `tauscope columns -w` has left beside this log, with its file; none where there is no
-    /// such file, or another program's.
-    pub(super) fn kept_beside(log: &Path) -> Option<(PathBuf, Self)> {
+    /// such file, or one without joints.
+    ///
+    /// # Errors
+    /// As [`ColumnMap::read`], for a file that another program wrote or a person has edited.
+    pub(super) fn kept_beside(log: &Path) -> Result<Option<(PathBuf, Self)>, ColumnMapError> {
         let path = log.with_file_name(KEPT);
-        let map = Self::read(&path).ok().filter(|map| !map.joints.is_empty())?;
-        Some((path, map))
+        if !path.is_file() {
+            return Ok(None);
+        }
+        let map = Self::read(&path)?;
+        Ok((!map.joints.is_empty()).then_some((path, map)))
     }
 
     /// Reads a mapping from a TOML file.

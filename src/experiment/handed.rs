@@ -1,6 +1,5 @@
 //! Logs that a program already has in memory.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest as _, Sha256};
@@ -174,7 +173,7 @@ fn read(
     let column = |place: &usize| log.columns.get_mut(*place).map(|column| column.values.column());
     let columns = numeric.iter().filter_map(column).collect();
     let (rows, trials) = (RowNumbers::counted(rows), labels.runs());
-    let table = Cow::Owned(Table { source, rows, columns, trials, notes: Vec::new() });
+    let table = Table { source, rows, columns, trials, notes: Vec::new() };
     let how = (options.repair, stem);
     found.add_log(Log::new(&head, &layout, &numeric, table, budget, how))?;
     Ok(found)

@@ -1,6 +1,5 @@
 //! Logs into an [`Experiment`]; what cannot be read is listed beside what can.
 
-use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -263,14 +262,7 @@ fn read_log(
     let open = || format::open(path, budget.rest());
     let table = open()?;
     let (mut layout, mut found) = match laid_out(&table.head, options) {
-        Err(ReadError::NoJoints { .. }) => {
-            if let Some((file, kept)) = ColumnMap::kept_beside(path) {
-                laid_out_as_kept(&table.head, &file, kept, options)?
-            } else {
-                let survey = Survey::of(path, options.memory)?;
-                laid_out_by_names(&table.head, &survey, options)?
-            }
-        }
+        Err(ReadError::NoJoints { .. }) => laid_out_foreign(&table.head, options)?,
         found => found?,
     };
     let unequal = layout.without_unequal(&table.head, |column| table.rows.rows_of(column));
@@ -342,6 +334,22 @@ fn note_on_further_joint(head: &Head, layout: &Layout) -> Option<String> {
          (`<joint>.input`, `<joint>.output`) and are not read: name the columns of all joints with \
          `--columns`"
     ))
+}
+
+/// What every column means in a log without native names: as the mapping beside it says, else by names and
+/// data.
+fn laid_out_foreign(head: &Head, options: &ReadOptions) -> Result<(Layout, Experiment), ReadError> {
+    let unusable = match ColumnMap::kept_beside(&head.path) {
+        Ok(Some((file, kept))) => return laid_out_as_kept(head, &file, kept, options),
+        Ok(None) => None,
+        Err(error) => Some(error),
+    };
+    let survey = Survey::of(&head.path, options.memory)?;
+    let (layout, mut found) = laid_out_by_names(head, &survey, options)?;
+    found.notes.extend(unusable.map(|error| {
+        format!("{}: the mapping beside it is not used: {error}", head.path.display())
+    }));
+    Ok((layout, found))
 }
 
 /// What every column means as the mapping `kept` in `file` beside the log says.
@@ -430,7 +438,6 @@ impl Experiment {
         }
         let numeric = layout.numeric_columns();
         let table = table.read(&numeric, layout.trial, layout.time_column(), layout.clock())?;
-        let table = Cow::Owned(table);
         self.add_log(Log::new(&head, layout, &numeric, table, budget, (repair, stem)))
     }
 

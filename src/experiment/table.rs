@@ -163,7 +163,6 @@ impl OpenTable {
 }
 
 /// The columns that were asked for.
-#[derive(Clone)]
 pub(super) struct Table {
     pub(super) source: Source,
     /// What messages call each row: its line of the file, or its number.

@@ -32,28 +32,25 @@ pub(crate) fn coded_neutral(record: &Record) -> Option<CodedNeutral> {
 }
 
 impl Property for Option<CodedNeutral> {
-    fn find(record: &Record) -> Self {
-        find(record)
+    fn find(trials: &Record) -> Self {
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        let inputs = trials.iter().flat_map(Trial::input);
+        let (low, high) = inputs.fold(ends, |(low, high), u| (low.min(*u), high.max(*u)));
+        let margin = INSIDE * (high - low);
+        if low < 0.0 && high > 0.0 || margin <= 0.0 || followed(trials).is_some() {
+            return None;
+        }
+        let is_inside = |level: &f64| (low + margin..=high - margin).contains(level);
+        let held = Neutral::of(trials).map(|neutral| neutral.level);
+        let held = held.filter(is_inside).map(|level| CodedNeutral {
+            level,
+            is_held: is_usual(trials, level, NEAR * (high - low)),
+        });
+        held.or_else(|| {
+            let level = balanced(trials).filter(is_inside)?;
+            Some(CodedNeutral { level, is_held: false })
+        })
     }
-}
-
-fn find(trials: &Record) -> Option<CodedNeutral> {
-    let ends = (f64::INFINITY, f64::NEG_INFINITY);
-    let inputs = trials.iter().flat_map(Trial::input);
-    let (low, high) = inputs.fold(ends, |(low, high), u| (low.min(*u), high.max(*u)));
-    let margin = INSIDE * (high - low);
-    if low < 0.0 && high > 0.0 || margin <= 0.0 || followed(trials).is_some() {
-        return None;
-    }
-    let is_inside = |level: &f64| (low + margin..=high - margin).contains(level);
-    let held = Neutral::of(trials).map(|neutral| neutral.level);
-    let held = held
-        .filter(is_inside)
-        .map(|level| CodedNeutral { level, is_held: is_usual(trials, level, NEAR * (high - low)) });
-    held.or_else(|| {
-        let level = balanced(trials).filter(is_inside)?;
-        Some(CodedNeutral { level, is_held: false })
-    })
 }
 
 /// Whether the input is for a good part of the time within `near` of `level`: a stick that swings

@@ -199,6 +199,13 @@ fn a_mapping_that_was_kept_beside_a_log_holds_for_those_of_its_folder() {
     let found = read();
     assert_eq!(found.joints[0].name, "boom");
     assert!(found.notes[0].contains("columns.toml"), "{:?}", found.notes);
+    // One that cannot be read is said, where names say which columns are meant.
+    fs::write(&path, log("t,boom_cmd,boom_pos")).unwrap();
+    fs::write(folder.path().join("columns.toml"), "time = 't").unwrap();
+    let found = read();
+    assert_eq!(found.joints[0].name, "boom");
+    let says = |note: &String| note.contains("the mapping beside it is not used");
+    assert!(found.notes.iter().any(says), "{:?}", found.notes);
     // What is named in the log itself stands above it.
     fs::write(&path, log("t,arm.input,arm.output")).unwrap();
     assert_eq!(read().joints[0].name, "arm");

@@ -1,6 +1,5 @@
 //! A table that was read, with what is needed to mend it and to speak of its columns, rows and cells.
 
-use std::borrow::Cow;
 use std::collections::HashSet;
 use std::ops::Range;
 
@@ -17,8 +16,7 @@ pub(in crate::experiment) struct Log<'a> {
     pub(in crate::experiment) layout: &'a Layout,
     /// The columns that were read, by their places among the headers.
     numeric: &'a [usize],
-    /// A copy of its own where anything is mended in one that grows.
-    pub(in crate::experiment) table: Cow<'a, Table>,
+    pub(in crate::experiment) table: Table,
     budget: &'a Budget,
     /// What may be done to it.
     pub(in crate::experiment) options: Repair,
@@ -61,7 +59,7 @@ impl<'a> Log<'a> {
         head: &'a Head,
         layout: &'a Layout,
         numeric: &'a [usize],
-        table: Cow<'a, Table>,
+        table: Table,
         budget: &'a Budget,
         (options, stem): (Repair, Option<&str>),
     ) -> Self {
@@ -115,7 +113,7 @@ impl<'a> Log<'a> {
 
     pub(in crate::experiment) fn column_mut(&mut self, index: usize) -> Option<&mut Column> {
         let place = self.numeric.binary_search(&index).ok()?;
-        self.table.to_mut().columns.get_mut(place)
+        self.table.columns.get_mut(place)
     }
 
     /// The name of a column.

@@ -12,7 +12,7 @@ impl Repair for NewestFirst {
     }
 
     fn apply(self, log: &mut Log<'_>) -> Option<String> {
-        log.table.to_mut().turn();
+        log.table.turn();
         let note = "the newest row is first: the rows are read from the last to the first";
         Some(log.named(note))
     }

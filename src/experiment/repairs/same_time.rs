@@ -47,7 +47,7 @@ impl Repair for SameTime {
         for trial in &mut log.trials {
             (trial.start, trial.end) = (place(trial.start), place(trial.end));
         }
-        let table = log.table.to_mut();
+        let table = &mut log.table;
         table.rows = table.rows.of_some(&kept);
         for (column, values) in table.columns.iter_mut().zip(columns) {
             column.values = values;
