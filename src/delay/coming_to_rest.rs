@@ -28,7 +28,10 @@ impl ComingToRest {
         if settings.paper || settings.grows || settings.input == InputKind::Continuous {
             return Self::NotShown;
         }
-        if let Some(settling) = settling(trials, settings) {
+        // An onset model has responses that settle among others.
+        let is_modelled = settings.method.spec().models_response;
+        let settles = (!is_modelled).then(|| settling(trials, settings)).flatten();
+        if let Some(settling) = settles {
             return Self::Settles(Box::new(settling));
         }
         let steps = joint_steps(trials, settings);

@@ -3,8 +3,9 @@
 use std::fmt;
 
 use super::checks::Checks;
-use super::condition::{Condition, nothing_happened};
+use super::condition::{Check, Condition, Outcome, nothing_happened};
 use super::interval::FineDelay;
+use super::onset_model::StepOnset;
 use super::reviewer_verdict::ReviewerVerdict;
 use super::search::{Candidate, Candidates};
 use super::segment::Segment;
@@ -33,6 +34,8 @@ pub struct Decision {
     pub fine: Option<FineDelay>,
     /// What was fitted to an output that settles; the lines of its candidates are chords of it.
     pub response: Option<Box<Response>>,
+    /// The onset, where the method fits the joint's response.
+    pub onset: Option<Box<StepOnset>>,
     /// What a reviewer said of it.
     pub reviewer_verdict: Option<Box<ReviewerVerdict>>,
 }
@@ -99,6 +102,11 @@ impl Decision {
     /// Puts the result of a test against noise among the checks.
     pub(super) fn test_reaction(&mut self, p_value: Option<f64>, confidence: f64) {
         self.checks.put(nothing_happened(p_value, confidence));
+    }
+
+    /// Puts that a condition failed among the checks, with the number that was compared and its limit.
+    pub(super) fn fail(&mut self, condition: Condition, value: Option<f64>, limit: Option<f64>) {
+        self.checks.put(Check { condition, value, limit, outcome: Outcome::Failed });
     }
 
     /// The delay in samples, if it was accepted.

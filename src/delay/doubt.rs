@@ -144,7 +144,7 @@ impl Decision {
             explained: best.map_or(1.0, |best| self.explained(&best)),
             spread: fine.unwrap_or_else(|| self.candidates.spread()),
             crossing: best.map_or(0.0, |best| self.crossing(&best)),
-            settles: self.response.is_some(),
+            settles: self.rests(),
             nearest: self.nearest(range.1 - range.0),
             flags: self.flags(output, range),
             hold: self.hold as f64,
@@ -152,9 +152,17 @@ impl Decision {
         }
     }
 
+    /// Whether the output settles at a level.
+    fn rests(&self) -> bool {
+        self.response.is_some() || self.onset.as_ref().is_some_and(|onset| onset.rests)
+    }
+
     /// `1 − SSE₂ / SSE₁`. The residuals of both lines are orthogonal to every line through
     /// either part, so that the squared error of one line is SSE₂ and its own about the two lines.
     fn explained(&self, best: &Candidate) -> f64 {
+        if let Some(onset) = &self.onset {
+            return onset.explained;
+        }
         if let Some(response) = &self.response {
             return response.explained();
         }
@@ -183,7 +191,8 @@ impl Decision {
     }
 
     fn crossing(&self, best: &Candidate) -> f64 {
-        if self.response.is_some() {
+        // The lines are Algorithm 1's, and not the answer.
+        if self.response.is_some() || self.onset.is_some() {
             return 0.0;
         }
         // Lines that meet between two samples cross where they break.
@@ -239,7 +248,7 @@ impl Decision {
         let is_jump = self.crossing(&best) > 2.0 * self.candidates.spacing() as f64;
         // Where the input is let go, a joint that stands is at rest, wherever that is.
         // One that settles stands where the input holds it.
-        let is_driven = self.input_step.after.abs() > 0.0 && self.response.is_none();
+        let is_driven = self.input_step.after.abs() > 0.0 && !self.rests();
         // The joint may still be on its way at first.
         let behind = usize::midpoint(best.breakpoint, self.segment.last);
         let found = [

@@ -4,8 +4,7 @@ use std::fmt;
 
 use super::coming_to_rest::ComingToRest;
 use super::input_motion::{InputKind, InputMotion};
-use super::lag::Lag;
-use super::method::{DelayMethod, decide_settling, implementation};
+use super::method::{DelayMethod, Shared, decide_settling, implementation};
 use super::prepared::Prepared;
 use super::profile::DelayProfile;
 use super::settings::Settings;
@@ -42,7 +41,7 @@ pub(crate) struct Estimator {
     /// Those that were asked for, with what the input is taken for.
     settings: Settings,
     method: &'static dyn DelayMethod,
-    lag: Option<Lag>,
+    shared: Shared,
     rest: ComingToRest,
     motion: InputMotion,
 }
@@ -63,7 +62,7 @@ impl Estimator {
         let method = implementation(settings.method);
         let rest = ComingToRest::of(trials, &settings);
         let is_joint = rest.settling().is_none() && settings.method.spec().scope == Scope::Joint;
-        let lag = is_joint.then(|| {
+        let shared = is_joint.then(|| {
             let mut prepared = Prepared::all(trials, &settings);
             for trial in &mut prepared {
                 rest.bound(trial, &settings.at(trial.period));
@@ -71,9 +70,9 @@ impl Estimator {
             let period = prepared.first().map(|trial| trial.period);
             // A lag is looked for in the trials of the first one's period.
             let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
-            method.shared_lag(&prepared, &settings)
+            method.shared(&prepared, &settings)
         });
-        Ok(Self { settings, method, lag: lag.flatten(), rest, motion })
+        Ok(Self { settings, method, shared: shared.unwrap_or_default(), rest, motion })
     }
 
     /// How the input of the joint moves.
@@ -94,13 +93,23 @@ impl Estimator {
         self.rest.bound(&mut prepared, &settings);
         let decisions = match self.rest.settling() {
             Some(settling) => decide_settling(&prepared, settling, &settings),
-            None => self.method.decide(&prepared, self.lag.as_ref(), &settings),
+            None => self.method.decide(&prepared, &self.shared, &settings),
         };
         let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
-        let (lag, settling) = (self.lag.clone(), self.rest.settling().cloned());
+        let Shared { lag, onset_model } = self.shared.clone();
+        let settling = self.rest.settling().cloned();
         let (label, smoothed) = (trial.label().to_owned(), prepared.smoothed);
         let tracking = self.rest.tracking();
-        Ok(TrialEstimate { label, smoothed, decisions, profile, lag, settling, tracking })
+        Ok(TrialEstimate {
+            label,
+            smoothed,
+            decisions,
+            profile,
+            lag,
+            onset_model,
+            settling,
+            tracking,
+        })
     }
 }
 

@@ -68,7 +68,17 @@ pub(crate) fn final_part(
     let (label, lag) = (estimate.label.clone(), estimate.lag.clone());
     let settling = estimate.settling.clone();
     let tracking = estimate.tracking;
-    let estimate = TrialEstimate { label, smoothed, decisions, profile, lag, settling, tracking };
+    let onset_model = estimate.onset_model.clone();
+    let estimate = TrialEstimate {
+        label,
+        smoothed,
+        decisions,
+        profile,
+        lag,
+        onset_model,
+        settling,
+        tracking,
+    };
     Ok(Some((beginning, estimate)))
 }
 

@@ -1,5 +1,7 @@
 //! A delay between samples, and how well it is known.
 
+use crate::numerics::student_quantile;
+
 /// A delay finer than a sample, and how well it is known; all in samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FineDelay {
@@ -14,6 +16,16 @@ pub struct FineDelay {
 }
 
 impl FineDelay {
+    /// This delay, no earlier than its step unless all of its interval is.
+    pub(super) fn not_before_its_step(self) -> Self {
+        Self::causal(self.delay, self.low, self.high, self.confidence)
+    }
+
+    /// The standard error that an interval of this width stands for.
+    pub(crate) fn standard_error(&self) -> f64 {
+        (self.high - self.low) / 2.0 / student_quantile(f64::midpoint(1.0, self.confidence), f64::INFINITY)
+    }
+
     /// A delay that cannot be below zero, unless all of its interval is.
     pub(super) fn causal(delay: f64, low: f64, high: f64, confidence: f64) -> Self {
         if high < 0.0 {

@@ -90,6 +90,9 @@ pub struct Settings {
     /// Algorithm 1 to the letter: nothing is made of rest and of stops, so that a segment runs
     /// from step to step whatever the output does, and no step is `at_rest`.
     pub paper: bool,
+    /// Whether delays are accepted although the onsets of a joint are no delays: its output leads the
+    /// input, does not follow it, or answers later than the next step.
+    pub accept_anyway: bool,
     /// Smallest change of the input that is a step, input units; 0 for any change.
     pub min_step: f64,
     /// Whether the input is taken as steps or as moving all the time.
@@ -138,6 +141,7 @@ impl Settings {
             max_sse: None,
             first_last: FirstLast::Auto,
             paper: false,
+            accept_anyway: false,
             min_step: 0.0,
             input: InputKind::Auto,
             grows: false,

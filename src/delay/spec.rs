@@ -22,6 +22,8 @@ pub struct MethodSpec {
     pub cuts_segments: bool,
     /// Whether it gives each delay an interval.
     pub has_intervals: bool,
+    /// Whether it finds the response behind the delays, whatever it is: an output that settles, too.
+    pub models_response: bool,
     /// What its decision on a step depends on.
     pub scope: Scope,
     /// Its low-pass where no other is asked for; none where it looks at the output as it

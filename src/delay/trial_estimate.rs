@@ -1,7 +1,10 @@
 //! The delays of one trial, and why a trial has none.
 
+use std::sync::Arc;
+
 use super::decision::Decision;
 use super::lag::Lag;
+use super::onset_model::OnsetModel;
 use super::profile::DelayProfile;
 use super::reviewer_verdict::ReviewerVerdict;
 use super::settings::{Interpolation, SettingsError};
@@ -48,6 +51,8 @@ pub struct TrialEstimate {
     pub profile: DelayProfile,
     /// How the joint follows after its dead time, where the method looks for it.
     pub lag: Option<Lag>,
+    /// The response of the joint behind its dead times, where the method looks for it.
+    pub onset_model: Option<Arc<OnsetModel>>,
     /// How the output settles, where it does: the onsets are then those of an exponential,
     /// whatever the method.
     pub settling: Option<Settling>,

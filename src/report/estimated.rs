@@ -1,6 +1,6 @@
 //! A joint with its estimate.
 
-use crate::delay::{AgainstState, DelayTable, Lag, Neutral, Settling, Tracking};
+use crate::delay::{AgainstState, DelayTable, Lag, Neutral, OnsetModel, Settling, Tracking};
 use crate::experiment::Joint;
 use crate::study::JointEstimate;
 
@@ -17,6 +17,11 @@ impl EstimatedJoint<'_> {
     /// The lag that its trials share, where the method looks for one.
     pub fn lag(&self) -> Option<&Lag> {
         self.estimate.estimated().find_map(|trial| trial.lag.as_ref())
+    }
+
+    /// The response behind its dead times, where the method fits one.
+    pub fn onset_model(&self) -> Option<&OnsetModel> {
+        self.estimate.estimated().find_map(|trial| trial.onset_model.as_deref())
     }
 
     /// How its output settles, where it does.

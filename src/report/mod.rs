@@ -37,6 +37,7 @@ mod sweep;
 mod table;
 mod text;
 mod text_table;
+mod warning;
 
 pub(crate) use add::{AddedJoint, add_text, gone};
 pub use against::against_table;
@@ -96,6 +97,7 @@ pub(crate) use settings::settings_rows;
 pub(crate) use steps::{step_line, steps_table};
 pub(crate) use summary::{DelayRange, Headline, JointSummary};
 pub use sweep::ReportedSweep;
+pub use warning::Warning;
 pub(crate) use sweep::{StepsShown, sweep_text};
 #[cfg(feature = "rrd")]
 pub(crate) use sweep::{

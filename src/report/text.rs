@@ -5,7 +5,10 @@ use super::doubt::doubtful_text;
 use super::settings::{length, own_settings};
 use super::text_table::TextTable;
 use super::{DelayRange, EstimatedJoint, Headline, JointSummary, dead_time_sentences};
-use crate::delay::{Automatic, Chosen, Condition, FirstLast, Interpolation, LagPart, Settings};
+use super::warning::Scatter;
+use crate::delay::{
+    Automatic, Chosen, Condition, FirstLast, Interpolation, LagPart, OnsetModel, Settings,
+};
 use crate::numerics::LowPass;
 use crate::units::Length;
 use crate::wording::{measure, percent, rounded};
@@ -24,7 +27,11 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
     let doubtful = doubtful_text(joints);
     let dead_times: String = joints.iter().flat_map(dead_time_lines).collect();
     let lags: String =
-        joints.iter().flat_map(|joint| [tracking_line(joint), lag_line(joint)]).flatten().collect();
+        joints
+            .iter()
+            .flat_map(|joint| [onset_line(joint), tracking_line(joint), lag_line(joint)])
+            .flatten()
+            .collect();
     let chosen: String = joints.iter().filter_map(chosen_line).collect();
     let own = joints.iter().filter_map(|joint| {
         let own = own_settings(joint, settings)?;
@@ -92,6 +99,53 @@ pub(crate) const LAG_NOT_DETERMINED: &str = "the lag is not determined: each ste
 /// A number with half of its 95 % interval.
 fn known(part: LagPart) -> String {
     format!("{:.4} ± {:.4}", part.value, 1.96 * part.std_error)
+}
+
+/// The response of a joint behind its dead times in words, where the method fits one.
+pub(super) fn onset_line(joint: &EstimatedJoint<'_>) -> Option<String> {
+    let model = joint.onset_model()?;
+    let response = onset_sentence(model);
+    let agree = Scatter::of(&joint.fine_delays()).filter(|scatter| !scatter.is_more_than_noise());
+    let agree = agree.map_or_else(String::new, |scatter| {
+        format!("; its delays are constant within {} s", rounded(scatter.within_s))
+    });
+    Some(format!("{}: {response}{agree}\n", joint.joint.name))
+}
+
+/// The response behind the dead times in words, with what it leaves over.
+pub(crate) fn onset_sentence(model: &OnsetModel) -> String {
+    let parameters = model.parameters();
+    let value = |name: &str| {
+        let found = parameters.iter().find(|(known, _)| *known == name);
+        found.map_or_else(String::new, |(_, value)| rounded(*value))
+    };
+    let response = match model.shape() {
+        "bend" => "the speed changes at once".to_owned(),
+        "bend_lag" => {
+            format!("the speed follows through a lag with time constant {} s", value("time_constant_s"))
+        }
+        "bend_lag2" => format!(
+            "the speed follows through two lags with time constants {} and {} s",
+            value("time_constant_s"),
+            value("second_time_constant_s")
+        ),
+        "oscillation" => format!(
+            "the speed follows with an oscillation, period {} s and damping {}",
+            value("period_s"),
+            value("damping")
+        ),
+        "settling" => {
+            format!("the output settles with time constant {} s", value("time_constant_s"))
+        }
+        _ => "the output goes to a level at a constant rate".to_owned(),
+    };
+    format!(
+        "behind the delay {response} (`{}`); residual {} times the sensor's noise; the input explains {} \
+         of the changes of motion",
+        model.shape(),
+        rounded(model.misfit()),
+        percent(model.follows_input_r2())
+    )
 }
 
 /// How the output of a joint settles, in words, where it does.

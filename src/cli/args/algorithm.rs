@@ -11,9 +11,9 @@ use crate::units::Length;
 #[derive(ClapArgs, Debug)]
 #[command(next_help_heading = "Algorithm")]
 pub(crate) struct AlgorithmArgs {
-    /// How a breakpoint is found. May be repeated: the first one is the answer, the others
-    /// are reported beside it
-    #[arg(long, default_values_t = [Method::default()], value_parser = method())]
+    /// How a delay is found. May be repeated: the first one is the answer, the others are reported
+    /// beside it [default: auto; two-line with `--paper` and `--follow`]
+    #[arg(long, value_parser = method())]
     method: Vec<Method>,
 
     /// Samples that a segment reaches beyond its input steps, or seconds as in `0.1s`; `auto`
@@ -79,8 +79,14 @@ enum Between {
 impl AlgorithmArgs {
     /// The settings of each method that was asked for, each once.
     pub(crate) fn runs(&self) -> Vec<Settings> {
+        self.runs_by(if self.conditions.paper { Method::TWO_LINE } else { Method::AUTO })
+    }
+
+    /// The settings of each method that was asked for, each once; those of `usual` where none was.
+    pub(crate) fn runs_by(&self, usual: Method) -> Vec<Settings> {
         let mut runs: Vec<Settings> = Vec::new();
-        for method in self.method.iter().copied() {
+        let asked = if self.method.is_empty() { &[usual][..] } else { &self.method };
+        for method in asked.iter().copied() {
             if runs.iter().all(|run| run.method != method) {
                 runs.push(self.settings(method));
             }

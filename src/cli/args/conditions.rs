@@ -54,7 +54,12 @@ pub(crate) struct ConditionArgs {
     /// Algorithm 1 of Albrecht and Taylor to the letter, on any log: no rest or stop of the joint
     /// is looked for, and the first and the last step are rejected
     #[arg(long, conflicts_with_all = ["first_last", "keep_first_last"])]
-    paper: bool,
+    pub(crate) paper: bool,
+
+    /// Accept delays although the output leads its input, does not follow it, or answers later than the
+    /// next step
+    #[arg(long)]
+    accept_anyway: bool,
 
     /// Count a change of the input as a step when it is more than this: for an input
     /// that was measured, and that has steps
@@ -197,6 +202,7 @@ impl ConditionArgs {
             max_sse: self.max_sse,
             first_last: self.first_last(),
             paper: self.paper,
+            accept_anyway: self.accept_anyway,
             min_step: self.min_step,
             input: if self.paper { InputKind::Steps } else { self.input.into() },
             confidence,

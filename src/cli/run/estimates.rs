@@ -57,13 +57,19 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
     for EstimatedJoint { joint, estimate } in joints {
         let name = &joint.name;
         let steps: usize = estimate.estimated().map(|trial| trial.decisions.len()).sum();
-        if estimate.dead_time.is_none() {
+        let warnings = EstimatedJoint { joint, estimate }.warnings();
+        notes.extend(warnings.into_iter().map(|it| format!("joint `{name}`: {}", it.text)));
+        // What is said of two lines is not said of an onset.
+        let by_lines = !estimate.settings.method.spec().models_response;
+        if estimate.dead_time.is_none() && by_lines {
             notes.extend(unsmoothed(joint, estimate));
-            notes.extend(unresolved(joint, estimate));
             notes.extend(cut_at_the_next_step(joint, estimate));
             notes.extend(smeared(joint, estimate));
-            notes.extend(as_long_as_allowed(joint, estimate));
             notes.extend(later_than_the_next_step(joint));
+        }
+        if estimate.dead_time.is_none() {
+            notes.extend(unresolved(joint, estimate));
+            notes.extend(as_long_as_allowed(joint, estimate));
             notes.extend(notes_on_sensor(joint, estimate));
         }
         let verdicts =

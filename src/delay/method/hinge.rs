@@ -6,12 +6,11 @@
 
 use std::ops::Range;
 
-use super::interface::DelayMethod;
+use super::interface::{DelayMethod, Shared};
 use super::step_context::StepContext;
 use crate::delay::broken_line::{BrokenLine, Evidence};
 use crate::delay::decision::Decision;
 use crate::delay::interval::FineDelay;
-use crate::delay::lag::Lag;
 use crate::delay::onsets::{Onset, OnsetPath, break_window, located};
 use crate::delay::prepared::Prepared;
 use crate::delay::search::Candidates;
@@ -29,6 +28,7 @@ static SPEC: MethodSpec = MethodSpec {
     has_rows: false,
     cuts_segments: false,
     has_intervals: true,
+    models_response: false,
     scope: Scope::Trial,
     low_pass: None,
     confidence: Some(CONFIDENCE),
@@ -46,7 +46,7 @@ impl DelayMethod for Hinge {
         Method::HINGE
     }
 
-    fn decide(&self, trial: &Prepared<'_>, _: Option<&Lag>, settings: &Settings) -> Vec<Decision> {
+    fn decide(&self, trial: &Prepared<'_>, _: &Shared, settings: &Settings) -> Vec<Decision> {
         decide_by_broken_lines(trial, settings)
     }
 }

@@ -1,24 +1,39 @@
 //! What every method does.
 
+use std::sync::Arc;
+
 use crate::delay::decision::Decision;
 use crate::delay::lag::Lag;
+use crate::delay::onset_model::OnsetModel;
 use crate::delay::prepared::Prepared;
 use crate::delay::settings::Settings;
 use crate::delay::spec::Method;
+
+/// What the trials of a joint share.
+#[derive(Clone, Debug, Default)]
+pub(in crate::delay) struct Shared {
+    /// How the joint follows behind its dead times, where the method looks for it.
+    pub(in crate::delay) lag: Option<Lag>,
+    /// The response behind the dead times, where the method looks for it.
+    pub(in crate::delay) onset_model: Option<Arc<OnsetModel>>,
+}
 
 /// A way to find the delays of a trial.
 pub(in crate::delay) trait DelayMethod: Sync {
     /// Its handle, by which settings name it and which says what it is.
     fn method(&self) -> Method;
 
-    /// The lag that the `trials` of a joint share. Only methods of
+    /// What the `trials` of a joint share. Only methods of
     /// [`Scope::Joint`](crate::delay::Scope::Joint) are asked.
-    fn shared_lag(&self, _trials: &[Prepared<'_>], _settings: &Settings) -> Option<Lag> {
-        None
+    fn shared(&self, _trials: &[Prepared<'_>], _settings: &Settings) -> Shared {
+        Shared::default()
     }
 
-    /// The decisions on all steps of a trial, one each and in order; `lag` is what its joint
-    /// shares.
-    fn decide(&self, trial: &Prepared<'_>, lag: Option<&Lag>, settings: &Settings)
-    -> Vec<Decision>;
+    /// The decisions on all steps of a trial, one each and in order, with what its joint shares.
+    fn decide(
+        &self,
+        trial: &Prepared<'_>,
+        shared: &Shared,
+        settings: &Settings,
+    ) -> Vec<Decision>;
 }

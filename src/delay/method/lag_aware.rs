@@ -4,8 +4,8 @@
 //! between its neighbours, together with them where holds are short, and with what earlier
 //! steps left as part of the fit. A joint without a lag is left to the broken line.
 
-use super::hinge::{self, Hinge};
-use super::interface::DelayMethod;
+use super::hinge;
+use super::interface::{DelayMethod, Shared};
 use super::step_context::StepContext;
 use crate::delay::broken_line;
 use crate::delay::decision::Decision;
@@ -32,6 +32,7 @@ static SPEC: MethodSpec = MethodSpec {
     has_rows: false,
     cuts_segments: false,
     has_intervals: true,
+    models_response: false,
     scope: Scope::Joint,
     low_pass: None,
     confidence: Some(CONFIDENCE),
@@ -50,20 +51,21 @@ impl DelayMethod for LagAware {
         Method::LAG_AWARE
     }
 
-    fn shared_lag(&self, trials: &[Prepared<'_>], settings: &Settings) -> Option<Lag> {
-        Some(lag_of(trials, settings))
+    fn shared(&self, trials: &[Prepared<'_>], settings: &Settings) -> Shared {
+        Shared { lag: Some(lag_of(trials, settings)), ..Shared::default() }
     }
 
     fn decide(
         &self,
         trial: &Prepared<'_>,
-        lag: Option<&Lag>,
+        shared: &Shared,
         settings: &Settings,
     ) -> Vec<Decision> {
+        let lag = shared.lag.as_ref();
         match lag.filter(|lag| lag.order() > 0) {
             Some(lag) => decide_all(trial, lag, settings),
             // A joint that follows at once has a broken line.
-            None if lag.is_none_or(Lag::is_determined) => Hinge.decide(trial, None, settings),
+            None if lag.is_none_or(Lag::is_determined) => hinge::decide_by_broken_lines(trial, settings),
             // Onsets from rest by the speed that they gather, all others by broken lines.
             None => hinge::decide_all(trial, settings, from_rest),
         }

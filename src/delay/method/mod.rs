@@ -4,6 +4,7 @@
 //! its [`DelayMethod`], and a line in `registry.rs`: help, defaults, sweeps, reports and
 //! recordings follow from what it says of itself.
 
+mod auto;
 mod hinge;
 mod interface;
 mod lag_aware;
@@ -15,7 +16,7 @@ mod step_context;
 mod two_line;
 
 pub(super) use hinge::decide_by_broken_lines;
-pub(super) use interface::DelayMethod;
+pub(super) use interface::{DelayMethod, Shared};
 pub(crate) use next_reaction::end_at_the_next_step;
 pub(super) use registry::implementation;
 pub(super) use settling::decide_settling;

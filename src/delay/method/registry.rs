@@ -1,5 +1,6 @@
 //! The registry of methods.
 
+use super::auto::Auto;
 use super::hinge::Hinge;
 use super::interface::DelayMethod;
 use super::lag_aware::LagAware;
@@ -7,7 +8,7 @@ use super::two_line::TwoLine;
 use crate::delay::spec::Method;
 
 /// Every method, in the order the documentation lists them.
-const REGISTRY: [&dyn DelayMethod; 3] = [&TwoLine, &Hinge, &LagAware];
+const REGISTRY: [&dyn DelayMethod; 4] = [&Auto, &TwoLine, &Hinge, &LagAware];
 
 impl Method {
     /// Every method, in the order the documentation lists them.

@@ -120,6 +120,7 @@ impl StepContext<'_> {
             checks,
             fine,
             response: None,
+            onset: None,
             reviewer_verdict: None,
         }
     }

@@ -11,12 +11,11 @@
 //! # References
 //! Albrecht and Taylor, Algorithm 1 (time-varying delays of hydraulic manipulators).
 
-use super::interface::DelayMethod;
+use super::interface::{DelayMethod, Shared};
 use super::next_reaction::answer_the_next_step;
 use super::noise_test;
 use super::step_context::StepContext;
 use crate::delay::decision::{Decision, Verdict};
-use crate::delay::lag::Lag;
 use crate::delay::prepared::Prepared;
 use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
@@ -32,6 +31,7 @@ static SPEC: MethodSpec = MethodSpec {
     has_rows: true,
     cuts_segments: true,
     has_intervals: false,
+    models_response: false,
     scope: Scope::Segment,
     low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),
     confidence: None,
@@ -63,13 +63,13 @@ impl DelayMethod for TwoLine {
         Method::TWO_LINE
     }
 
-    fn decide(&self, trial: &Prepared<'_>, _: Option<&Lag>, settings: &Settings) -> Vec<Decision> {
+    fn decide(&self, trial: &Prepared<'_>, _: &Shared, settings: &Settings) -> Vec<Decision> {
         decide_all(trial, settings)
     }
 }
 
 /// The decisions on all steps.
-fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
+pub(super) fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
     let mut decisions = in_turn(trial, settings, settings.alpha);
     // Not what a step is judged by that may come later, and nothing that is not the paper's.
     if !settings.paper && !settings.grows && answer_the_next_step(&decisions, settings.beta) {

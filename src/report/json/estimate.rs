@@ -1,5 +1,7 @@
 //! Schema `tauscope/estimate/1`, numbers in full precision.
 
+use std::collections::BTreeMap;
+
 use serde::{Serialize, Serializer};
 
 use super::dead_time::{DeadTimeJson, InputJson};
@@ -9,13 +11,16 @@ use super::settings::SettingsJson;
 use crate::delay::{
     AgainstOfKind, AgainstState, Chosen, Condition, Correlation, Direction, Lag, LagPart,
 };
-use crate::delay::{DelayRow, DelayTable, KindDelay, Neutral, Settings, Settling, StepState};
+use crate::delay::{
+    DelayRow, DelayTable, KindDelay, Neutral, OnsetModel, Settings, Settling, StepState,
+};
 use crate::experiment::{Experiment, ReadOptions, Source};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::DelayTableRow;
 use crate::report::doubt::doubted;
 use crate::report::settings::own_settings;
 use crate::report::{
+    Warning,
     Against, DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, JointSummary,
     ReviewCount,
 };
@@ -73,14 +78,37 @@ struct JointJson<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     lag: Option<LagJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    onset_model: Option<OnsetModelJson>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     settling: Option<SettlingJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
     tracking: Option<TrackingJson>,
+    warnings: Vec<Warning>,
     neutral: Option<NeutralJson>,
     delay_table: Vec<DelayRowJson<'a>>,
     delay_by_transition: Vec<KindJson>,
     against_state: AgainstJson,
     decisions: DecisionsJson<'a>,
+}
+
+/// The response behind the dead times.
+#[derive(Debug, Serialize)]
+struct OnsetModelJson {
+    shape: &'static str,
+    parameters: BTreeMap<&'static str, f64>,
+    misfit: f64,
+    follows_input_r2: f64,
+}
+
+impl OnsetModelJson {
+    fn new(model: &OnsetModel) -> Self {
+        Self {
+            shape: model.shape(),
+            parameters: model.parameters().into_iter().collect(),
+            misfit: model.misfit(),
+            follows_input_r2: model.follows_input_r2(),
+        }
+    }
 }
 
 /// Where the input is neutral, input units.
@@ -314,10 +342,12 @@ impl<'a> JointJson<'a> {
             settings: is_own.then(|| (&joint.estimate.settings).into()),
             chosen: chosen.map(Into::into),
             lag: joint.lag().map(LagJson::new),
+            onset_model: joint.onset_model().map(OnsetModelJson::new),
             settling: joint.settling().map(SettlingJson::new),
             tracking: joint
                 .tracking()
                 .map(|found| TrackingJson { offset: found.offset(), gain: found.gain() }),
+            warnings: joint.warnings(),
             neutral: neutral.map(|Neutral { level, low, high }| NeutralJson { level, low, high }),
             delay_table: rows.iter().map(|row| DelayRowJson::new(&joint.joint.name, row)).collect(),
             delay_by_transition: kinds.into_iter().map(Into::into).collect(),

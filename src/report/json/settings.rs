@@ -28,6 +28,8 @@ pub(super) struct SettingsJson {
     first_last: &'static str,
     keep_first_last: bool,
     paper: bool,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    accept_anyway: bool,
     min_step: f64,
     input: &'static str,
     interpolation: &'static str,
@@ -67,6 +69,7 @@ impl From<&Settings> for SettingsJson {
             },
             keep_first_last: settings.first_last == FirstLast::Keep,
             paper: settings.paper,
+            accept_anyway: settings.accept_anyway,
             min_step: settings.min_step,
             input: match settings.input {
                 InputKind::Auto => "auto",

@@ -1,0 +1,333 @@
+//! What an output does by itself and what a step adds to it: a linear state.
+//!
+//! Between two onsets the state `x` of `N` numbers moves as `x' = A x`, and the output is its first
+//! number. An onset of size `a` adds `a·b` to it, and what was under way before is any state at the
+//! start of a window, so that every response of this kind is fitted in the same way:
+//!
+//! ```text
+//! y_j = c F^j x_0 + a·c F^(j−k) e^(A f) b·[j ≥ k] + e_j      F = e^A,  c = (1 0 … 0)
+//! ```
+//!
+//! with the onset at `τ = k − f` between two samples. `x_0` and `a` are linear and solved for; what
+//! remains is a squared error for each `τ`, a quotient of products that are known for every `k`
+//! once
+//!
+//! ```text
+//! z_k = Σ_(j≥k) (c F^(j−k))ᵀ y_j          backward over the window: z_k = cᵀ y_k + Fᵀ z_(k+1)
+//! Q_m = Σ_(i<m) (c F^i)ᵀ (c F^i)          the same for all windows
+//! ```
+//!
+//! are. With `S = Q_n`, `x̂ = S⁻¹ z_0`, `β = e^(A f) b` and `v = (F^k)ᵀ Q_(n−k) β`:
+//!
+//! ```text
+//! SSE(τ) = SSE_0 − g²/d      g = βᵀ z_k − vᵀ x̂      d = βᵀ Q_(n−k) β − vᵀ S⁻¹ v
+//! ```
+//!
+//! A second direction of the jump, whose size is of no interest, and an end of what the onset added
+//! are further columns of the same kind.
+//!
+//! # References
+//! A. S. Willsky and H. L. Jones, "A generalized likelihood ratio approach to the detection and
+//! estimation of jumps in linear systems", IEEE Transactions on Automatic Control 21 (1976); here
+//! without process noise, so that the likelihood is a least-squares problem.
+
+use nalgebra::{Cholesky, SMatrix, SVector};
+
+use crate::units::ceil_to_index;
+
+pub(super) type Square<const N: usize> = SMatrix<f64, N, N>;
+pub(super) type State<const N: usize> = SVector<f64, N>;
+
+/// A part of the square of a column below which it depends on the others.
+const DEPENDENT: f64 = 1e-10;
+
+/// How an output moves, in samples; see the [module](self).
+pub(super) struct Dynamics<const N: usize> {
+    generator: Square<N>,
+    jump: State<N>,
+    /// A second direction of the jump.
+    nuisance: Option<State<N>>,
+    /// `F^m`.
+    powers: Vec<Square<N>>,
+    /// `Q_m`.
+    information: Vec<Square<N>>,
+}
+
+/// The sums over a window from which its squared error at any onset follows.
+pub(super) struct Window<const N: usize> {
+    /// `z_k`.
+    behind: Vec<State<N>>,
+    /// `S⁻¹`.
+    inverse: Square<N>,
+    /// `x̂`.
+    free: State<N>,
+    samples: usize,
+    mean: f64,
+    /// Samples after which what an onset added ends; infinite where it lasts.
+    ends: f64,
+    /// `SSE_0`: without an onset.
+    pub(super) sse_without: f64,
+}
+
+/// An onset at one position of a window.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Jump {
+    pub(super) sse: f64,
+    /// `a`.
+    pub(super) size: f64,
+    /// The size in the second direction.
+    other: f64,
+}
+
+/// A jump at a sample: its first one `k`, and `e^(A f) b`.
+struct Column<const N: usize> {
+    k: usize,
+    beta: State<N>,
+}
+
+/// A column's products: `Q β`, `v`, and `g`.
+struct Products<const N: usize> {
+    w: State<N>,
+    v: State<N>,
+    g: f64,
+}
+
+impl<const N: usize> Dynamics<N> {
+    /// For windows of fewer than `longest` samples.
+    pub(super) fn new(
+        generator: Square<N>,
+        jump: State<N>,
+        nuisance: Option<State<N>>,
+        longest: usize,
+    ) -> Self {
+        let step = exponential(&generator);
+        let (mut power, mut sum) = (Square::<N>::identity(), Square::<N>::zeros());
+        let (mut powers, mut information) = (Vec::new(), Vec::new());
+        for _ in 0..=longest.max(1) {
+            powers.push(power);
+            information.push(sum);
+            let row = power.row(0).transpose();
+            sum += row * row.transpose();
+            power = step * power;
+        }
+        Self { generator, jump, nuisance, powers, information }
+    }
+
+    /// Parameters of one window: the state, the onset, and its sizes.
+    pub(super) fn parameters(&self) -> usize {
+        N + 2 + usize::from(self.nuisance.is_some())
+    }
+
+    /// Sums over the `values` of a window; `None` where they are too few, or more than was asked
+    /// for at first.
+    pub(super) fn window(&self, values: &[f64], ends: f64) -> Option<Window<N>> {
+        let n = values.len();
+        if n <= self.parameters() || n >= self.powers.len() {
+            return None;
+        }
+        let mean = values.iter().sum::<f64>() / n as f64;
+        let step = self.powers[1].transpose();
+        let mut behind = vec![State::<N>::zeros(); n + 1];
+        let mut squares = 0.0;
+        for k in (0..n).rev() {
+            let y = values[k] - mean;
+            squares += y * y;
+            let mut z = step * behind[k + 1];
+            z[0] += y;
+            behind[k] = z;
+        }
+        let inverse = inverse(&self.information[n])?;
+        let free = inverse * behind[0];
+        let sse_without = (squares - behind[0].dot(&free)).max(0.0);
+        Some(Window { behind, inverse, free, samples: n, mean, ends, sse_without })
+    }
+
+    /// The onset at a `position` between the samples of the window.
+    pub(super) fn at(&self, window: &Window<N>, position: f64) -> Jump {
+        let nothing = Jump { sse: window.sse_without, size: 0.0, other: 0.0 };
+        let column = self.column(window, &self.jump, position);
+        let Products { mut w, mut v, mut g } = self.products(window, &column);
+        let mut square = column.beta.dot(&w);
+        if let Some(end) = self.end(window, position) {
+            let taken = self.products(window, &end);
+            let between = &self.powers[end.k - column.k];
+            square += end.beta.dot(&taken.w) - 2.0 * column.beta.dot(&between.tr_mul(&taken.w));
+            w -= between.tr_mul(&taken.w);
+            v -= taken.v;
+            g -= taken.g;
+        }
+        let solved = window.inverse * v;
+        let d = square - v.dot(&solved);
+        if d <= DEPENDENT * square {
+            return nothing;
+        }
+        let Some(second) = &self.nuisance else {
+            return Jump {
+                sse: (window.sse_without - g * g / d).max(0.0),
+                size: g / d,
+                other: 0.0,
+            };
+        };
+        let second = self.column(window, second, position);
+        let its = self.products(window, &second);
+        let own = second.beta.dot(&its.w) - its.v.dot(&(window.inverse * its.v));
+        let cross = second.beta.dot(&w) - its.v.dot(&solved);
+        let det = d * own - cross * cross;
+        if det <= DEPENDENT * d * own {
+            return nothing;
+        }
+        let size = (g * own - its.g * cross) / det;
+        let other = (its.g * d - g * cross) / det;
+        let sse = (window.sse_without - g * size - its.g * other).max(0.0);
+        Jump { sse, size, other }
+    }
+
+    /// The output as it is fitted with an onset at `position`.
+    pub(super) fn fitted(&self, window: &Window<N>, position: f64) -> Vec<f64> {
+        let jump = self.at(window, position);
+        let mut columns = vec![(self.column(window, &self.jump, position), jump.size)];
+        columns.extend(self.end(window, position).map(|end| (end, -jump.size)));
+        let second = self.nuisance.as_ref();
+        columns.extend(second.map(|b| (self.column(window, b, position), jump.other)));
+        let mut start = window.free;
+        for (column, size) in &columns {
+            start -= window.inverse * self.products(window, column).v * *size;
+        }
+        let value = |state: &State<N>, after: usize| self.powers[after].row(0).transpose().dot(state);
+        let at = |j: usize| {
+            let added = columns.iter().filter(|(column, _)| j >= column.k);
+            let added: f64 =
+                added.map(|(column, size)| size * value(&column.beta, j - column.k)).sum();
+            window.mean + value(&start, j) + added
+        };
+        (0..window.samples).map(at).collect()
+    }
+
+    fn column(&self, window: &Window<N>, b: &State<N>, position: f64) -> Column<N> {
+        let k = ceil_to_index(position.max(0.0)).min(window.samples - 1);
+        Column { k, beta: self.moved(b, (k as f64 - position).clamp(0.0, 1.0)) }
+    }
+
+    /// Where what the onset added ends, if it does within the window.
+    fn end(&self, window: &Window<N>, position: f64) -> Option<Column<N>> {
+        let end = position + window.ends;
+        (end <= window.samples as f64 - 1.0).then(|| self.column(window, &self.jump, end))
+    }
+
+    fn products(&self, window: &Window<N>, column: &Column<N>) -> Products<N> {
+        let w = self.information[window.samples - column.k] * column.beta;
+        let v = self.powers[column.k].tr_mul(&w);
+        let g = column.beta.dot(&window.behind[column.k]) - v.dot(&window.free);
+        Products { w, v, g }
+    }
+
+    /// `e^(A f) b` for `f` of a sample at most, by its series.
+    fn moved(&self, b: &State<N>, f: f64) -> State<N> {
+        let (mut term, mut sum) = (*b, *b);
+        let mut order = 1.0;
+        while f > 0.0 && term.norm() > f64::EPSILON * sum.norm() {
+            term = self.generator * term * (f / order);
+            sum += term;
+            order += 1.0;
+        }
+        sum
+    }
+}
+
+impl<const N: usize> Window<N> {
+    pub(super) fn len(&self) -> usize {
+        self.samples
+    }
+}
+
+/// `e^A`, by its series for a small part of `A`, squared again and again.
+fn exponential<const N: usize>(a: &Square<N>) -> Square<N> {
+    let mut halvings = 0;
+    let mut part = *a;
+    while part.norm() > 0.5 {
+        part *= 0.5;
+        halvings += 1;
+    }
+    let (mut term, mut sum) = (Square::<N>::identity(), Square::<N>::identity());
+    for order in 1..=16 {
+        term = term * part / f64::from(order);
+        sum += term;
+    }
+    for _ in 0..halvings {
+        sum = sum * sum;
+    }
+    sum
+}
+
+/// The inverse of an information matrix; a state that the samples do not show is held by a prior
+/// that is far weaker than any sample.
+fn inverse<const N: usize>(information: &Square<N>) -> Option<Square<N>> {
+    /// In parts of the information on each state.
+    const PRIOR: f64 = 1e-11;
+    let scale = information.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 1.0 });
+    let scaled = |m: &Square<N>| Square::<N>::from_fn(|i, j| m[(i, j)] * scale[i] * scale[j]);
+    let inverse = Cholesky::new(scaled(information) + Square::<N>::identity() * PRIOR)?.inverse();
+    Some(scaled(&inverse))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+    use crate::numerics::testing::uniform;
+
+    /// Behind a first-order lag of 4 samples.
+    fn lagged() -> Dynamics<3> {
+        let a = Square::<3>::new(0.0, 1.0, 0.0, 0.0, -0.25, 0.25, 0.0, 0.0, 0.0);
+        Dynamics::new(a, State::<3>::new(0.0, 0.0, 1.0), None, 100)
+    }
+
+    fn response(t: f64) -> f64 {
+        if t <= 0.0 { 0.0 } else { t - 4.0 * (1.0 - (-t / 4.0).exp()) }
+    }
+
+    #[test]
+    fn the_error_is_that_of_the_regression_on_all_columns() {
+        let mut white = uniform(3);
+        let y: Vec<f64> = (0..60).map(|k| response(f64::from(k) - 23.4) + white()).collect();
+        let dynamics = lagged();
+        let window = dynamics.window(&y, f64::INFINITY).unwrap();
+        for position in [9.0, 17.25, 23.4, 40.9] {
+            let columns = DMatrix::from_fn(60, 4, |j, column| {
+                let t = j as f64;
+                [1.0, t, (-t / 4.0).exp(), response(t - position)][column]
+            });
+            let y = DVector::from_column_slice(&y);
+            let solved = columns.clone().svd(true, true).solve(&y, 1e-12).unwrap();
+            let sse = (&y - &columns * &solved).norm_squared();
+            let found = dynamics.at(&window, position);
+            assert!((found.sse - sse).abs() < 1e-7 * sse, "{position}: {} {sse}", found.sse);
+            assert!((found.size - solved[3]).abs() < 1e-7, "{position}");
+            let fitted = DVector::from_vec(dynamics.fitted(&window, position));
+            assert!((fitted - &columns * &solved).norm() < 1e-5, "{position}");
+        }
+    }
+
+    #[test]
+    fn what_an_onset_added_may_end() {
+        let y: Vec<f64> = (0..80)
+            .map(|k| {
+                let ramp = |from: f64| (f64::from(k) - from).max(0.0);
+                2.0 + 0.5 * (ramp(20.3) - ramp(35.3))
+            })
+            .collect();
+        let a = Square::<2>::new(0.0, 1.0, 0.0, 0.0);
+        let dynamics = Dynamics::new(a, State::<2>::new(0.0, 1.0), None, 100);
+        let window = dynamics.window(&y, 15.0).unwrap();
+        let found = dynamics.at(&window, 20.3);
+        assert!(found.sse < 1e-12 && (found.size - 0.5).abs() < 1e-9, "{found:?}");
+        assert!(dynamics.at(&window, 22.0).sse > 0.1);
+    }
+
+    #[test]
+    fn a_window_that_is_too_short_has_no_onset() {
+        assert!(lagged().window(&[0.0; 5], f64::INFINITY).is_none());
+        assert!(lagged().window(&[0.0; 200], f64::INFINITY).is_none());
+    }
+}

@@ -1,0 +1,27 @@
+//! One onset model: a window, a response, a profile.
+//!
+//! A step of the input changes the speed of a joint, or the level to which its output settles,
+//! behind a dead time of its own. What follows is a response that all steps of the joint share: its
+//! [`Shape`](shape::Shape), with one or two parameters. In the window of a step everything but the
+//! onset and these parameters is linear; the onset is a profile of the squared error, which may have
+//! its least before the step, and its interval is where the profile is not plainly worse.
+//!
+//! - [`dynamics`]: a response as a linear state, and the error of a window at any onset
+//! - [`shape`]: the responses, one entry each
+//! - [`windows`]: the windows of a joint's steps, and one pass over them
+//! - [`alignment`]: about which delay all onsets have
+//! - [`search`]: the shape and its parameters, by evidence over all steps
+//! - [`follows`]: whether the output follows this input at all
+//! - [`uncertainty`]: what an interval is made of
+//! - [`model`]: all of it
+
+mod alignment;
+mod dynamics;
+mod follows;
+mod model;
+mod search;
+mod shape;
+mod uncertainty;
+mod windows;
+
+pub use model::{Obstacle, OnsetModel, StepOnset};

@@ -1,0 +1,391 @@
+//! The onset model of a joint, and its onsets in a trial.
+//!
+//! A shape that fits the whole of a hold uses all of it. Where none does, since the speed changes
+//! within holds in a way of its own, the output is looked at less far about each onset, where any
+//! motion is nearly a bend: of some reaches the one whose intervals are the shortest is taken,
+//! among those whose onsets answer the input as well.
+
+use std::ops::Range;
+
+use super::follows::Follows;
+use super::search::{Candidate, Search};
+use super::shape::Shape;
+use super::uncertainty::{Residual, choice, sensor_noise};
+use super::windows::{Fit, MARGIN, Onset, Run, Step};
+use crate::delay::broken_line::p_value;
+use crate::delay::interval::FineDelay;
+use crate::delay::prepared::Prepared;
+use crate::numerics::{median, student_quantile};
+use crate::units::{SamplePeriod, ceil_to_index, floor_to_index};
+
+/// Samples from which the shape is found, and those from which its misfit is (chosen: more change
+/// nothing but the time).
+const ENOUGH_FOR_SHAPE: usize = 4_000;
+const ENOUGH_FOR_MISFIT: usize = 20_000;
+
+/// Samples of a hold that are looked at: of longer ones every second, third … sample.
+const SAMPLES_OF_HOLD: f64 = 500.0;
+
+/// What is looked at to each side of an onset, in holds and in samples. Of a record with few steps,
+/// as a bump test, more.
+const REACH: f64 = 1.5;
+const REACHES: (f64, f64) = (60.0, 750.0);
+const REACH_OF_FEW: f64 = 2000.0;
+const LEAST_REACH: f64 = 16.0;
+
+/// Parts of the reach that are tried where nothing fits all of it.
+const PARTS: [f64; 3] = [0.5, 0.25, 0.125];
+
+/// What a shape leaves over in parts of the noise, from which it does not fit.
+const MISFIT: f64 = 1.15;
+
+/// A part of what is explained below which it matters how much it is, and by how much less it may be.
+const PLAIN: f64 = 0.7;
+const WORSE: f64 = 0.03;
+
+/// Passes over the windows of a record once its shape is known.
+const PASSES: usize = 3;
+
+/// The response that all steps of a joint share behind the dead time that each has of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OnsetModel {
+    /// The period of the trials that it was found in.
+    period: SamplePeriod,
+    /// In samples of that period.
+    shape: Shape,
+    /// Samples to each side of an onset.
+    reach: usize,
+    /// Median delay, samples.
+    typical: f64,
+    /// Standard deviation of the sensor's noise.
+    noise: f64,
+    residual: Residual,
+    follows: Follows,
+    /// Standard deviation by which all onsets may be moved together, samples.
+    shared: f64,
+    /// Median width of the intervals of the clear onsets, samples.
+    width: f64,
+    /// Parts of the clear onsets whose whole interval is before their step, and of those that are
+    /// behind the next step.
+    early: f64,
+    late: f64,
+}
+
+/// Why onsets are no delays of this output behind this input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Obstacle {
+    /// The sizes of the onsets do not go with the steps of the input.
+    Unrelated,
+    /// Onsets come before their steps, by so many seconds at the median.
+    Leads(f64),
+    /// Onsets come behind the next step, so many seconds late at the median.
+    BeyondHolds(f64),
+}
+
+/// An onset of one step of a trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepOnset {
+    /// The delay, which may be negative.
+    pub fine: FineDelay,
+    /// The window that it was found in, as indices of the trial's samples.
+    pub window: Range<usize>,
+    /// What is fitted there, output units; empty where only the best candidates are kept.
+    pub fitted: Vec<f64>,
+    /// Part of the window's squared error without an onset that it removes.
+    pub explained: f64,
+    /// How often noise alone looks as much like an onset.
+    pub p_value: f64,
+    /// Whether the output comes to rest behind the onset.
+    pub rests: bool,
+}
+
+impl OnsetModel {
+    /// The model of a joint's trials, those of the first one's period; `None` where there is nothing
+    /// to fit.
+    pub(in crate::delay) fn of(trials: &[Prepared<'_>]) -> Option<Self> {
+        let period = trials.first()?.period;
+        let alike = trials.iter().filter(|trial| trial.period == period);
+        let runs: Vec<Run> = alike.map(run_of).filter(|run| !run.steps.is_empty()).collect();
+        let mut best = Self::within(&runs, period, 1.0)?;
+        if best.misfit() < MISFIT {
+            return Some(best);
+        }
+        let as_well = |a: &Self, b: &Self| {
+            let [a, b] = [a, b].map(|model| model.follows.r2.min(PLAIN));
+            a > b - WORSE
+        };
+        for part in PARTS {
+            let Some(next) = Self::within(&runs, period, part) else { continue };
+            let is_narrower = next.width < best.width && as_well(&next, &best);
+            if is_narrower || !as_well(&best, &next) {
+                best = next;
+            }
+        }
+        Some(best)
+    }
+
+    /// The model that looks at a part of the reach.
+    fn within(runs: &[Run], period: SamplePeriod, part: f64) -> Option<Self> {
+        let holds: Vec<f64> = runs.iter().flat_map(holds).collect();
+        let hold = median(&holds)?;
+        let every = ceil_to_index(hold / SAMPLES_OF_HOLD).max(1);
+        let search = Search::of(&beginning(runs, ENOUGH_FOR_SHAPE * every), every, part)?;
+        let mut candidates = search.select();
+        for candidate in &mut candidates {
+            candidate.typical *= every as f64;
+        }
+        let chosen = candidates.first()?;
+        let factor = every as f64;
+        let shared = search.shared_variance(chosen).sqrt() * factor;
+        let (shape, typical) = (chosen.shape.scaled(factor), chosen.typical);
+        // At the rate of the record, what is left over and how the sizes go with the input.
+        let mut search = Search::of(&beginning(runs, ENOUGH_FOR_MISFIT), 1, part)?;
+        search.reach = reach_of(hold, every, part, search.has_few_steps());
+        let found = search.evaluate(shape, search.starting(typical), typical, PASSES);
+        let residual = Residual::of(&search, &found);
+        let follows = Follows::of(&search.runs, &found.onsets.found);
+        let misfit = misfit(residual.deviation, search.noise);
+        let choice = choice(&candidates, residual.memory * misfit.powi(2).max(1.0));
+        let shared = (shared * shared * residual.memory + choice * choice).sqrt();
+        let (reach, noise) = (search.reach, search.noise);
+        let mut model = Self {
+            period,
+            shape,
+            reach,
+            typical: found.typical,
+            noise,
+            residual,
+            follows,
+            shared,
+            width: f64::INFINITY,
+            early: 0.0,
+            late: 0.0,
+        };
+        model.measure(&search, &found);
+        Some(model)
+    }
+
+    /// How wide the intervals are, unless most onsets are not clear, and on which side of their steps
+    /// they lie.
+    fn measure(&mut self, search: &Search, found: &Candidate) {
+        const CONFIDENCE: f64 = 0.95;
+        let fit = search.fit(&self.shape);
+        let (mut widths, mut early, mut late, mut all) = (Vec::new(), 0.0, 0.0, 0);
+        for (run, found) in search.runs.iter().zip(&found.onsets.found) {
+            all += found.len();
+            for (index, onset) in found.iter().enumerate() {
+                let Some(onset) = onset.as_ref().filter(|onset| onset.is_clear) else { continue };
+                let (low, high) = self.sides(fit.as_ref(), run, (index, onset), CONFIDENCE);
+                widths.push(low + high);
+                let next = run.steps.get(index + 1).map_or(f64::INFINITY, |next| next.at);
+                early += f64::from(u8::from(onset.position + high < run.steps[index].at));
+                late += f64::from(u8::from(onset.position - low > next));
+            }
+        }
+        let clear = (widths.len() as f64).max(1.0);
+        (self.early, self.late) = (early / clear, late / clear);
+        if 2 * widths.len() >= all {
+            self.width = median(&widths).unwrap_or(f64::INFINITY);
+        }
+    }
+
+    /// Why the onsets are no delays, if they are none.
+    pub fn obstacle(&self) -> Option<Obstacle> {
+        /// The part of onsets that must be out of place (chosen: most).
+        const MOST: f64 = 0.5;
+        let typical_s = self.typical * self.period.seconds();
+        if self.follows.is_unrelated() {
+            Some(Obstacle::Unrelated)
+        } else if self.early > MOST {
+            Some(Obstacle::Leads(-typical_s))
+        } else if self.late > MOST {
+            Some(Obstacle::BeyondHolds(typical_s))
+        } else {
+            None
+        }
+    }
+
+    /// How far the interval of an onset reaches to both sides, samples.
+    fn sides(&self, fit: &dyn Fit, run: &Run, of: (usize, &Onset), confidence: f64) -> (f64, f64) {
+        /// Samples of all windows that count beside those of one.
+        const POOLED: f64 = 20.0;
+        let (index, onset) = of;
+        let freedom = (onset.samples() as f64 - fit.parameters() as f64).max(1.0);
+        let all = self.residual.deviation.max(self.noise).powi(2);
+        let variance = (onset.sse + POOLED * all) / (freedom + POOLED);
+        let t = student_quantile(f64::midpoint(1.0, confidence), freedom + POOLED);
+        let limit = onset.sse + variance.max(f64::MIN_POSITIVE) * self.residual.memory * t * t;
+        let (low, high) = fit.extent(run, index, onset, &self.shape, limit);
+        (low.hypot(t * self.shared), high.hypot(t * self.shared))
+    }
+
+    /// The onsets of all steps of a trial, none where a window is too short.
+    pub(in crate::delay) fn onsets(
+        &self,
+        trial: &Prepared<'_>,
+        confidence: f64,
+    ) -> Vec<Option<StepOnset>> {
+        let factor = self.period.seconds() / trial.period.seconds();
+        let scaled = Self { shape: self.shape.scaled(factor), shared: self.shared * factor, ..self.clone() };
+        let run = run_of(trial);
+        let Some(mut search) = Search::of(std::slice::from_ref(&run), 1, 1.0) else {
+            return vec![None; run.steps.len()];
+        };
+        search.reach = ceil_to_index(self.reach as f64 * factor);
+        let typical = self.typical * factor;
+        let found = search.evaluate(scaled.shape, search.starting(typical), typical, PASSES);
+        let fit = search.fit(&scaled.shape);
+        let onsets = found.onsets.found.first().into_iter().flatten().enumerate();
+        onsets
+            .map(|(index, onset)| {
+                Some(scaled.step_onset(fit.as_ref(), &search.runs[0], (index, onset.as_ref()?), confidence))
+            })
+            .collect()
+    }
+
+    fn step_onset(
+        &self,
+        fit: &dyn Fit,
+        run: &Run,
+        (index, onset): (usize, &Onset),
+        confidence: f64,
+    ) -> StepOnset {
+        let (low, high) = self.sides(fit, run, (index, onset), confidence);
+        let delay = onset.position - run.steps[index].at;
+        let explained = 1.0 - onset.sse / onset.sse_without.max(f64::MIN_POSITIVE);
+        let samples = onset.samples() as f64;
+        let others = fit.parameters() as f64 - 2.0;
+        let p_value = p_value(
+            explained,
+            (samples - others) / self.residual.memory,
+            samples,
+            (MARGIN as f64, samples - 1.0 - MARGIN as f64),
+        );
+        StepOnset {
+            fine: FineDelay { delay, low: delay - low, high: delay + high, confidence },
+            window: onset.start..onset.end,
+            fitted: fit.fitted(run, index, onset, &self.shape),
+            explained,
+            p_value,
+            rests: !self.shape.family.may_be_curved(),
+        }
+    }
+
+    /// Its name: `bend`, `bend_lag`, `bend_lag2`, `oscillation`, `settling` or `slew`.
+    pub fn shape(&self) -> &'static str {
+        self.shape.id()
+    }
+
+    /// The parameters of the shape, with the names that they have in files; times in seconds.
+    pub fn parameters(&self) -> Vec<(&'static str, f64)> {
+        self.shape.parameters(self.period.seconds())
+    }
+
+    /// Root mean square of what the shape leaves over, in that of the sensor's noise; none of a sensor
+    /// that shows no noise.
+    pub fn misfit(&self) -> f64 {
+        misfit(self.residual.deviation, self.noise)
+    }
+
+    /// The part of the changes of speed, or of level, that goes with the changes of the input: an R²
+    /// about zero.
+    pub fn follows_input_r2(&self) -> f64 {
+        self.follows.r2
+    }
+
+    /// Whether the mean of what is left at some distance from the onsets of all steps is more than
+    /// noise: the joint answers in another way than any shape.
+    pub fn is_misfit(&self) -> bool {
+        /// Part of the residuals' deviation, and standard errors, from which a mean counts.
+        const PART: f64 = 0.3;
+        const PLAIN: f64 = 4.0;
+        /// What is left over in parts of the noise that needs no mean.
+        const LARGE: f64 = 3.0;
+        let (part, errors) = self.residual.systematic;
+        (part > PART && errors > PLAIN && self.misfit() > MISFIT) || self.misfit() > LARGE
+    }
+}
+
+/// What is left over in parts of the noise.
+fn misfit(deviation: f64, noise: f64) -> f64 {
+    if noise > 0.0 { deviation / noise } else { 1.0 }
+}
+
+impl Search {
+    /// Every so many samples of runs, about a part of the reach.
+    fn of(runs: &[Run], every: usize, part: f64) -> Option<Self> {
+        let runs: Vec<Run> = runs.iter().map(|run| thinned(run, every)).collect();
+        let hold = median(&runs.iter().flat_map(holds).collect::<Vec<f64>>())?;
+        let noise = sensor_noise(runs.iter().map(|run| run.output.as_slice()));
+        let mut search = Self { runs, reach: 0, noise, hold };
+        search.reach = reach_of(hold, 1, part, search.has_few_steps());
+        Some(search)
+    }
+}
+
+/// Samples to each side of an onset that are looked at, where every so many of a hold are.
+fn reach_of(hold: f64, every: usize, part: f64, few: bool) -> usize {
+    let (least, most) = REACHES;
+    let most = if few { REACH_OF_FEW } else { most };
+    let reach = (REACH * hold / every as f64).clamp(least, most) * part;
+    ceil_to_index(reach.max(LEAST_REACH)) * every
+}
+
+/// Samples from each step to the next.
+fn holds(run: &Run) -> Vec<f64> {
+    let ends = run.steps.iter().skip(1).map(|step| step.at).chain([run.output.len() as f64]);
+    run.steps.iter().zip(ends).map(|(step, end)| end - step.at).collect()
+}
+
+/// Every so many samples of a run.
+fn thinned(run: &Run, every: usize) -> Run {
+    let factor = every as f64;
+    let step = |step: &Step| Step {
+        at: step.at / factor,
+        first: step.first / factor,
+        end: step.end / factor,
+        latest: step.latest / factor,
+        ..*step
+    };
+    Run {
+        output: run.output.iter().step_by(every).copied().collect(),
+        steps: run.steps.iter().map(step).collect(),
+    }
+}
+
+/// The first runs of so many samples together, the last of them up to one of its steps.
+fn beginning(runs: &[Run], enough: usize) -> Vec<Run> {
+    /// Steps of a run that is cut.
+    const FEWEST: usize = 2;
+    let mut left = enough as f64;
+    let mut taken = Vec::new();
+    for run in runs {
+        if left <= 0.0 {
+            break;
+        }
+        let within = run.steps.iter().filter(|step| step.at < left).count();
+        let steps = within.max(FEWEST).min(run.steps.len());
+        let end = run.steps.get(steps).map_or(run.output.len(), |step| floor_to_index(step.at));
+        taken.push(Run { output: run.output[..end].to_vec(), steps: run.steps[..steps].to_vec() });
+        left -= end as f64;
+    }
+    taken
+}
+
+/// A trial as it is fitted: its output as it was measured, and its steps with what bounds the reaction to
+/// each.
+fn run_of(trial: &Prepared<'_>) -> Run {
+    let samples = trial.raw.len();
+    let output = trial.measured(0..samples).into_owned();
+    let motions = trial.motions.iter().map(|motion| motion.as_deref());
+    let motions = motions.chain(std::iter::repeat(None));
+    let steps = trial.steps.iter().zip(motions).map(|(step, motion)| Step {
+        at: step.sample as f64 - 1.0,
+        before: step.before,
+        after: step.after,
+        first: motion.map_or(0.0, |motion| motion.first as f64),
+        end: motion.map_or(samples as f64, |motion| motion.end as f64),
+        latest: motion.map_or(samples as f64, |motion| motion.latest as f64),
+    });
+    Run { output, steps: steps.collect() }
+}

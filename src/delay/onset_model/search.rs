@@ -1,0 +1,383 @@
+//! The shape of a joint, by evidence over all its steps.
+//!
+//! Each family of responses starts from a grid of its parameters, which Newton's method refines,
+//! the windows held; an onset per step is found anew at each of them, so that the parameters are
+//! those of least error over the onsets, too (variable projection). Families are compared by
+//! Schwarz's criterion over the samples of all windows,
+//!
+//! ```text
+//! Σ_i n_i/2 ln(SSE_i/n_i) + (parameters) ln n
+//! ```
+//!
+//! in which a window that something else disturbed counts by the logarithm of its error alone.
+//! Shapes whose onsets go far less with the input than those of others have missed them.
+//!
+//! # References
+//! G. H. Golub and V. Pereyra, "The differentiation of pseudo-inverses and nonlinear least squares
+//! problems whose variables separate", SIAM Journal on Numerical Analysis 10 (1973); G. Schwarz,
+//! "Estimating the dimension of a model", Annals of Statistics 6 (1978).
+
+use super::alignment::alignments;
+use super::follows::Follows;
+use super::shape::{Family, Shape};
+use super::windows::{Fit, Onset, Onsets, Pass, Run, windows};
+use crate::numerics::median;
+
+/// Steps up to which a record is taken as a whole: a disturbed window is then no small part of it,
+/// and a curved hold cannot be told from a response.
+const FEW: usize = 3;
+const FEW_FOR_WEIGHTS: usize = 5;
+
+/// Part by which the sizes of onsets may be explained worse than by another shape.
+const WORSE: f64 = 0.1;
+
+/// A joint as it is searched.
+pub(super) struct Search {
+    pub(super) runs: Vec<Run>,
+    /// Samples to each side of an onset that are looked at.
+    pub(super) reach: usize,
+    /// Standard deviation of the sensor's noise.
+    pub(super) noise: f64,
+    /// Median hold, samples.
+    pub(super) hold: f64,
+}
+
+/// A shape with the onsets behind it.
+#[derive(Clone, Debug)]
+pub(super) struct Candidate {
+    pub(super) shape: Shape,
+    pub(super) onsets: Onsets,
+    /// Median delay of the clear onsets, samples.
+    pub(super) typical: f64,
+    /// Schwarz's criterion; less is better.
+    pub(super) score: f64,
+}
+
+impl Candidate {
+    pub(super) fn found(&self) -> impl Iterator<Item = &Onset> + Clone {
+        self.onsets.found.iter().flatten().flatten()
+    }
+}
+
+impl Search {
+    fn steps(&self) -> usize {
+        self.runs.iter().map(|run| run.steps.len()).sum()
+    }
+
+    pub(super) fn has_few_steps(&self) -> bool {
+        self.steps() <= FEW
+    }
+
+    /// What fits a shape in windows of this search.
+    pub(super) fn fit(&self, shape: &Shape) -> Box<dyn Fit> {
+        let longest = self.runs.iter().map(|run| run.output.len()).max().unwrap_or(0);
+        shape.fit(self.reach as f64 / 2.0, (2 * self.reach).min(longest) + 2)
+    }
+
+    pub(super) fn pass(&self, shape: Shape, typical: f64) -> Pass<'static> {
+        // What begins before a record with a few steps is most of it.
+        let edge = if self.has_few_steps() { 0.0 } else { typical };
+        Pass { shape, reach: self.reach, typical, edge, noise: self.noise, windows: None }
+    }
+
+    /// All onsets so many samples behind their steps.
+    pub(super) fn starting(&self, delay: f64) -> Vec<Vec<f64>> {
+        let of_run = |run: &Run| run.steps.iter().map(|step| step.at + delay).collect();
+        self.runs.iter().map(of_run).collect()
+    }
+
+    /// The median delay of the clear onsets.
+    fn typical(&self, onsets: &Onsets) -> Option<f64> {
+        let all = self.runs.iter().zip(&onsets.found);
+        let delays = all.flat_map(|(run, found)| run.steps.iter().zip(found)).filter_map(
+            |(step, found)| Some(found.filter(|onset| onset.is_clear)?.position - step.at),
+        );
+        median(&delays.collect::<Vec<f64>>())
+    }
+
+    /// The onsets behind a shape, found in `passes` from where they are taken to be at first.
+    pub(super) fn evaluate(
+        &self,
+        shape: Shape,
+        positions: Vec<Vec<f64>>,
+        typical: f64,
+        passes: usize,
+    ) -> Candidate {
+        let fit = self.fit(&shape);
+        let found = self.runs.iter().map(|run| vec![None; run.steps.len()]).collect();
+        let mut onsets = Onsets { positions, found };
+        let mut typical = typical;
+        for _ in 0..passes {
+            fit.pass(&self.runs, &mut onsets, &self.pass(shape, typical));
+            typical = self.typical(&onsets).unwrap_or(typical);
+        }
+        let mut candidate = Candidate { shape, onsets, typical, score: f64::INFINITY };
+        candidate.score = self.score(&candidate, fit.parameters());
+        candidate
+    }
+
+    /// Schwarz's criterion; each sample stands in two windows.
+    fn score(&self, candidate: &Candidate, parameters: usize) -> f64 {
+        /// Of the noise: what is left where there is none.
+        const FLOOR: f64 = 0.1;
+        let floor = (FLOOR * self.noise).powi(2).max(f64::MIN_POSITIVE);
+        let found = || candidate.found();
+        let samples = found().map(|onset| onset.samples() as f64).sum::<f64>();
+        let windows = found().count();
+        if windows == 0 {
+            return f64::INFINITY;
+        }
+        let error = if windows <= FEW_FOR_WEIGHTS {
+            samples * (found().map(|onset| onset.sse).sum::<f64>() / samples).max(floor).ln()
+        } else {
+            found().map(|onset| onset.samples() as f64 * onset.mean_square().max(floor).ln()).sum()
+        };
+        let parameters = (parameters * windows) as f64 / 2.0 + 2.0 * candidate.shape.order() as f64;
+        error / 2.0 + parameters * (samples / 2.0).ln()
+    }
+
+    /// The candidate with the parameters of least error near its own, its windows held and weighted
+    /// by what is left in each; at most so many rounds of Newton's method.
+    fn refined(&self, candidate: Candidate, rounds: usize) -> Candidate {
+        /// The first distance of the differences, in a logarithm, and where the search ends.
+        const FIRST: f64 = 0.15;
+        const LAST: f64 = 2e-4;
+        let mut candidate = candidate;
+        if candidate.shape.order() == 0 {
+            return candidate;
+        }
+        let mut h = FIRST;
+        for _ in 0..rounds {
+            let shape = self.newton_step(&candidate, h);
+            let pairs = shape.logs.iter().zip(&candidate.shape.logs);
+            let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let Candidate { onsets, typical, .. } = candidate;
+            candidate = self.evaluate(shape, onsets.positions, typical, 1);
+            h = change.clamp(h / 6.0, h);
+            if change < LAST && h < 10.0 * LAST {
+                break;
+            }
+        }
+        candidate
+    }
+
+    /// The best of the points at a distance `h` in the parameters, and of Newton's.
+    fn newton_step(&self, candidate: &Candidate, h: f64) -> Shape {
+        let Candidate { shape, onsets, typical, .. } = candidate;
+        let pass = self.pass(*shape, *typical);
+        let windows = windows(&self.runs, &onsets.positions, &pass);
+        let middle = candidate.found().map(Onset::mean_square).collect::<Vec<f64>>();
+        let middle = median(&middle).unwrap_or(0.0).max(f64::MIN_POSITIVE);
+        let weight = |onset: &Onset| onset.mean_square().max(middle).recip();
+        let value = |shape: Shape| {
+            let mut moved = onsets.clone();
+            let pass = Pass { shape, windows: Some(&windows), ..pass };
+            self.fit(&shape).pass(&self.runs, &mut moved, &pass);
+            let pairs = moved.found.iter().flatten().zip(onsets.found.iter().flatten());
+            pairs.filter_map(|(now, was)| Some(now.as_ref()?.sse * weight(was.as_ref()?))).sum()
+        };
+        let mut best = (value(*shape), *shape);
+        let here = best.0;
+        let mut at = |by: [f64; 2]| {
+            let moved = shape.moved(by);
+            if !moved.is_allowed(self.hold) {
+                return f64::INFINITY;
+            }
+            let value = value(moved);
+            if value < best.0 {
+                best = (value, moved);
+            }
+            value
+        };
+        let step = if shape.order() == 1 {
+            along_one(here, at([-h, 0.0]), at([h, 0.0]), h)
+        } else {
+            let near = [[-h, 0.0], [h, 0.0], [0.0, -h], [0.0, h], [h, h]].map(&mut at);
+            along_two(here, near, h)
+        };
+        if let Some(step) = step {
+            at(step.map(|by| by.clamp(-3.0 * h, 3.0 * h)));
+        }
+        best.1
+    }
+
+    /// The shapes that the record supports, the best one first.
+    pub(super) fn select(&self) -> Vec<Candidate> {
+        let changes = self.runs.iter().flat_map(|run| &run.steps).map(|step| step.change().abs());
+        let change = median(&changes.collect::<Vec<f64>>()).unwrap_or(1.0);
+        let bend = self.first();
+        let mut all = vec![bend.clone()];
+        for family in Family::WITH_PARAMETERS {
+            let grid = Shape::grid(family, self.hold, change).into_iter();
+            let found = grid.filter(|shape| shape.is_allowed(self.hold)).flat_map(|shape| {
+                let starts = self.starts(shape, &bend);
+                starts.into_iter().map(move |(positions, typical)| (shape, positions, typical))
+            });
+            let found = found.map(|(shape, positions, typical)| {
+                self.evaluate(shape, positions, typical, 2)
+            });
+            all.extend(found.min_by(|a, b| a.score.total_cmp(&b.score)));
+        }
+        let mut all = self.narrowed(all);
+        if !self.has_few_steps() {
+            let plain = all.iter().filter(|it| it.shape.family.may_be_curved());
+            let curved: Vec<Candidate> = plain
+                .map(|it| {
+                    let shape = Shape { curved: true, ..it.shape };
+                    let from = it.onsets.positions.clone();
+                    self.refined(self.evaluate(shape, from, it.typical, 2), ROUNDS)
+                })
+                .collect();
+            all.extend(curved);
+            self.keep_those_that_follow(&mut all);
+        }
+        all.sort_by(|a, b| a.score.total_cmp(&b.score));
+        all
+    }
+
+    /// Refines all candidates.
+    fn narrowed(&self, all: Vec<Candidate>) -> Vec<Candidate> {
+        all.into_iter().map(|candidate| self.refined(candidate, ROUNDS)).collect()
+    }
+
+    fn keep_those_that_follow(&self, all: &mut Vec<Candidate>) {
+        let r2 = |candidate: &Candidate| Follows::of(&self.runs, &candidate.onsets.found).r2;
+        let most = all.iter().map(r2).fold(0.0, f64::max);
+        all.retain(|candidate| r2(candidate) > most - WORSE);
+    }
+
+    /// Broken lines about the common delay that shows best, or whose onsets go best with the input
+    /// where several show.
+    fn first(&self) -> Candidate {
+        /// Tops that are tried, and how well they must show beside the best.
+        const TOPS: usize = 6;
+        const SHOWS: f64 = 0.2;
+        /// What is explained well enough, and by how much another must explain more.
+        const WELL: f64 = 0.9;
+        const MORE: f64 = 0.05;
+        let few = self.has_few_steps();
+        let tops = alignments(&self.runs, self.hold, few, &self.pass(Shape::BEND, 0.0));
+        let bend = |delay: f64| self.evaluate(Shape::BEND, self.starting(delay), delay, 2);
+        let Some((delay, most)) = tops.first().copied() else { return bend(0.0) };
+        let mut best = bend(delay);
+        if few {
+            let other = bend(0.0);
+            return if other.score < best.score { other } else { best };
+        }
+        let r2 = |candidate: &Candidate| Follows::of(&self.runs, &candidate.onsets.found).r2;
+        let mut explained = r2(&best);
+        for (delay, gain) in tops.into_iter().take(TOPS).skip(1) {
+            if gain < SHOWS * most || explained > WELL {
+                break;
+            }
+            let other = bend(delay);
+            let its = r2(&other);
+            if its > explained + MORE {
+                (best, explained) = (other, its);
+            }
+        }
+        best
+    }
+
+    /// Where onsets behind a shape are taken to be at first, with their typical delay.
+    fn starts(&self, shape: Shape, bend: &Candidate) -> Vec<(Vec<Vec<f64>>, f64)> {
+        /// Delays that are compared in a hold, and the longest lead among them.
+        const PER_HOLD: i32 = 12;
+        const LEAD: i32 = 6;
+        let few = self.has_few_steps();
+        let rests = !shape.family.may_be_curved();
+        if !rests && !few {
+            let mean = shape.mean();
+            let positions = bend.onsets.positions.iter();
+            let earlier = positions.map(|of| of.iter().map(|position| position - mean).collect());
+            return vec![(earlier.collect(), bend.typical - mean)];
+        }
+        // Corners say little of outputs that come to rest.
+        let fit = self.fit(&shape);
+        let by = (self.hold / f64::from(PER_HOLD)).max(1.0);
+        let delays = (if few { 0 } else { -LEAD }..=PER_HOLD).map(|k| f64::from(k) * by);
+        let error = |delay: &f64| {
+            fit.mean_square(&self.runs, &self.starting(*delay), &self.pass(shape, *delay))
+        };
+        let best = delays.min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or(0.0);
+        let mut starts = vec![(self.starting(best), best)];
+        if few {
+            starts.push((bend.onsets.positions.clone(), bend.typical));
+            starts.push((self.starting(0.0), 0.0));
+        }
+        starts
+    }
+
+    /// How much the variance of all onsets of a candidate grows because its parameters are not known:
+    /// by the delta method, `gᵀ H⁻¹ g`, with `g` how far the onsets move and `H` the curvature of
+    /// the error in units of its variance; samples squared.
+    pub(super) fn shared_variance(&self, candidate: &Candidate) -> f64 {
+        const H: f64 = 0.02;
+        let Candidate { shape, onsets, typical, .. } = candidate;
+        let order = shape.order();
+        if order == 0 {
+            return 0.0;
+        }
+        let pass = self.pass(*shape, *typical);
+        let windows = windows(&self.runs, &onsets.positions, &pass);
+        let samples: f64 = candidate.found().map(|onset| onset.samples() as f64).sum();
+        let variance = candidate.found().map(|onset| onset.sse).sum::<f64>() / samples.max(1.0);
+        let at = |by: [f64; 2]| {
+            let shape = shape.moved(by);
+            let mut moved = onsets.clone();
+            let pass = Pass { shape, windows: Some(&windows), ..pass };
+            self.fit(&shape).pass(&self.runs, &mut moved, &pass);
+            let pairs = moved.found.iter().flatten().zip(onsets.found.iter().flatten());
+            let pairs = pairs.filter_map(|(now, was)| Some((now.as_ref()?, was.as_ref()?)));
+            let (sse, moves): (Vec<f64>, Vec<f64>) =
+                pairs.map(|(now, was)| (now.sse, now.position - was.position)).unzip();
+            // Each sample stands in two windows.
+            (sse.iter().sum::<f64>() / (4.0 * variance), median(&moves).unwrap_or(0.0))
+        };
+        let ((low, before), (high, behind)) = (at([-H, 0.0]), at([H, 0.0]));
+        let here = at([0.0; 2]).0;
+        let (g, hxx) = ((behind - before) / (2.0 * H), (low - 2.0 * here + high) / (H * H));
+        if order == 1 {
+            return if hxx > 0.0 { g * g / hxx } else { 0.0 };
+        }
+        let ((under, left), (over, right)) = (at([0.0, -H]), at([0.0, H]));
+        let both = at([H, H]).0;
+        let (gy, hyy) = ((right - left) / (2.0 * H), (under - 2.0 * here + over) / (H * H));
+        let hxy = (both - high - over + here) / (H * H);
+        let det = hxx * hyy - hxy * hxy;
+        let variance = (g * g * hyy - 2.0 * g * gy * hxy + gy * gy * hxx) / det;
+        if det > 0.0 { variance.max(0.0) } else { 0.0 }
+    }
+}
+
+/// Rounds of Newton's method at most.
+const ROUNDS: usize = 12;
+
+/// Newton's step along one parameter, from values at `−h`, 0 and `h`; downhill where the error is
+/// not convex.
+fn along_one(here: f64, low: f64, high: f64, h: f64) -> Option<[f64; 2]> {
+    if !(low.is_finite() && high.is_finite()) {
+        return None;
+    }
+    let curvature = low - 2.0 * here + high;
+    let downhill = if low < high { -2.0 * h } else { 2.0 * h };
+    let step = if curvature > 0.0 { h * 0.5 * (low - high) / curvature } else { downhill };
+    Some([step, 0.0])
+}
+
+/// Newton's step along two parameters, from values at `(−h, 0)`, `(h, 0)`, `(0, −h)`, `(0, h)` and
+/// `(h, h)`.
+fn along_two(here: f64, near: [f64; 5], h: f64) -> Option<[f64; 2]> {
+    if near.iter().any(|value| !value.is_finite()) {
+        return None;
+    }
+    let [left, right, under, over, both] = near;
+    let (gx, gy) = ((right - left) / 2.0, (over - under) / 2.0);
+    let (hxx, hyy) = (left - 2.0 * here + right, under - 2.0 * here + over);
+    let hxy = both - right - over + here;
+    let det = hxx * hyy - hxy * hxy;
+    if hxx > 0.0 && det > 0.0 {
+        return Some([-(hyy * gx - hxy * gy) / det * h, -(hxx * gy - hxy * gx) / det * h]);
+    }
+    Some([gx, gy].map(|slope| -2.0 * h * slope.signum()))
+}

@@ -1,0 +1,300 @@
+//! The windows of a joint's steps, and one pass over them.
+//!
+//! The window of a step runs from the onset before it to the onset behind it, so that it holds one
+//! onset, its own; each pass finds every onset between its neighbours, which the next pass takes
+//! for the ends of the windows.
+
+use super::dynamics::{Dynamics, Jump, Window};
+use super::shape::Shape;
+use crate::units::{ceil_to_index, floor_to_index};
+
+/// Samples at the ends of a window at which there is no onset: with one sample beyond it, any
+/// change of slope fits.
+pub(super) const MARGIN: usize = 2;
+
+/// How finely an onset is found, samples.
+const FINE: f64 = 0.01;
+
+/// Positions over a window that are looked at before the best one is searched finely.
+const COARSE: usize = 120;
+
+/// A step of the input, and what bounds the reaction to it; positions are indices of its trial.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step {
+    /// The first sample with the new level; between samples where some are left out.
+    pub(super) at: f64,
+    pub(super) before: f64,
+    pub(super) after: f64,
+    /// The first and behind the last sample that says something of it.
+    pub(super) first: f64,
+    pub(super) end: f64,
+    /// The last position that its onset may have.
+    pub(super) latest: f64,
+}
+
+impl Step {
+    pub(super) fn change(&self) -> f64 {
+        self.after - self.before
+    }
+}
+
+/// A trial as it is fitted.
+#[derive(Clone, Debug)]
+pub(super) struct Run {
+    pub(super) output: Vec<f64>,
+    pub(super) steps: Vec<Step>,
+}
+
+/// The onset of a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Onset {
+    /// Index of its trial, between samples.
+    pub(super) position: f64,
+    /// Squared error of its window, and that without an onset.
+    pub(super) sse: f64,
+    pub(super) sse_without: f64,
+    /// The change of the speed, or of the level to which the output settles.
+    pub(super) size: f64,
+    /// Its window.
+    pub(super) start: usize,
+    pub(super) end: usize,
+    /// Whether it is far more than noise, and not at an end of where it was looked for.
+    pub(super) is_clear: bool,
+}
+
+impl Onset {
+    pub(super) fn samples(&self) -> usize {
+        self.end - self.start
+    }
+
+    /// Mean square of what the fit leaves over.
+    pub(super) fn mean_square(&self) -> f64 {
+        self.sse / self.samples() as f64
+    }
+}
+
+/// Where each onset is taken to be for the ends of windows, and what was found; for each run.
+#[derive(Clone, Debug)]
+pub(super) struct Onsets {
+    pub(super) positions: Vec<Vec<f64>>,
+    pub(super) found: Vec<Vec<Option<Onset>>>,
+}
+
+/// What a pass goes by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pass<'a> {
+    pub(super) shape: Shape,
+    /// Samples to each side of an onset that are looked at.
+    pub(super) reach: usize,
+    /// The delay at which an onset that is not clear is taken to be.
+    pub(super) typical: f64,
+    /// The delay of what begins before a record and ends behind it.
+    pub(super) edge: f64,
+    pub(super) noise: f64,
+    /// The windows, where they are to stay.
+    pub(super) windows: Option<&'a [Vec<(usize, usize)>]>,
+}
+
+/// What fits windows, whatever the size of its state.
+pub(super) trait Fit: Sync {
+    /// Parameters of each window.
+    fn parameters(&self) -> usize;
+
+    /// Finds each onset between its neighbours.
+    fn pass(&self, runs: &[Run], onsets: &mut Onsets, pass: &Pass<'_>);
+
+    /// The mean squared error with the onsets where they are taken to be.
+    fn mean_square(&self, runs: &[Run], positions: &[Vec<f64>], pass: &Pass<'_>) -> f64;
+
+    /// What is fitted to the window of an onset.
+    fn fitted(&self, run: &Run, index: usize, onset: &Onset, shape: &Shape) -> Vec<f64>;
+
+    /// How far from the onset the squared error is below `limit`, to both sides.
+    fn extent(&self, run: &Run, index: usize, onset: &Onset, shape: &Shape, limit: f64)
+    -> (f64, f64);
+}
+
+/// The window of a step, given where the onsets are taken to be.
+pub(super) fn window(run: &Run, positions: &[f64], index: usize, pass: &Pass<'_>) -> (usize, usize) {
+    /// Samples of the first and the last window at least, where the record may hold a reaction to
+    /// what came before it, or, of an output that leads its input, to what comes behind it.
+    const FEWEST: f64 = 10.0;
+    let n = run.output.len();
+    let (here, step) = (positions[index], &run.steps[index]);
+    let start = match index.checked_sub(1) {
+        Some(before) => positions[before],
+        None => pass.edge.min(here - FEWEST),
+    };
+    let end = match positions.get(index + 1) {
+        Some(next) => next.floor() + 1.0,
+        None => (n as f64 + pass.edge.min(0.0)).max(here + FEWEST),
+    };
+    let reach = pass.reach as f64;
+    let start = ceil_to_index(start.max(here - reach).max(step.first).max(0.0));
+    let end = floor_to_index(end.min(here + reach).min(step.end).max(0.0)).min(n);
+    (start, end)
+}
+
+/// All windows, given where the onsets are taken to be.
+pub(super) fn windows(
+    runs: &[Run],
+    positions: &[Vec<f64>],
+    pass: &Pass<'_>,
+) -> Vec<Vec<(usize, usize)>> {
+    let of_run = |(run, positions): (&Run, &Vec<f64>)| {
+        (0..positions.len()).map(|index| window(run, positions, index, pass)).collect()
+    };
+    runs.iter().zip(positions).map(of_run).collect()
+}
+
+impl<const N: usize> Dynamics<N> {
+    /// The window of an onset, as sums.
+    fn window_of(&self, run: &Run, index: usize, bounds: (usize, usize), shape: &Shape) -> Option<Window<N>> {
+        let values = run.output.get(bounds.0..bounds.1)?;
+        self.window(values, shape.lasts(run.steps[index].change()))
+    }
+
+    /// The best onset between two positions of a window.
+    fn best(&self, window: &Window<N>, first: f64, last: f64) -> (f64, Jump) {
+        let stride = (window.len() / COARSE).max(1) as f64;
+        let mut best = (first, self.at(window, first));
+        let try_at = |position: f64, best: &mut (f64, Jump)| {
+            let jump = self.at(window, position);
+            if jump.sse < best.1.sse {
+                *best = (position, jump);
+            }
+        };
+        let mut position = first + stride;
+        while position <= last {
+            try_at(position, &mut best);
+            position += stride;
+        }
+        let mut step = stride / 2.0;
+        while step > FINE {
+            for near in [best.0 - step, best.0 + step] {
+                if (first..=last).contains(&near) {
+                    try_at(near, &mut best);
+                }
+            }
+            step /= 2.0;
+        }
+        best
+    }
+
+    fn find(&self, run: &Run, positions: &[f64], at: (usize, usize), pass: &Pass<'_>) -> Option<Onset> {
+        /// Times the noise that three parameters gain, from which an onset is clear (chosen).
+        const CLEAR: f64 = 12.0;
+        let (number, index) = at;
+        let (start, end) = match pass.windows {
+            Some(windows) => *windows.get(number)?.get(index)?,
+            None => window(run, positions, index, pass),
+        };
+        let window = self.window_of(run, index, (start, end), &pass.shape)?;
+        let first = MARGIN as f64;
+        let last = ((end - start - 1 - MARGIN) as f64).min(run.steps[index].latest - start as f64);
+        if last < first {
+            return None;
+        }
+        let (position, jump) = self.best(&window, first, last);
+        let freedom = (window.len() as f64 - self.parameters() as f64).max(1.0);
+        let noise = (jump.sse / freedom).max(0.25 * pass.noise * pass.noise);
+        let inside = position > first + 0.5 && position < last - 0.5;
+        Some(Onset {
+            position: start as f64 + position,
+            sse: jump.sse,
+            sse_without: window.sse_without,
+            size: jump.size,
+            start,
+            end,
+            is_clear: inside && window.sse_without - jump.sse > CLEAR * noise,
+        })
+    }
+}
+
+impl<const N: usize> Fit for Dynamics<N> {
+    fn parameters(&self) -> usize {
+        self.parameters()
+    }
+
+    fn pass(&self, runs: &[Run], onsets: &mut Onsets, pass: &Pass<'_>) {
+        let all = onsets.positions.iter_mut().zip(&mut onsets.found);
+        for (number, (run, (positions, found))) in runs.iter().zip(all).enumerate() {
+            for (index, step) in run.steps.iter().enumerate() {
+                let onset = self.find(run, positions, (number, index), pass);
+                found[index] = onset;
+                let Some(onset) = onset else { continue };
+                let before = index.checked_sub(1).map_or(f64::MIN, |before| positions[before]);
+                let next = positions.get(index + 1).copied().unwrap_or(f64::MAX);
+                // One that says nothing of where it is does not bound its neighbours.
+                positions[index] = if onset.is_clear {
+                    onset.position
+                } else {
+                    (step.at + pass.typical).max(before).min(next.max(before))
+                };
+            }
+        }
+    }
+
+    fn mean_square(&self, runs: &[Run], positions: &[Vec<f64>], pass: &Pass<'_>) -> f64 {
+        let (mut sse, mut samples) = (0.0, 0.0);
+        for (run, positions) in runs.iter().zip(positions) {
+            for (index, position) in positions.iter().enumerate() {
+                let (start, end) = window(run, positions, index, pass);
+                let here = position - start as f64;
+                if here < MARGIN as f64 || here > end as f64 - start as f64 - MARGIN as f64 {
+                    continue;
+                }
+                let Some(window) = self.window_of(run, index, (start, end), &pass.shape) else {
+                    continue;
+                };
+                sse += self.at(&window, here).sse;
+                samples += window.len() as f64;
+            }
+        }
+        if samples > 0.0 { sse / samples } else { f64::INFINITY }
+    }
+
+    fn fitted(&self, run: &Run, index: usize, onset: &Onset, shape: &Shape) -> Vec<f64> {
+        let window = self.window_of(run, index, (onset.start, onset.end), shape);
+        let here = onset.position - onset.start as f64;
+        window.map_or_else(Vec::new, |window| self.fitted(&window, here))
+    }
+
+    fn extent(
+        &self,
+        run: &Run,
+        index: usize,
+        onset: &Onset,
+        shape: &Shape,
+        limit: f64,
+    ) -> (f64, f64) {
+        let Some(window) = self.window_of(run, index, (onset.start, onset.end), shape) else {
+            return (f64::INFINITY, f64::INFINITY);
+        };
+        let here = onset.position - onset.start as f64;
+        let last = window.len() as f64 - 1.5;
+        let below = |distance: f64, sign: f64| {
+            let position = here + sign * distance;
+            (0.5..=last).contains(&position) && self.at(&window, position).sse <= limit
+        };
+        let side = |sign: f64| {
+            // Samples between the positions that are looked at: finer near the onset.
+            let (mut step, mut distance, mut inside) = (4.0 * FINE, 0.0, 0.0);
+            let room = if sign < 0.0 { here - 0.5 } else { last - here };
+            while distance + step <= room {
+                distance += step;
+                step = f64::min(1.3 * step, 1.0);
+                if below(distance, sign) {
+                    inside = distance;
+                }
+            }
+            let (mut low, mut high) = (inside, inside + 1.0);
+            while high - low > FINE / 2.0 {
+                let middle = f64::midpoint(low, high);
+                *(if below(middle, sign) { &mut low } else { &mut high }) = middle;
+            }
+            f64::midpoint(low, high)
+        };
+        (side(-1.0), side(1.0))
+    }
+}

@@ -1,0 +1,186 @@
+//! What a joint's record says against its delays: a code for programs, a sentence for people.
+
+use serde::Serialize;
+
+use super::EstimatedJoint;
+use crate::delay::{AgainstState, Obstacle, Verdict};
+use crate::numerics::{chi_square_tail, median, quantile};
+use crate::wording::{measure, number, percent};
+
+/// A warning on the delays of a joint.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Warning {
+    /// `output_leads_input`, `output_unrelated_to_input`, `delay_longer_than_holds`, `shape_misfit`
+    /// or `delay_varies`.
+    pub code: &'static str,
+    /// What it means, by how much, and what to do.
+    pub text: String,
+}
+
+impl EstimatedJoint<'_> {
+    /// What the record says against the delays of the joint, where the method fits its response.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let found = [self.obstacle(), self.misfit(), self.variation()];
+        found.into_iter().flatten().collect()
+    }
+
+    fn obstacle(&self) -> Option<Warning> {
+        let model = self.onset_model()?;
+        let rejected = if self.estimate.settings.accept_anyway {
+            "its delays are listed as asked for"
+        } else {
+            "no delay is accepted; `--accept-anyway` lists them nevertheless"
+        };
+        let (code, text) = match model.obstacle()? {
+            Obstacle::Unrelated => (
+                "output_unrelated_to_input",
+                format!(
+                    "the output does not follow its input: the steps of the input explain {} of the \
+                     changes of its motion. Are columns exchanged, or is the joint driven by something \
+                     else? {rejected}",
+                    percent(model.follows_input_r2())
+                ),
+            ),
+            Obstacle::Leads(lead_s) => (
+                "output_leads_input",
+                format!(
+                    "the output leads its input by {} s (median): it reacts before the step, so that the \
+                     clocks of the two columns differ or the input is logged late. Shift one of them; \
+                     {rejected}",
+                    number(lead_s)
+                ),
+            ),
+            Obstacle::BeyondHolds(delay_s) => (
+                "delay_longer_than_holds",
+                format!(
+                    "the delay of {} s (median) is longer than most levels of the input are held, so that \
+                     each reaction falls into a later hold. Hold levels for longer than the delay; \
+                     {rejected}",
+                    number(delay_s)
+                ),
+            ),
+        };
+        Some(Warning { code, text })
+    }
+
+    fn misfit(&self) -> Option<Warning> {
+        let model = self.onset_model().filter(|model| model.is_misfit())?;
+        let text = format!(
+            "no response fits what follows the steps: the best one, `{}`, leaves {} times the sensor's \
+             noise. Delays may be off by more than their intervals say; `tauscope improve` looks for the \
+             effect that is missing",
+            model.shape(),
+            number(model.misfit())
+        );
+        Some(Warning { code: "shape_misfit", text })
+    }
+
+    /// Whether the delays of accepted steps differ by more than their intervals explain.
+    fn variation(&self) -> Option<Warning> {
+        self.onset_model()?;
+        let delays = self.fine_delays();
+        let scatter = Scatter::of(&delays).filter(Scatter::is_more_than_noise)?;
+        let goes_with = depends_on(&self.against_state());
+        let text = format!(
+            "the delay varies from {} to {} s (10 to 90 % of {} steps), more than its intervals \
+             explain{goes_with}",
+            number(scatter.low_s),
+            number(scatter.high_s),
+            delays.len()
+        );
+        Some(Warning { code: "delay_varies", text })
+    }
+
+    /// The delays of accepted steps between samples, with their standard errors; seconds.
+    pub(super) fn fine_delays(&self) -> Vec<(f64, f64)> {
+        let trials = self.joint.trials.iter().zip(&self.estimate.trials);
+        let estimated = trials.filter_map(|(trial, found)| Some((trial, found.as_ref().ok()?)));
+        let delays = estimated.flat_map(|(trial, found)| {
+            let period_s = trial.period().seconds();
+            let accepted = found.decisions.iter().filter(|it| it.verdict() == Verdict::Accepted);
+            accepted.filter_map(move |decision| {
+                let error = decision.fine?.standard_error();
+                Some((decision.delay()? * period_s, error * period_s))
+            })
+        });
+        delays.collect()
+    }
+}
+
+/// How far delays scatter.
+pub(super) struct Scatter {
+    low_s: f64,
+    high_s: f64,
+    /// Half of the range that the middle 95 % span.
+    pub(super) within_s: f64,
+    /// Of what is left where all are the same but for their errors.
+    p_value: f64,
+    median_s: f64,
+}
+
+impl Scatter {
+    /// Of delays with their standard errors; none of a few.
+    pub(super) fn of(delays: &[(f64, f64)]) -> Option<Self> {
+        const FEWEST: usize = 6;
+        if delays.len() < FEWEST {
+            return None;
+        }
+        let weight = |error: f64| error.max(f64::MIN_POSITIVE).powi(2).recip();
+        let (sum, total) = delays.iter().fold((0.0, 0.0), |(sum, total), (delay, error)| {
+            (sum + weight(*error) * delay, total + weight(*error))
+        });
+        let mean = sum / total;
+        let square = |(delay, error): &(f64, f64)| ((delay - mean) / error).powi(2);
+        let p_value = chi_square_tail(delays.iter().map(square).sum(), delays.len() - 1)?;
+        let values: Vec<f64> = delays.iter().map(|(delay, _)| *delay).collect();
+        let at = |part: f64| quantile(&values, part);
+        Some(Self {
+            low_s: at(0.1)?,
+            high_s: at(0.9)?,
+            within_s: (at(0.975)? - at(0.025)?) / 2.0,
+            p_value,
+            median_s: median(&values)?,
+        })
+    }
+
+    /// Whether they differ, and by a part of themselves that matters.
+    pub(super) fn is_more_than_noise(&self) -> bool {
+        /// How seldom equal delays scatter so, and the part of the median that matters (chosen).
+        const CHANCE: f64 = 1e-6;
+        const PART: f64 = 0.15;
+        self.p_value < CHANCE && self.high_s - self.low_s > PART * self.median_s.abs()
+    }
+}
+
+/// What the delay goes with, in words.
+fn depends_on(found: &AgainstState) -> String {
+    /// Quantities that are named.
+    const NAMED: usize = 2;
+    let all = || found.kinds.iter().map(|kind| (&kind.correlations, &kind.direction));
+    let every = std::iter::once((&found.correlations, &found.direction)).chain(all());
+    let mut named: Vec<(String, f64)> = Vec::new();
+    for (correlations, direction) in every {
+        let significant = correlations.iter().filter(|it| it.significant);
+        named.extend(significant.filter_map(|it| {
+            Some((format!("{} (ρ = {:.2})", it.variable, it.rho?), it.p_holm?))
+        }));
+        if let (true, Some(p), Some(apart)) =
+            (direction.significant, direction.p_holm, direction.median_difference_s)
+        {
+            named.push((format!("the direction ({} between up and down)", measure(apart, Some("s"))), p));
+        }
+    }
+    named.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let mut names: Vec<String> = Vec::new();
+    for (name, _) in named {
+        let is_known = names.iter().any(|known| known.split(" (").next() == name.split(" (").next());
+        if !is_known && names.len() < NAMED {
+            names.push(name);
+        }
+    }
+    if names.is_empty() {
+        ", with nothing that was logged".to_owned()
+    } else {
+        format!("; it goes with {}", names.join(" and "))
+    }
+}
