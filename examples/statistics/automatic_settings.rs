@@ -2,7 +2,7 @@
 //! are chosen from each record.
 
 use anyhow::Context as _;
-use tauscope::delay::{Automatic, FirstLast, Settings, choose, estimate};
+use tauscope::delay::{Automatic, FirstLast, Method, Settings, choose, estimate};
 use tauscope::experiment::Trial;
 use tauscope::synthetic::{
     DelayLaw, InputSpec, JointSpec, PlantSpec, Ringing, StepTruth, Synthetic, simulate,
@@ -85,7 +85,7 @@ impl Tally {
 /// The paper's settings and those of each record, on `records` records of a plant; and those
 /// of the last one.
 fn measure(spec: &JointSpec, records: u64) -> anyhow::Result<([Tally; 2], Settings)> {
-    let paper = Settings { first_last: FirstLast::Keep, ..Settings::default() };
+    let paper = Settings { first_last: FirstLast::Keep, ..Settings::of(Method::TWO_LINE) };
     let (mut tallies, mut last) = ([Tally::default(), Tally::default()], paper.clone());
     for seed in 0..records {
         let plant = PlantSpec::new(2000 + seed, DURATION_S, vec![spec.clone()]);

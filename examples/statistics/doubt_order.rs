@@ -80,7 +80,7 @@ fn record(joint: &JointSpec, method: Method, seed: u64) -> anyhow::Result<Vec<Ju
     let made: Synthetic = simulate(&plant)?;
     let trial: &Trial =
         made.joints.first().and_then(|joint| joint.trials.first()).context("no trial")?;
-    let found = estimate(trial, &Settings { method, ..Settings::default() })?;
+    let found = estimate(trial, &Settings { method, ..Settings::of(Method::TWO_LINE) })?;
     let output = found.smoothed.as_deref().unwrap_or(trial.output());
     let pairs = made.truth.iter().zip(&found.decisions);
     Ok(pairs.filter_map(|(truth, decision)| judged(truth, decision, output)).collect())
@@ -91,7 +91,7 @@ fn wrong(all: &[Judged]) -> Vec<bool> {
     let mut errors: Vec<f64> = all.iter().map(|judged| judged.error).collect();
     errors.sort_by(f64::total_cmp);
     let middle = errors.get(errors.len() / 2).copied().unwrap_or_default();
-    let most = ROWS_OFF * Settings::default().beta as f64;
+    let most = ROWS_OFF * Settings::of(Method::TWO_LINE).beta as f64;
     all.iter().map(|judged| judged.is_still || (judged.error - middle).abs() > most).collect()
 }
 

@@ -400,6 +400,7 @@ fn power_at(values: &[f64], omega: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::delay::Method;
     use crate::numerics::testing::uniform;
     use crate::units::SamplePeriod;
 
@@ -445,7 +446,8 @@ mod tests {
     #[test]
     fn more_noise_takes_a_lower_passband() {
         let cutoff = |noise| {
-            let (settings, chosen) = choose(&vec![trial(noise)].into(), &Settings::default(), ALL);
+            let (settings, chosen) =
+                choose(&vec![trial(noise)].into(), &Settings::of(Method::TWO_LINE), ALL);
             assert!((12..=14).contains(&settings.alpha), "{chosen:?}");
             assert_eq!(settings.beta, 1);
             let found = chosen.statistics.noise.unwrap();
@@ -460,14 +462,15 @@ mod tests {
 
     #[test]
     fn without_noise_nothing_is_smoothed() {
-        let (settings, chosen) = choose(&vec![trial(0.0)].into(), &Settings::default(), ALL);
+        let (settings, chosen) =
+            choose(&vec![trial(0.0)].into(), &Settings::of(Method::TWO_LINE), ALL);
         assert_eq!(settings.low_pass, None, "{chosen:?}");
         assert_eq!(settings.beta, 1);
     }
 
     #[test]
     fn what_is_not_automatic_stays() {
-        let given = Settings { alpha: 3, beta: 7, ..Settings::default() };
+        let given = Settings { alpha: 3, beta: 7, ..Settings::of(Method::TWO_LINE) };
         let (settings, _) = choose(&vec![trial(0.4)].into(), &given, Automatic::default());
         assert_eq!(settings, given);
         let alone = Automatic { alpha: true, ..Automatic::default() };
@@ -486,11 +489,14 @@ mod tests {
         ];
         for (input, output) in odd {
             let trial = Trial::new("1", 0.0, period, input, output).unwrap();
-            let (settings, _) = choose(&vec![trial].into(), &Settings::default(), ALL);
+            let (settings, _) = choose(&vec![trial].into(), &Settings::of(Method::TWO_LINE), ALL);
             assert!(settings.check().is_ok() && settings.alpha >= 1);
         }
-        let (settings, chosen) = choose(&Record::default(), &Settings::default(), ALL);
-        assert_eq!((settings.alpha, settings.low_pass), (10, Settings::default().low_pass));
+        let (settings, chosen) = choose(&Record::default(), &Settings::of(Method::TWO_LINE), ALL);
+        assert_eq!(
+            (settings.alpha, settings.low_pass),
+            (10, Settings::of(Method::TWO_LINE).low_pass)
+        );
         assert_eq!(chosen.statistics, RecordStatistics::default());
     }
 }

@@ -297,6 +297,7 @@ impl From<bool> for Outcome {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::delay::Method;
 
     #[test]
     fn a_delay_needs_no_candidate() {
@@ -314,7 +315,7 @@ mod tests {
             fine,
         };
         let failed = |fine| {
-            let checks = facts(fine).check(&Settings::default());
+            let checks = facts(fine).check(&Settings::of(Method::TWO_LINE));
             let failed = checks.into_iter().filter(|check| check.outcome == Outcome::Failed);
             failed.map(|check| check.condition).collect::<Vec<_>>()
         };

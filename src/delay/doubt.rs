@@ -298,7 +298,7 @@ mod tests {
     }
 
     fn settings() -> Settings {
-        Settings { first_last: FirstLast::Keep, low_pass: None, ..Settings::default() }
+        Settings { first_last: FirstLast::Keep, low_pass: None, ..Settings::of(Method::TWO_LINE) }
     }
 
     fn doubt(rise: f64, jump: f64, stop: f64) -> Doubt {

@@ -8,7 +8,7 @@ use super::method::{DelayMethod, Shared, decide_settling, implementation};
 use super::prepared::Prepared;
 use super::profile::DelayProfile;
 use super::settings::Settings;
-use super::spec::Scope;
+use super::spec::{Method, Scope};
 use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::{Record, Trial};
 
@@ -58,6 +58,10 @@ impl Estimator {
         if settings.input == InputKind::Continuous {
             // Without steps nothing is smoothed: no filter has to fit.
             settings.low_pass = None;
+        }
+        // To the letter of the paper, and of a record that still grows, Algorithm 1 is what there is.
+        if settings.method == Method::AUTO && (settings.paper || settings.grows) {
+            settings.method = Method::TWO_LINE;
         }
         let method = implementation(settings.method);
         let rest = ComingToRest::of(trials, &settings);

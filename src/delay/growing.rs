@@ -69,16 +69,8 @@ pub(crate) fn final_part(
     let settling = estimate.settling.clone();
     let tracking = estimate.tracking;
     let onset_model = estimate.onset_model.clone();
-    let estimate = TrialEstimate {
-        label,
-        smoothed,
-        decisions,
-        profile,
-        lag,
-        onset_model,
-        settling,
-        tracking,
-    };
+    let estimate =
+        TrialEstimate { label, smoothed, decisions, profile, lag, onset_model, settling, tracking };
     Ok(Some((beginning, estimate)))
 }
 
@@ -91,6 +83,7 @@ fn held_back(trial: &Trial, settings: &Settings) -> Result<usize, FilterError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::delay::Method;
     use crate::delay::estimate;
     use crate::units::SamplePeriod;
 
@@ -109,7 +102,7 @@ mod tests {
 
     #[test]
     fn final_decisions_are_those_of_the_whole_record() {
-        let smoothed = Settings { beta: 2, ..Settings::default() };
+        let smoothed = Settings { beta: 2, ..Settings::of(Method::TWO_LINE) };
         let plain = Settings { low_pass: None, ..smoothed.clone() };
         for settings in [smoothed, plain] {
             let whole = trial(1400);
@@ -135,10 +128,10 @@ mod tests {
 
     #[test]
     fn what_depends_on_the_whole_record_is_refused() {
-        assert_eq!(check_growing(&Settings::default()), Ok(()));
-        let hinge = Settings::of(crate::delay::Method::HINGE);
+        assert_eq!(check_growing(&Settings::of(Method::TWO_LINE)), Ok(()));
+        let hinge = Settings::of(Method::HINGE);
         assert_eq!(check_growing(&hinge), Err(Growing::Method { method: "hinge" }));
-        let judged = Settings { confidence: Some(0.99), ..Settings::default() };
+        let judged = Settings { confidence: Some(0.99), ..Settings::of(Method::TWO_LINE) };
         assert_eq!(check_growing(&judged), Err(Growing::Confidence));
     }
 }

@@ -196,6 +196,7 @@ pub(super) fn range(values: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::delay::Method;
     use crate::delay::input_motion::InputMotion;
     use crate::delay::settings::Settings;
     use crate::delay::steps::trial_steps;
@@ -224,14 +225,14 @@ mod tests {
 
     #[test]
     fn steps_in_noise_are_where_they_are_without() {
-        let clean = trial_steps(&trial(stairs, 0.0), &Settings::default());
+        let clean = trial_steps(&trial(stairs, 0.0), &Settings::of(Method::TWO_LINE));
         for deviation in [0.01, 0.03, 0.05] {
             let noisy = trial(stairs, deviation);
             assert!(
                 !InputMotion::of(&Record::from([noisy.clone()])).is_continuous(),
                 "{deviation}"
             );
-            let found = trial_steps(&noisy, &Settings::default());
+            let found = trial_steps(&noisy, &Settings::of(Method::TWO_LINE));
             assert_eq!(found.len(), clean.len(), "{deviation}");
             for (found, clean) in found.iter().zip(&clean) {
                 assert!(
@@ -256,7 +257,7 @@ mod tests {
                 let motion = InputMotion::of(&Record::from([marred.clone()]));
                 assert!(!motion.is_continuous(), "{deviation} {height}");
                 let samples = |trial: &Trial| -> Vec<usize> {
-                    let steps = trial_steps(trial, &Settings::default());
+                    let steps = trial_steps(trial, &Settings::of(Method::TWO_LINE));
                     steps.iter().map(|step| step.sample).collect()
                 };
                 assert_eq!(samples(&marred), samples(&clean), "{deviation} {height}");
@@ -273,7 +274,7 @@ mod tests {
         }
         let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
         let marred = Trial::new("1", 0.0, period, input.clone(), input).unwrap();
-        let steps = |trial: &Trial| trial_steps(trial, &Settings::default());
+        let steps = |trial: &Trial| trial_steps(trial, &Settings::of(Method::TWO_LINE));
         assert_eq!(steps(&marred), steps(&clean));
         // One edge that a logger averaged, and a value that it dropped beside another.
         let edges: Vec<usize> = clean

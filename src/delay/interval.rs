@@ -16,14 +16,20 @@ pub struct FineDelay {
 }
 
 impl FineDelay {
-    /// This delay, no earlier than its step unless all of its interval is.
+    /// This delay, no earlier than its step unless all of its interval is by more than a sample: the
+    /// input may have changed any time after the sample before.
     pub(super) fn not_before_its_step(self) -> Self {
-        Self::causal(self.delay, self.low, self.high, self.confidence)
+        if self.high < -1.0 {
+            return self;
+        }
+        Self::causal(self.delay, self.low, self.high.max(0.0), self.confidence)
     }
 
     /// The standard error that an interval of this width stands for.
     pub(crate) fn standard_error(&self) -> f64 {
-        (self.high - self.low) / 2.0 / student_quantile(f64::midpoint(1.0, self.confidence), f64::INFINITY)
+        (self.high - self.low)
+            / 2.0
+            / student_quantile(f64::midpoint(1.0, self.confidence), f64::INFINITY)
     }
 
     /// A delay that cannot be below zero, unless all of its interval is.

@@ -112,6 +112,7 @@ pub(super) fn common_period<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::delay::Method;
 
     fn trial(period: f64) -> Trial {
         let period = SamplePeriod::from_seconds(period).unwrap();
@@ -120,7 +121,7 @@ mod tests {
 
     #[test]
     fn seconds_are_counted_in_the_samples_of_each_trial() {
-        let settings = Settings::default()
+        let settings = Settings::of(Method::TWO_LINE)
             .with_alpha(Length::Seconds(0.1))
             .with_beta(Length::Seconds(0.001))
             .with_max_delay(Length::Seconds(0.5));
@@ -133,7 +134,8 @@ mod tests {
 
     #[test]
     fn what_is_in_samples_stays() {
-        let settings = Settings { max_delay: Some(30), min_delay: 4, ..Settings::default() };
+        let settings =
+            Settings { max_delay: Some(30), min_delay: 4, ..Settings::of(Method::TWO_LINE) };
         assert_eq!(settings.at(trial(0.02).period()), settings);
         let seconds = settings.clone().with_min_delay(Length::Seconds(0.1));
         assert_eq!(seconds.with_min_delay(Length::Samples(4)), settings);
@@ -141,7 +143,7 @@ mod tests {
 
     #[test]
     fn seconds_that_are_none_are_refused() {
-        let settings = Settings::default().with_alpha(Length::Seconds(f64::NAN));
+        let settings = Settings::of(Method::TWO_LINE).with_alpha(Length::Seconds(f64::NAN));
         assert!(settings.check().is_err());
     }
 }

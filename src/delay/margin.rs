@@ -105,6 +105,7 @@ fn above(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::delay::Method;
     use crate::delay::{FirstLast, Verdict, estimate};
     use crate::experiment::Trial;
     use crate::units::SamplePeriod;
@@ -137,7 +138,11 @@ mod tests {
     #[test]
     fn what_would_have_accepted_a_step_does() {
         let trial = trial();
-        let kept = Settings { first_last: FirstLast::Keep, low_pass: None, ..Settings::default() };
+        let kept = Settings {
+            first_last: FirstLast::Keep,
+            low_pass: None,
+            ..Settings::of(Method::TWO_LINE)
+        };
         let cases = [
             (Settings { min_slope_change: 0.5, ..kept.clone() }, 1.02),
             (Settings { max_sse: Some(1e-6), ..kept.clone() }, 0.999),
@@ -159,8 +164,11 @@ mod tests {
     #[test]
     fn wider_limits_hold_the_whole_segment() {
         let trial = trial();
-        let mut settings =
-            Settings { first_last: FirstLast::Keep, low_pass: None, ..Settings::default() };
+        let mut settings = Settings {
+            first_last: FirstLast::Keep,
+            low_pass: None,
+            ..Settings::of(Method::TWO_LINE)
+        };
         settings.output_limits = Some((-0.01, 3.0));
         let found = estimate(&trial, &settings).unwrap();
         let remedies = found.decisions[0].remedies(&settings, trial.output());
@@ -171,7 +179,8 @@ mod tests {
     #[test]
     fn the_second_best_is_in_another_valley() {
         let found =
-            estimate(&trial(), &Settings { low_pass: None, ..Settings::default() }).unwrap();
+            estimate(&trial(), &Settings { low_pass: None, ..Settings::of(Method::TWO_LINE) })
+                .unwrap();
         let decision = &found.decisions[0];
         let best = decision.breakpoint().unwrap().candidate;
         let second = decision.runner_up().unwrap();

@@ -130,12 +130,13 @@ fn with_edges_merged(steps: Vec<InputStep>, longest: usize, tail: usize) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::delay::Method;
     use crate::units::SamplePeriod;
 
     fn steps(period_s: f64, input: &[f64]) -> Vec<(usize, f64, f64)> {
         let period = SamplePeriod::from_seconds(period_s).unwrap();
         let trial = Trial::new("1", 0.0, period, input.to_vec(), input.to_vec()).unwrap();
-        let found = trial_steps(&trial, &Settings::default());
+        let found = trial_steps(&trial, &Settings::of(Method::TWO_LINE));
         found.iter().map(|step| (step.sample, step.before, step.after)).collect()
     }
 

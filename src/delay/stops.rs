@@ -167,7 +167,7 @@ fn end_of<'a>(held: &&'a [f64]) -> Option<&'a [f64]> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Decision, Settings, Verdict, estimate};
+    use super::super::{Decision, Method, Settings, Verdict, estimate};
     use super::*;
     use crate::numerics::testing::noise;
     use crate::units::SamplePeriod;
@@ -196,7 +196,7 @@ mod tests {
     fn the_arrival_at_a_stop_is_no_reaction() {
         let levels = [0.0, 1.5, -1.0, -1.5, 1.0, 2.0, 0.5, -2.0, -0.5, 1.5, 1.0, -1.0, -2.0, 0.0];
         let trial = between_stops(&levels, 120);
-        let found = estimate(&trial, &Settings::default()).unwrap();
+        let found = estimate(&trial, &Settings::of(Method::TWO_LINE)).unwrap();
         let accepted = found.decisions.iter().filter(|d| d.verdict() == Verdict::Accepted);
         let delays: Vec<f64> = accepted.filter_map(Decision::delay).collect();
         assert!(delays.len() >= 6, "{delays:?}");
@@ -207,7 +207,7 @@ mod tests {
     fn a_joint_that_comes_back_to_the_same_places_shows_none() {
         let levels: Vec<f64> = (0..40).map(|k| [1.0, 0.0, -1.0, 0.0][k % 4]).collect();
         let trial = between_stops(&levels, 90);
-        let found = estimate(&trial, &Settings::default()).unwrap();
+        let found = estimate(&trial, &Settings::of(Method::TWO_LINE)).unwrap();
         let delays: Vec<f64> = found.decisions.iter().filter_map(Decision::delay).collect();
         let is_right = |delay: &&f64| (**delay - DELAY as f64).abs() <= 5.0;
         assert!(delays.iter().filter(is_right).count() > 36, "{delays:?}");

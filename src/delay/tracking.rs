@@ -209,6 +209,7 @@ fn resting_holds(output: &[f64], steps: &[InputStep], range: f64) -> Vec<Resting
 mod tests {
     use super::super::estimate;
     use super::*;
+    use crate::delay::Method;
     use crate::units::SamplePeriod;
 
     #[test]
@@ -226,6 +227,6 @@ mod tests {
             .collect();
         let period = SamplePeriod::from_seconds(0.02).unwrap();
         let trial = Trial::new("1", 0.0, period, input, output).unwrap();
-        assert_eq!(estimate(&trial, &Settings::default()).unwrap().tracking, None);
+        assert_eq!(estimate(&trial, &Settings::of(Method::TWO_LINE)).unwrap().tracking, None);
     }
 }

@@ -119,7 +119,7 @@ impl<'a> SegmentFigure<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delay::{Settings, estimate};
+    use crate::delay::{Method, Settings, estimate};
     use crate::numerics::testing::normals;
     use crate::units::SamplePeriod;
 
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn of_an_output_that_settles_the_response_is_drawn_and_meets_what_was_simulated() {
         let (ideal, trial) = settling();
-        let decisions = estimate(&trial, &Settings::default()).unwrap().decisions;
+        let decisions = estimate(&trial, &Settings::of(Method::TWO_LINE)).unwrap().decisions;
         let accepted = decisions.iter().filter(|d| d.verdict() == Verdict::Accepted);
         let mut drawn = 0;
         for decision in accepted {
@@ -177,7 +177,7 @@ mod tests {
         let input = (0..240).map(|k| f64::from(u8::from(k >= 100))).collect();
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("1", 0.0, period, input, output).unwrap();
-        let decisions = estimate(&trial, &Settings::default()).unwrap().decisions;
+        let decisions = estimate(&trial, &Settings::of(Method::TWO_LINE)).unwrap().decisions;
         let decision = decisions.first().unwrap();
         let figure = SegmentFigure::new(&trial, decision);
         let best = decision.candidates.best().unwrap();

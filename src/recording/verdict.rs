@@ -11,7 +11,7 @@ use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths::{self, at};
-use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome};
+use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, OnsetModel, Outcome};
 use crate::delay::{Settings, Settling, Tracking, Verdict};
 use crate::experiment::Joint;
 use crate::numerics::quantile;
@@ -409,6 +409,8 @@ impl Facts<'_, '_> {
             ]);
         }
         rows.extend(decision.fine.map(|fine| self.interval(fine)));
+        rows.extend(self.by_lines());
+        rows.extend(self.trial.estimate.onset_model.as_deref().map(onset_row));
         rows.extend(self.trial.estimate.lag.iter().flat_map(lag_rows));
         rows.extend(self.trial.estimate.settling.iter().flat_map(settling_rows));
         rows.extend(self.trial.estimate.tracking.as_ref().map(tracking_row));
@@ -418,6 +420,14 @@ impl Facts<'_, '_> {
         let rows: Vec<_> =
             rows.iter().map(|(name, value)| format!("| {name} | {value} |")).collect();
         format!("| quantity | value |\n|---|---|\n{}", rows.join("\n"))
+    }
+
+    /// Algorithm 1's delay, where the answer is an onset's.
+    fn by_lines(&self) -> Option<(String, String)> {
+        let decision = self.segment.decision;
+        decision.onset.as_ref()?;
+        let delay = decision.breakpoint()?.delay as f64;
+        Some(("Algorithm 1's δ for comparison".to_owned(), self.delay(delay)))
     }
 
     /// The breakpoint as finely as it is known.
@@ -536,6 +546,19 @@ impl Facts<'_, '_> {
 /// A number with half of its 95 % interval.
 fn known(part: LagPart) -> String {
     format!("{} ± {}", number(part.value), number(1.96 * part.std_error))
+}
+
+/// The response behind the dead times.
+fn onset_row(model: &OnsetModel) -> (String, String) {
+    let named = model.parameters();
+    let named = named.iter().map(|(name, value)| format!(", {name} {}", number(*value)));
+    let parameters: String = named.collect();
+    let text = format!(
+        "{}{parameters}; residual {} times the noise",
+        model.shape(),
+        number(model.misfit())
+    );
+    ("response behind the delay".to_owned(), text)
 }
 
 /// How the output settles behind its dead times.

@@ -227,7 +227,7 @@ pub(crate) enum Methods {
 
 impl Methods {
     fn of(runs: &[(&Settings, &[EstimatedJoint<'_>])]) -> Self {
-        let paper = runs.iter().all(|(settings, _)| settings.method == Method::default());
+        let paper = runs.iter().all(|(settings, _)| settings.method == Method::TWO_LINE);
         if paper { Self::PaperOnly } else { Self::Others }
     }
 }

@@ -97,7 +97,6 @@ pub(crate) use settings::settings_rows;
 pub(crate) use steps::{step_line, steps_table};
 pub(crate) use summary::{DelayRange, Headline, JointSummary};
 pub use sweep::ReportedSweep;
-pub use warning::Warning;
 pub(crate) use sweep::{StepsShown, sweep_text};
 #[cfg(feature = "rrd")]
 pub(crate) use sweep::{
@@ -108,3 +107,4 @@ pub(crate) use text::chosen_line;
 pub(crate) use text::estimate_table;
 #[cfg(feature = "rrd")]
 pub(crate) use text::{SUMMARY_HEADER, summary_cells};
+pub use warning::Warning;

@@ -58,7 +58,7 @@ pub(crate) fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delay::{FirstLast, Settings, estimate};
+    use crate::delay::{FirstLast, Method, Settings, estimate};
     use crate::units::SamplePeriod;
 
     #[test]
@@ -70,7 +70,8 @@ mod tests {
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("1", 0.0, period, input, output).unwrap();
         let first_last = FirstLast::Reject;
-        let settings = Settings { low_pass: None, beta: 2, first_last, ..Settings::default() };
+        let settings =
+            Settings { low_pass: None, beta: 2, first_last, ..Settings::of(Method::TWO_LINE) };
         let kept = Settings { first_last: FirstLast::Keep, ..settings.clone() };
         let joint = |trials| Joint {
             name: "swing".to_owned(),

@@ -4,8 +4,8 @@ use super::delay_table::kind_sentence;
 use super::doubt::doubtful_text;
 use super::settings::{length, own_settings};
 use super::text_table::TextTable;
-use super::{DelayRange, EstimatedJoint, Headline, JointSummary, dead_time_sentences};
 use super::warning::Scatter;
+use super::{DelayRange, EstimatedJoint, Headline, JointSummary, dead_time_sentences};
 use crate::delay::{
     Automatic, Chosen, Condition, FirstLast, Interpolation, LagPart, OnsetModel, Settings,
 };
@@ -26,12 +26,11 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
     }
     let doubtful = doubtful_text(joints);
     let dead_times: String = joints.iter().flat_map(dead_time_lines).collect();
-    let lags: String =
-        joints
-            .iter()
-            .flat_map(|joint| [onset_line(joint), tracking_line(joint), lag_line(joint)])
-            .flatten()
-            .collect();
+    let lags: String = joints
+        .iter()
+        .flat_map(|joint| [onset_line(joint), tracking_line(joint), lag_line(joint)])
+        .flatten()
+        .collect();
     let chosen: String = joints.iter().filter_map(chosen_line).collect();
     let own = joints.iter().filter_map(|joint| {
         let own = own_settings(joint, settings)?;
@@ -122,7 +121,10 @@ pub(crate) fn onset_sentence(model: &OnsetModel) -> String {
     let response = match model.shape() {
         "bend" => "the speed changes at once".to_owned(),
         "bend_lag" => {
-            format!("the speed follows through a lag with time constant {} s", value("time_constant_s"))
+            format!(
+                "the speed follows through a lag with time constant {} s",
+                value("time_constant_s")
+            )
         }
         "bend_lag2" => format!(
             "the speed follows through two lags with time constants {} and {} s",

@@ -161,19 +161,25 @@ fn depends_on(found: &AgainstState) -> String {
     let mut named: Vec<(String, f64)> = Vec::new();
     for (correlations, direction) in every {
         let significant = correlations.iter().filter(|it| it.significant);
-        named.extend(significant.filter_map(|it| {
-            Some((format!("{} (ρ = {:.2})", it.variable, it.rho?), it.p_holm?))
-        }));
+        named.extend(
+            significant.filter_map(|it| {
+                Some((format!("{} (ρ = {:.2})", it.variable, it.rho?), it.p_holm?))
+            }),
+        );
         if let (true, Some(p), Some(apart)) =
             (direction.significant, direction.p_holm, direction.median_difference_s)
         {
-            named.push((format!("the direction ({} between up and down)", measure(apart, Some("s"))), p));
+            named.push((
+                format!("the direction ({} between up and down)", measure(apart, Some("s"))),
+                p,
+            ));
         }
     }
     named.sort_by(|a, b| a.1.total_cmp(&b.1));
     let mut names: Vec<String> = Vec::new();
     for (name, _) in named {
-        let is_known = names.iter().any(|known| known.split(" (").next() == name.split(" (").next());
+        let is_known =
+            names.iter().any(|known| known.split(" (").next() == name.split(" (").next());
         if !is_known && names.len() < NAMED {
             names.push(name);
         }

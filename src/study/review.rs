@@ -378,7 +378,7 @@ impl fmt::Display for ReviewNote {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delay::{Condition, Settings, Verdict};
+    use crate::delay::{Condition, Method, Settings, Verdict};
     use crate::explain::Sequential;
     use crate::study::estimate_joints;
     use crate::units::SamplePeriod;
@@ -407,7 +407,7 @@ mod tests {
 
     fn reviewed(rows: &str) -> (Vec<Decision>, Vec<ReviewNote>, Option<f64>) {
         let joints = [joint()];
-        let settings = Settings { low_pass: None, ..Settings::default() };
+        let settings = Settings { low_pass: None, ..Settings::of(Method::TWO_LINE) };
         let mut estimates = estimate_joints(&joints, &settings, || (), &Sequential);
         let notes = parse(rows).unwrap().apply(&joints, &mut estimates);
         let trial = estimates.remove(0).unwrap().trials.remove(0).unwrap();

@@ -55,7 +55,7 @@ impl Growing {
     }
 }
 
-const BATCH: &str = "estimate log.csv --beta 2 --decisions batch.csv";
+const BATCH: &str = "estimate log.csv --method two-line --beta 2 --decisions batch.csv";
 
 #[test]
 fn decisions_come_while_the_log_grows_and_are_those_of_the_whole_log() {

@@ -1,7 +1,7 @@
 //! What the delay depends on: planted laws are found, and nothing else.
 
 use tauscope::batch::Threads;
-use tauscope::delay::{AgainstState, Settings};
+use tauscope::delay::{AgainstState, Method, Settings};
 use tauscope::experiment::{Joint, Signal, Trial};
 use tauscope::report::{EstimatedJoint, against_table};
 use tauscope::study::estimate_joints;
@@ -16,7 +16,7 @@ fn joint(law: DelayLaw, duration_s: f64) -> Joint {
 }
 
 fn found(joint: &Joint) -> AgainstState {
-    let settings = Settings { low_pass: None, beta: 1, ..Settings::default() };
+    let settings = Settings { low_pass: None, beta: 1, ..Settings::of(Method::TWO_LINE) };
     let estimates = estimate_joints(std::slice::from_ref(joint), &settings, || (), &Threads);
     let estimate = estimates[0].as_ref().unwrap();
     EstimatedJoint { joint, estimate }.against_state()

@@ -71,10 +71,10 @@ fn short_delays_are_not_taken_for_those_of_the_next_step() {
                 let delays = found.decisions.iter().filter_map(Decision::accepted_delay);
                 delays.map(|delay| (delay - delay_s / period_s).abs()).collect()
             };
-            let found = errors(&Settings::default());
+            let found = errors(&Settings::of(Method::TWO_LINE));
             let wrong = found.iter().filter(|error| **error > 6.0).count();
             assert!(found.len() > 40 && wrong <= 2, "{period_s} {delay_s} {seed}: {wrong}");
-            let paper = errors(&Settings { paper: true, ..Settings::default() });
+            let paper = errors(&Settings { paper: true, ..Settings::of(Method::TWO_LINE) });
             wrong_of_the_paper += usize::from(paper.iter().filter(|e| **e > 6.0).count() > 20);
         }
     }
@@ -434,7 +434,7 @@ fn two_methods_stand_side_by_side() {
 #[test]
 fn the_papers_table_of_decisions_stays_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
-    run(folder.path(), "--decisions d.csv");
+    run(folder.path(), "--method two-line --decisions d.csv");
     let table = std::fs::read_to_string(folder.path().join("d.csv")).unwrap();
     assert_eq!(
         table.lines().next().unwrap(),
@@ -471,8 +471,10 @@ fn settings_are_chosen_from_the_record_and_reported() {
     assert!(json["also"][0]["joints"][0]["settings"]["low_pass"].is_null());
     let chosen = ["alpha", "beta"].map(|key| joint["settings"][key].to_string());
     let cutoff = joint["settings"]["low_pass"]["cutoff_hz"].to_string();
-    let typed =
-        format!("--alpha {} --beta {} --passband {cutoff} --format json", chosen[0], chosen[1]);
+    let typed = format!(
+        "--method two-line --alpha {} --beta {} --passband {cutoff} --format json",
+        chosen[0], chosen[1]
+    );
     let again = run(folder.path(), &typed);
     let again: serde_json::Value = serde_json::from_slice(&again.stdout).unwrap();
     assert_eq!(again["joints"][0]["decisions"], joint["decisions"]);

@@ -6,7 +6,7 @@ use std::process::Command;
 use serde_json::Value;
 use tauscope::batch::Threads;
 use tauscope::delay::Transition::{Reversal, Start, Stop};
-use tauscope::delay::{DelayTable, Neutral, Settings};
+use tauscope::delay::{DelayTable, Method, Neutral, Settings};
 use tauscope::experiment::Joint;
 use tauscope::report::EstimatedJoint;
 use tauscope::study::estimate_joints;
@@ -20,7 +20,7 @@ fn joint(levels: &[f64], law: DelayLaw) -> Joint {
 
 /// The delay table of `joint`.
 fn table(joint: &Joint) -> DelayTable {
-    let settings = Settings { low_pass: None, beta: 1, ..Settings::default() };
+    let settings = Settings { low_pass: None, beta: 1, ..Settings::of(Method::TWO_LINE) };
     let estimates = estimate_joints(std::slice::from_ref(joint), &settings, || (), &Threads);
     EstimatedJoint { joint, estimate: estimates[0].as_ref().unwrap() }.delay_table()
 }

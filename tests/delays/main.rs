@@ -10,6 +10,7 @@ mod lengths;
 mod low_pass_equals_scipy;
 mod manipulator;
 mod measured_logs;
+mod onset_model;
 mod rank_equals_scipy;
 #[path = "../support/real.rs"]
 mod real;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 use tauscope::batch::Threads;
-use tauscope::delay::{Settings, Verdict};
+use tauscope::delay::{Method, Settings, Verdict};
 use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::study::estimate_joints;
 use tauscope::synthetic::{PlantSpec, simulate, write_log, write_truth};
@@ -27,7 +27,7 @@ struct Judged {
 fn judged() -> BTreeMap<String, Vec<Judged>> {
     let path = PathBuf::from("data/manipulator.csv");
     let experiment = Experiment::read(&[path], &ReadOptions::default());
-    let settings = Settings { beta: 2, ..Settings::default() };
+    let settings = Settings { beta: 2, ..Settings::of(Method::TWO_LINE) };
     let estimates = estimate_joints(&experiment.joints, &settings, || (), &Threads);
     let mut truth = csv::Reader::from_path("data/manipulator.truth.csv").unwrap();
     let mut judged: BTreeMap<String, Vec<Judged>> = BTreeMap::new();

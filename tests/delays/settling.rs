@@ -13,7 +13,7 @@ const PERIOD_S: f64 = 0.02;
 const HOLD_S: f64 = 5.0;
 
 /// Numbers between 0 and 1.
-fn random(seed: u32) -> impl FnMut() -> f64 {
+pub(crate) fn random(seed: u32) -> impl FnMut() -> f64 {
     let mut state = seed.wrapping_mul(2_654_435_761);
     move || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -92,7 +92,7 @@ fn judged(found: &TrialEstimate, truth: &[f64]) -> (Vec<f64>, usize) {
 #[test]
 fn every_method_finds_the_onsets_of_an_output_that_has_not_settled_when_the_next_step_comes() {
     let (trial, truth) = record(PLAIN, 1);
-    for method in Method::all() {
+    for method in Method::all().filter(|method| !method.spec().models_response) {
         let found = estimate(&trial, &settings(method)).unwrap();
         let settling = found.settling.as_ref().unwrap();
         // Within four standard errors, and a part for what one record may be off.

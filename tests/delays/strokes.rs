@@ -60,7 +60,8 @@ fn starts_are_found_and_rest_is_told_by_every_method() {
 #[test]
 fn the_paper_rejects_both_ends_of_a_stroke() {
     let (trials, _) = strokes();
-    let paper = Settings { paper: true, first_last: FirstLast::Reject, ..Settings::default() };
+    let paper =
+        Settings { paper: true, first_last: FirstLast::Reject, ..Settings::of(Method::TWO_LINE) };
     for estimate in estimated(&trials[..2].to_vec().into(), &paper) {
         let rejected = Verdict::Rejected(Condition::FirstOrLast);
         assert!(estimate.decisions.iter().all(|decision| decision.verdict() == rejected));

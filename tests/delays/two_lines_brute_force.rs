@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
-use tauscope::delay::{Candidates, FirstLast, Line, Settings, estimate};
+use tauscope::delay::{Candidates, FirstLast, Line, Method, Settings, estimate};
 use tauscope::experiment::Trial;
 use tauscope::units::SamplePeriod;
 
@@ -102,7 +102,7 @@ proptest! {
             let period = SamplePeriod::from_seconds(0.01).unwrap();
             Trial::new("1", 0.0, period, input, output).unwrap()
         };
-        let settings = Settings { low_pass: None, first_last: FirstLast::Keep, ..Settings::default() };
+        let settings = Settings { low_pass: None, first_last: FirstLast::Keep, ..Settings::of(Method::TWO_LINE) };
         let still = estimate(&trial(0), &settings).unwrap();
         let shifted = estimate(&trial(shift), &settings).unwrap();
         for (a, b) in still.decisions.iter().zip(&shifted.decisions) {

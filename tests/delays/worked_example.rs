@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use tauscope::delay::{Decision, Segment, Settings, Verdict, estimate};
+use tauscope::delay::{Decision, Method, Segment, Settings, Verdict, estimate};
 use tauscope::experiment::{Experiment, ReadOptions};
 
 fn second_step(settings: &Settings) -> Decision {
@@ -14,7 +14,7 @@ fn second_step(settings: &Settings) -> Decision {
 
 #[test]
 fn five_columns_break_at_the_fifth_row() {
-    let settings = Settings { low_pass: None, ..Settings::default() };
+    let settings = Settings { low_pass: None, ..Settings::of(Method::TWO_LINE) };
     let decision = second_step(&settings);
     assert_eq!((settings.alpha, settings.beta), (10, 5));
     assert_eq!(decision.input_step.sample, 89);
@@ -28,7 +28,7 @@ fn five_columns_break_at_the_fifth_row() {
 
 #[test]
 fn two_columns_give_23_candidates() {
-    let settings = Settings { low_pass: None, beta: 2, ..Settings::default() };
+    let settings = Settings { low_pass: None, beta: 2, ..Settings::of(Method::TWO_LINE) };
     let decision = second_step(&settings);
     assert_eq!(decision.candidates.len(), 23);
     assert!((decision.breakpoint().unwrap().delay - 15).abs() <= 1);
@@ -36,6 +36,6 @@ fn two_columns_give_23_candidates() {
 
 #[test]
 fn the_low_pass_moves_nothing() {
-    let decision = second_step(&Settings::default());
+    let decision = second_step(&Settings::of(Method::TWO_LINE));
     assert_eq!(decision.breakpoint().unwrap().candidate.breakpoint, 104);
 }

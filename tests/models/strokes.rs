@@ -29,7 +29,7 @@ fn options() -> Options {
 #[test]
 fn a_model_of_strokes_has_the_measured_delay_and_gets_the_usual_effects_first() {
     let (trials, _) = strokes();
-    let found = estimated(&trials, &Settings::default());
+    let found = estimated(&trials, &Settings::of(Method::TWO_LINE));
     let finer = estimated(&trials, &Settings::of(Method::HINGE));
     let mut delays: Vec<f64> =
         finer.iter().filter_map(|found| found.decisions[0].accepted_delay()).collect();

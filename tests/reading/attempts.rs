@@ -171,7 +171,12 @@ pub fn review(bytes: &[u8]) -> bool {
     static DECIDED: LazyLock<(Vec<Joint>, Estimates)> = LazyLock::new(|| {
         let log = file("reviewed.csv", log_text().as_bytes());
         let joints = Experiment::read(&[log], &ReadOptions::default()).joints;
-        let estimates = estimate_joints(&joints, &Settings::default(), || (), &Sequential);
+        let estimates = estimate_joints(
+            &joints,
+            &Settings::of(tauscope::delay::Method::TWO_LINE),
+            || (),
+            &Sequential,
+        );
         (joints, estimates)
     });
     let Ok(review) = Review::read(&file("review.csv", bytes)) else { return false };

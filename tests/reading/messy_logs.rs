@@ -11,14 +11,14 @@ mod texts;
 use std::fmt::Write as _;
 use std::fs;
 
-use tauscope::delay::{FirstLast, Settings, estimate_joint};
+use tauscope::delay::{FirstLast, Method, Settings, estimate_joint};
 use tauscope::experiment::{Experiment, ReadOptions, Repair};
 
 use log::{Expected, Messy, SAME, clean, messy, plain};
 
 /// The delays of the first joint, in seconds, of all trials one after another.
 fn delays(experiment: &Experiment) -> Vec<Option<f64>> {
-    let settings = Settings { first_last: FirstLast::Keep, ..Settings::default() };
+    let settings = Settings { first_last: FirstLast::Keep, ..Settings::of(Method::TWO_LINE) };
     let joint = &experiment.joints[0];
     let found = estimate_joint(&joint.trials, &settings);
     let trials = joint.trials.iter().zip(found);

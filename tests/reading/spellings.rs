@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use proptest::prelude::*;
 use tauscope::batch::Threads;
-use tauscope::delay::{Settings, estimate};
+use tauscope::delay::{Method, Settings, estimate};
 use tauscope::experiment::{
     ColumnMap, Experiment, Joint, JointColumns, ReadError, ReadOptions, expand_folders,
 };
@@ -325,7 +325,7 @@ fn nothing_is_estimated_across_the_border_of_a_trial() {
     let header = "time_s,trial,boom.input,boom.output\n";
     let (a, b) = (stepping("a", 210, 1.0), stepping("b", 190, -3.0));
     let together = Reading::of(format!("{header}{a}{b}")).the_joint();
-    let settings = Settings::default();
+    let settings = Settings::of(Method::TWO_LINE);
     for (trial, alone) in together.trials.iter().zip([&a, &b]) {
         let alone = Reading::of(format!("{header}{alone}")).the_joint();
         assert_eq!(trial, &alone.trials[0]);
@@ -494,8 +494,9 @@ fn a_clock_that_counts_from_1970_is_counted_from_the_first_second_of_the_log() {
     assert!((both.trials[1].time_s(1) - 60.25).abs() < 1e-6);
     let mut table = Vec::new();
     let joints = [both];
-    let estimate =
-        estimate_joints(&joints, &Settings::default(), || (), &Threads).remove(0).unwrap();
+    let estimate = estimate_joints(&joints, &Settings::of(Method::TWO_LINE), || (), &Threads)
+        .remove(0)
+        .unwrap();
     let estimated = EstimatedJoint { joint: &joints[0], estimate: &estimate };
     write_delays(&[estimated], &mut table).unwrap();
     let table = String::from_utf8(table).unwrap();

@@ -23,7 +23,7 @@ use tauscope::wording::number;
 
 #[test]
 fn signals_are_those_of_the_log_sample_by_sample() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let back = recorded.read_back(Detail::Full);
     for (joint, estimate) in recorded.experiment.joints.iter().zip(&recorded.estimates) {
         let (trial, estimate) = (&joint.trials[0], estimate.trials[0].as_ref().unwrap());
@@ -50,7 +50,7 @@ fn signals_are_those_of_the_log_sample_by_sample() {
 
 #[test]
 fn the_table_holds_every_decision_and_every_candidate() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let back = recorded.read_back(Detail::Full);
     for joint in recorded.joints() {
         let entity = format!("/{}/decision/table", joint.joint.name);
@@ -126,7 +126,7 @@ fn a_delay_between_samples_is_recorded_as_finely_as_it_was_found() {
             }
         }
     }
-    let paper = Recorded::with(Settings::default()).read_back(Detail::Full);
+    let paper = Recorded::with(Settings::of(Method::TWO_LINE)).read_back(Detail::Full);
     assert!(paper.numbers("/boom/decision/table", "fine_delta").is_empty());
     assert!(!paper.chunks.contains_key("/boom/drawing/interval"));
 }
@@ -134,7 +134,7 @@ fn a_delay_between_samples_is_recorded_as_finely_as_it_was_found() {
 #[test]
 fn what_another_method_decided_is_drawn_beside_the_first() {
     let recorded = Recorded::with(Settings::of(Method::LAG_AWARE));
-    let settings = Settings { first_last: FirstLast::Keep, ..Settings::default() };
+    let settings = Settings { first_last: FirstLast::Keep, ..Settings::of(Method::TWO_LINE) };
     let other = estimate_joints(&recorded.experiment.joints, &settings, || (), &Threads);
     let name = "two-line".to_owned();
     let experiment = &recorded.experiment;
@@ -172,7 +172,7 @@ fn what_another_method_decided_is_drawn_beside_the_first() {
 
 #[test]
 fn every_candidate_has_a_tick_and_no_tick_is_dead() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let back = recorded.read_back(Detail::Full);
     for (joint, estimate) in recorded.experiment.joints.iter().zip(&recorded.estimates) {
         let decisions = &estimate.trials[0].as_ref().unwrap().decisions;
@@ -198,7 +198,7 @@ fn every_candidate_has_a_tick_and_no_tick_is_dead() {
 
 #[test]
 fn a_drawing_never_shows_a_candidate_of_another_segment() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let back = recorded.read_back(Detail::Full);
     for joint in &recorded.experiment.joints {
         let of = |name: &str, component: &'static str| {
@@ -220,7 +220,7 @@ fn a_drawing_never_shows_a_candidate_of_another_segment() {
 
 #[test]
 fn each_verdict_says_why() {
-    let settings = Settings { min_slope_change: 0.12, ..Settings::default() };
+    let settings = Settings { min_slope_change: 0.12, ..Settings::of(Method::TWO_LINE) };
     let recorded = Recorded::with(settings);
     let back = recorded.read_back(Detail::Full);
     for joint in recorded.joints() {
@@ -247,7 +247,7 @@ fn each_verdict_says_why() {
 
 #[test]
 fn the_whole_record_is_drawn_whatever_the_timeline() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let back = recorded.read_back(Detail::Full);
     for joint in recorded.joints() {
         let at = |part: &str| format!("/{}/map_of_record/{part}", joint.joint.name);
@@ -265,7 +265,7 @@ fn the_whole_record_is_drawn_whatever_the_timeline() {
 
 #[test]
 fn a_breakpoint_that_a_reviewer_moved_is_drawn_beside_the_programs() {
-    let mut recorded = Recorded::with(Settings::default());
+    let mut recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let decision = &mut recorded.estimates[0].trials[0].as_mut().unwrap().decisions[2];
     let (p, found) = (decision.input_step.sample, decision.program_delay().unwrap());
     let (note, reviewer) = (String::new(), "Ann".to_owned());
@@ -303,7 +303,7 @@ fn a_breakpoint_that_a_reviewer_moved_is_drawn_beside_the_programs() {
 
 #[test]
 fn the_page_about_it_names_settings_version_and_input() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let back = recorded.read_back(Detail::Full);
     let chunk = &back.chunks["/about"][0];
     let text = chunk.components().get_array("TextDocument:text".into()).unwrap().value(0);
@@ -322,7 +322,7 @@ fn the_page_about_it_names_settings_version_and_input() {
 
 #[test]
 fn lean_keeps_rejected_segments_whole_and_says_so() {
-    let settings = Settings { min_slope_change: 0.12, beta: 1, ..Settings::default() };
+    let settings = Settings { min_slope_change: 0.12, beta: 1, ..Settings::of(Method::TWO_LINE) };
     let recorded = Recorded::with(settings);
     let back = recorded.read_back(Detail::Lean);
     for joint in recorded.joints() {
@@ -349,7 +349,7 @@ fn lean_keeps_rejected_segments_whole_and_says_so() {
 
 #[test]
 fn two_runs_give_the_same_bytes() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let written = || {
         let mut bytes = Vec::new();
         recorded.write(Detail::Full, &mut bytes).unwrap();
@@ -373,7 +373,7 @@ fn messages(bytes: &[u8]) -> Vec<(rerun::StoreId, Option<String>)> {
 
 #[test]
 fn the_views_come_first() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let mut bytes = Vec::new();
     recorded.write(Detail::Full, &mut bytes).unwrap();
     let views: Vec<bool> = messages(&bytes).iter().map(|(store, _)| store.is_blueprint()).collect();
@@ -383,7 +383,7 @@ fn the_views_come_first() {
 
 #[test]
 fn two_recordings_share_no_id_and_say_what_they_are() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let written = |command| {
         let joints = recorded.joints();
         let mut bytes = Vec::new();
@@ -433,7 +433,7 @@ fn blueprint_entities(bytes: &[u8]) -> Vec<String> {
 
 #[test]
 fn it_opens_on_the_most_doubtful_decision_and_goes_by_doubt() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let back = recorded.read_back(Detail::Full);
     for joint in recorded.joints() {
         let name = &joint.joint.name;
@@ -468,7 +468,7 @@ fn it_opens_on_the_most_doubtful_decision_and_goes_by_doubt() {
 
 #[test]
 fn a_recording_without_revisions_opens_on_the_decisions() {
-    let back = Recorded::with(Settings::default()).read_back(Detail::Full);
+    let back = Recorded::with(Settings::of(Method::TWO_LINE)).read_back(Detail::Full);
     assert_eq!(back.opens_on, "decision");
     assert!(!back.chunks.keys().any(|entity| entity.starts_with("/boom/revision")));
 }
@@ -486,7 +486,7 @@ fn a_joint_without_steps_says_why_and_has_no_empty_pages() {
     }
     std::fs::write(&path, text).unwrap();
     let experiment = Experiment::read(&[path], &ReadOptions::default());
-    let settings = Settings::default();
+    let settings = Settings::of(Method::TWO_LINE);
     let estimates: Vec<_> = estimate_joints(&experiment.joints, &settings, || (), &Threads);
     let estimates = estimates.into_iter().map(Result::unwrap).collect();
     let recorded = Recorded { experiment, estimates, settings };
@@ -513,7 +513,7 @@ fn a_disk_that_is_full_is_an_error() {
             Ok(())
         }
     }
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     for room in [0, 1000, 100_000] {
         let result = recorded.write(Detail::Full, Full(room));
         assert!(matches!(result, Err(RecordError::Encode(_))), "{room}");
@@ -533,7 +533,8 @@ fn trials_follow_one_another_with_an_empty_row_between() {
     }
     std::fs::write(&path, text).unwrap();
     let experiment = Experiment::read(&[path], &ReadOptions::default());
-    let settings = Settings { first_last: FirstLast::Keep, low_pass: None, ..Settings::default() };
+    let settings =
+        Settings { first_last: FirstLast::Keep, low_pass: None, ..Settings::of(Method::TWO_LINE) };
     let estimates: Vec<_> = estimate_joints(&experiment.joints, &settings, || (), &Threads);
     let estimates = estimates.into_iter().map(Result::unwrap).collect();
     let recorded = Recorded { experiment, estimates, settings };

@@ -4,14 +4,14 @@
 use crate::read_back::{places, whole};
 use crate::recorded::{Recorded, samples};
 use rerun::log::Chunk;
-use tauscope::delay::{Settings, Verdict};
+use tauscope::delay::{Method, Settings, Verdict};
 use tauscope::recording::Detail;
 use tauscope::report::decision_rows;
 use tauscope::synthetic::DelayLaw;
 
 #[test]
 fn the_state_at_each_accepted_step_is_that_of_the_report() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let back = recorded.read_back(Detail::Full);
     for joint in recorded.joints() {
         let entity = format!("/{}/delay/state", joint.joint.name);
@@ -38,7 +38,8 @@ fn the_state_at_each_accepted_step_is_that_of_the_report() {
 fn the_delay_page_answers_as_the_report_and_begins_with_the_strongest() {
     let law = DelayLaw::StepSize { min: 0.05, max: 0.4, scale: 0.8 };
     let drawn = DelayLaw::Uniform { min: 0.05, max: 0.4 };
-    let recorded = Recorded::of([("by_step", law), ("drawn", drawn)], 90.0, Settings::default());
+    let recorded =
+        Recorded::of([("by_step", law), ("drawn", drawn)], 90.0, Settings::of(Method::TWO_LINE));
     let back = recorded.read_back(Detail::Full);
     for joint in recorded.joints() {
         let page = |part: &str| format!("/{}/against/{part}", joint.joint.name);
@@ -74,7 +75,7 @@ fn the_delay_page_answers_as_the_report_and_begins_with_the_strongest() {
 
 #[test]
 fn the_step_under_the_cursor_is_marked_in_every_plot() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let back = recorded.read_back(Detail::Full);
     for joint in recorded.joints() {
         let page = |part: &str| format!("/{}/against/{part}", joint.joint.name);
@@ -114,7 +115,7 @@ fn the_step_under_the_cursor_is_marked_in_every_plot() {
 
 #[test]
 fn where_nothing_is_accepted_the_delay_page_says_so() {
-    let settings = Settings { max_sse: Some(0.0), ..Settings::default() };
+    let settings = Settings { max_sse: Some(0.0), ..Settings::of(Method::TWO_LINE) };
     let recorded = Recorded::with(settings);
     let back = recorded.read_back(Detail::Full);
     let headline = &back.labels("/boom/against/legend")[0];

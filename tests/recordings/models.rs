@@ -4,7 +4,7 @@
 use crate::read_back::{ReadBack, whole};
 use crate::recorded::Recorded;
 use rerun::external::arrow::array::{AsArray as _, Float64Array};
-use tauscope::delay::Settings;
+use tauscope::delay::{Method, Settings};
 use tauscope::diagnosis::Comparison;
 use tauscope::explain::{Change, Verdict};
 use tauscope::recording::Detail;
@@ -13,7 +13,7 @@ use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec};
 
 #[test]
 fn figures_of_a_model_are_those_of_its_comparison() {
-    let recorded = Recorded::with(Settings::default());
+    let recorded = Recorded::with(Settings::of(Method::TWO_LINE));
     let comparisons = recorded.compared();
     let named =
         |(joint, comparison)| ComparedJoint { joint, model: "plain", revision: 0, comparison };
@@ -69,7 +69,7 @@ fn lacking() -> Recorded {
         lag_s: Some(0.1),
         ..JointSpec::new("boom", input, delay)
     };
-    Recorded::made(vec![joint], 60.0, Settings::default())
+    Recorded::made(vec![joint], 60.0, Settings::of(Method::TWO_LINE))
 }
 
 #[test]

@@ -5,7 +5,9 @@
 
 use std::sync::Arc;
 
+use super::hinge;
 use super::interface::{DelayMethod, Shared};
+use super::lag_aware::from_rest;
 use super::step_context::StepContext;
 use super::two_line;
 use crate::delay::condition::Condition;
@@ -37,6 +39,20 @@ impl Method {
     pub const AUTO: Self = Self::of(&SPEC);
 }
 
+impl Default for Method {
+    /// The onset model.
+    fn default() -> Self {
+        Self::AUTO
+    }
+}
+
+impl Default for Settings {
+    /// Those of the onset model.
+    fn default() -> Self {
+        Self::of(Method::default())
+    }
+}
+
 pub(super) struct Auto;
 
 impl DelayMethod for Auto {
@@ -44,20 +60,26 @@ impl DelayMethod for Auto {
         Method::AUTO
     }
 
-    fn shared(&self, trials: &[Prepared<'_>], _: &Settings) -> Shared {
-        Shared { onset_model: OnsetModel::of(trials).map(Arc::new), ..Shared::default() }
+    fn shared(&self, trials: &[Prepared<'_>], settings: &Settings) -> Shared {
+        Shared { onset_model: OnsetModel::of(trials, settings).map(Arc::new), ..Shared::default() }
     }
 
     fn decide(&self, trial: &Prepared<'_>, shared: &Shared, settings: &Settings) -> Vec<Decision> {
         let untested = Settings { confidence: None, ..settings.clone() };
-        let decisions = two_line::decide_all(trial, &untested);
-        let none = || vec![None; decisions.len()];
-        let model = shared.onset_model.as_deref();
-        let onsets = model.map_or_else(none, |model| model.onsets(trial, settings.interval));
-        let all = decisions.into_iter().zip(onsets).enumerate();
-        let obstacle = model.and_then(OnsetModel::obstacle).filter(|_| !settings.accept_anyway);
-        all.map(|(index, (decision, onset))| {
-            let mut decision = answered(&StepContext { trial, index, settings }, decision, onset);
+        let by_lines = two_line::decide_all(trial, &untested).into_iter().enumerate();
+        let context = |index| StepContext { trial, index, settings };
+        let Some(model) = shared.onset_model.as_deref() else {
+            // Strokes, whose steps share no response.
+            let each = hinge::decide_all(trial, settings, from_rest);
+            let pairs = by_lines.zip(each);
+            return pairs
+                .map(|((index, lines), own)| with_own_onset(&context(index), lines, &own))
+                .collect();
+        };
+        let obstacle = model.obstacle().filter(|_| !settings.accept_anyway);
+        let all = by_lines.zip(model.onsets(trial, settings));
+        all.map(|((index, lines), onset)| {
+            let mut decision = answered(&context(index), lines, onset);
             if let Some(obstacle) = obstacle {
                 rejected(&mut decision, obstacle, trial.period);
             }
@@ -65,6 +87,17 @@ impl DelayMethod for Auto {
         })
         .collect()
     }
+}
+
+/// Algorithm 1's decision on a step with the delay that was found of this step alone.
+fn with_own_onset(context: &StepContext<'_>, by_lines: Decision, own: &Decision) -> Decision {
+    let Decision { segment, candidates, .. } = by_lines;
+    let mut decision = context.decision(segment, context.settings.beta, candidates, own.fine);
+    let tested = own.checks.iter().find(|check| check.condition == Condition::NothingHappened);
+    if let Some(check) = tested {
+        decision.checks.put(check);
+    }
+    decision
 }
 
 /// Rejects a decision for what all onsets of the joint show.

@@ -30,10 +30,5 @@ pub(in crate::delay) trait DelayMethod: Sync {
     }
 
     /// The decisions on all steps of a trial, one each and in order, with what its joint shares.
-    fn decide(
-        &self,
-        trial: &Prepared<'_>,
-        shared: &Shared,
-        settings: &Settings,
-    ) -> Vec<Decision>;
+    fn decide(&self, trial: &Prepared<'_>, shared: &Shared, settings: &Settings) -> Vec<Decision>;
 }

@@ -55,17 +55,14 @@ impl DelayMethod for LagAware {
         Shared { lag: Some(lag_of(trials, settings)), ..Shared::default() }
     }
 
-    fn decide(
-        &self,
-        trial: &Prepared<'_>,
-        shared: &Shared,
-        settings: &Settings,
-    ) -> Vec<Decision> {
+    fn decide(&self, trial: &Prepared<'_>, shared: &Shared, settings: &Settings) -> Vec<Decision> {
         let lag = shared.lag.as_ref();
         match lag.filter(|lag| lag.order() > 0) {
             Some(lag) => decide_all(trial, lag, settings),
             // A joint that follows at once has a broken line.
-            None if lag.is_none_or(Lag::is_determined) => hinge::decide_by_broken_lines(trial, settings),
+            None if lag.is_none_or(Lag::is_determined) => {
+                hinge::decide_by_broken_lines(trial, settings)
+            }
             // Onsets from rest by the speed that they gather, all others by broken lines.
             None => hinge::decide_all(trial, settings, from_rest),
         }
@@ -167,7 +164,7 @@ fn is_shown<'a>(onsets: impl Iterator<Item = &'a Onset>) -> bool {
 }
 
 /// The decision on a step at which the joint rested and then departed.
-fn from_rest(context: &StepContext<'_>) -> Option<Decision> {
+pub(super) fn from_rest(context: &StepContext<'_>) -> Option<Decision> {
     let StepContext { settings, .. } = *context;
     let output = context.output();
     let (found, start) = context.gradual()?;

@@ -85,7 +85,8 @@ mod tests {
             assert!(fine.is_none_or(|fine| holds(fine.low, fine.high)), "{method}: {fine:?}");
             let moved = close.decisions[0].candidates != apart.decisions[0].candidates;
             assert_eq!(moved, spec.has_rows, "{method}");
-            assert_eq!(close.lag.is_some(), spec.scope == Scope::Joint, "{method}");
+            let is_shared = close.lag.is_some() || close.onset_model.is_some();
+            assert_eq!(is_shared, spec.scope == Scope::Joint, "{method}");
             assert_eq!(Settings::of(method).check(), Ok(()), "{method}");
         }
     }

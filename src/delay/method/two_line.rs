@@ -42,20 +42,6 @@ impl Method {
     pub const TWO_LINE: Self = Self::of(&SPEC);
 }
 
-impl Default for Method {
-    /// The paper's.
-    fn default() -> Self {
-        Self::TWO_LINE
-    }
-}
-
-impl Default for Settings {
-    /// The paper's.
-    fn default() -> Self {
-        Self::of(Method::default())
-    }
-}
-
 pub(super) struct TwoLine;
 
 impl DelayMethod for TwoLine {

@@ -32,6 +32,7 @@ impl Follows {
     pub(super) fn of(runs: &[Run], found: &[Vec<Option<Onset>>]) -> Self {
         let onsets = runs.iter().zip(found).flat_map(|(run, found)| run.steps.iter().zip(found));
         let rows: Vec<([f64; 2], f64)> = onsets
+            .filter(|(step, _)| !step.rests)
             .filter_map(|(step, found)| {
                 let part = |of: fn(f64) -> f64| of(step.after) - of(step.before);
                 Some(([part(|u| u.max(0.0)), part(|u| u.min(0.0))], found.as_ref()?.size))

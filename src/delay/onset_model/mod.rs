@@ -7,7 +7,7 @@
 //! its least before the step, and its interval is where the profile is not plainly worse.
 //!
 //! - [`dynamics`]: a response as a linear state, and the error of a window at any onset
-//! - [`shape`]: the responses, one entry each
+//! - [`shape`]: the responses, one entry each; [`response`]: their linear states
 //! - [`windows`]: the windows of a joint's steps, and one pass over them
 //! - [`alignment`]: about which delay all onsets have
 //! - [`search`]: the shape and its parameters, by evidence over all steps
@@ -19,6 +19,7 @@ mod alignment;
 mod dynamics;
 mod follows;
 mod model;
+mod response;
 mod search;
 mod shape;
 mod uncertainty;

@@ -11,11 +11,12 @@ use super::follows::Follows;
 use super::search::{Candidate, Search};
 use super::shape::Shape;
 use super::uncertainty::{Residual, choice, sensor_noise};
-use super::windows::{Fit, MARGIN, Onset, Run, Step};
+use super::windows::{Fit, MARGIN, Onset, Pass, Run, Step};
 use crate::delay::broken_line::p_value;
 use crate::delay::interval::FineDelay;
 use crate::delay::prepared::Prepared;
-use crate::numerics::{median, student_quantile};
+use crate::delay::settings::Settings;
+use crate::numerics::{median, robust_scale, student_quantile};
 use crate::units::{SamplePeriod, ceil_to_index, floor_to_index};
 
 /// Samples from which the shape is found, and those from which its misfit is (chosen: more change
@@ -35,6 +36,9 @@ const LEAST_REACH: f64 = 16.0;
 
 /// Parts of the reach that are tried where nothing fits all of it.
 const PARTS: [f64; 3] = [0.5, 0.25, 0.125];
+
+/// The part that a shape is held against which fits all of it.
+const CHECKED: [f64; 1] = [0.25];
 
 /// What a shape leaves over in parts of the noise, from which it does not fit.
 const MISFIT: f64 = 1.15;
@@ -69,6 +73,9 @@ pub struct OnsetModel {
     /// behind the next step.
     early: f64,
     late: f64,
+    /// How far onsets are apart from those of another reach at the median, samples, and in standard
+    /// errors of that.
+    apart: (f64, f64),
 }
 
 /// Why onsets are no delays of this output behind this input.
@@ -102,30 +109,49 @@ pub struct StepOnset {
 impl OnsetModel {
     /// The model of a joint's trials, those of the first one's period; `None` where there is nothing
     /// to fit.
-    pub(in crate::delay) fn of(trials: &[Prepared<'_>]) -> Option<Self> {
+    pub(in crate::delay) fn of(trials: &[Prepared<'_>], settings: &Settings) -> Option<Self> {
         let period = trials.first()?.period;
         let alike = trials.iter().filter(|trial| trial.period == period);
-        let runs: Vec<Run> = alike.map(run_of).filter(|run| !run.steps.is_empty()).collect();
-        let mut best = Self::within(&runs, period, 1.0)?;
-        if best.misfit() < MISFIT {
-            return Some(best);
-        }
+        let longest = settings.max_delay;
+        let runs = alike.map(|trial| run_of(trial, longest));
+        let mut runs: Vec<Run> = runs.filter(|run| !run.steps.is_empty()).collect();
+        // What is found hangs on no order of the trials.
+        let first = |run: &Run| run.output.first().copied().unwrap_or(0.0);
+        runs.sort_by(|a, b| {
+            let lengths = b.output.len().cmp(&a.output.len());
+            lengths.then(first(a).total_cmp(&first(b)))
+        });
+        let mut all = vec![Self::within(&runs, period, 1.0)?];
+        let parts = if all[0].0.misfit() < MISFIT { &CHECKED[..] } else { &PARTS };
+        all.extend(parts.iter().filter_map(|part| Self::within(&runs, period, *part)));
         let as_well = |a: &Self, b: &Self| {
             let [a, b] = [a, b].map(|model| model.follows.r2.min(PLAIN));
             a > b - WORSE
         };
-        for part in PARTS {
-            let Some(next) = Self::within(&runs, period, part) else { continue };
-            let is_narrower = next.width < best.width && as_well(&next, &best);
-            if is_narrower || !as_well(&best, &next) {
+        let mut best = 0;
+        for next in (1..all.len()).filter(|_| all[0].0.misfit() >= MISFIT) {
+            let (model, best_model) = (&all[next].0, &all[best].0);
+            let is_narrower = model.width < best_model.width && as_well(model, best_model);
+            if is_narrower || !as_well(best_model, model) {
                 best = next;
             }
         }
-        Some(best)
+        // What a shorter reach says, or a longer one where there is none.
+        let other = if best + 1 < all.len() { best + 1 } else { best.saturating_sub(1) };
+        let apart = apart(&all[best].1, &all[other].1);
+        let is_as_good = as_well(&all[other].0, &all[best].0);
+        let mut model = all.swap_remove(best).0;
+        if is_as_good && other != best {
+            model.apart = apart;
+            model.shared = model.shared.hypot(apart.0);
+        }
+        // Each stroke gathers speed in a way of its own.
+        let is_shown = !(rests(trials) && (model.is_misfit() || model.follows.is_unrelated()));
+        is_shown.then_some(model)
     }
 
-    /// The model that looks at a part of the reach.
-    fn within(runs: &[Run], period: SamplePeriod, part: f64) -> Option<Self> {
+    /// The model that looks at a part of the reach, and its clear onsets.
+    fn within(runs: &[Run], period: SamplePeriod, part: f64) -> Option<(Self, Vec<Option<f64>>)> {
         let holds: Vec<f64> = runs.iter().flat_map(holds).collect();
         let hold = median(&holds)?;
         let every = ceil_to_index(hold / SAMPLES_OF_HOLD).max(1);
@@ -160,25 +186,29 @@ impl OnsetModel {
             width: f64::INFINITY,
             early: 0.0,
             late: 0.0,
+            apart: (0.0, 0.0),
         };
         model.measure(&search, &found);
-        Some(model)
+        let clear = |onset: &Option<Onset>| onset.filter(|it| it.is_clear).map(|it| it.position);
+        Some((model, found.onsets.found.iter().flatten().map(clear).collect()))
     }
 
     /// How wide the intervals are, unless most onsets are not clear, and on which side of their steps
     /// they lie.
     fn measure(&mut self, search: &Search, found: &Candidate) {
         const CONFIDENCE: f64 = 0.95;
-        let fit = search.fit(&self.shape);
+        let (fit, pass) = (search.fit(&self.shape), search.pass(self.shape, self.typical));
+        let by = (fit.as_ref(), &pass);
         let (mut widths, mut early, mut late, mut all) = (Vec::new(), 0.0, 0.0, 0);
         for (run, found) in search.runs.iter().zip(&found.onsets.found) {
             all += found.len();
             for (index, onset) in found.iter().enumerate() {
                 let Some(onset) = onset.as_ref().filter(|onset| onset.is_clear) else { continue };
-                let (low, high) = self.sides(fit.as_ref(), run, (index, onset), CONFIDENCE);
+                let (low, high) = self.sides(by, run, (index, onset), CONFIDENCE);
                 widths.push(low + high);
                 let next = run.steps.get(index + 1).map_or(f64::INFINITY, |next| next.at);
-                early += f64::from(u8::from(onset.position + high < run.steps[index].at));
+                // A step may have been made any time after the sample before it.
+                early += f64::from(u8::from(onset.position + high < run.steps[index].at - 1.0));
                 late += f64::from(u8::from(onset.position - low > next));
             }
         }
@@ -206,16 +236,21 @@ impl OnsetModel {
     }
 
     /// How far the interval of an onset reaches to both sides, samples.
-    fn sides(&self, fit: &dyn Fit, run: &Run, of: (usize, &Onset), confidence: f64) -> (f64, f64) {
+    fn sides(
+        &self,
+        (fit, pass): (&dyn Fit, &Pass<'_>),
+        run: &Run,
+        (index, onset): (usize, &Onset),
+        confidence: f64,
+    ) -> (f64, f64) {
         /// Samples of all windows that count beside those of one.
         const POOLED: f64 = 20.0;
-        let (index, onset) = of;
         let freedom = (onset.samples() as f64 - fit.parameters() as f64).max(1.0);
         let all = self.residual.deviation.max(self.noise).powi(2);
         let variance = (onset.sse + POOLED * all) / (freedom + POOLED);
         let t = student_quantile(f64::midpoint(1.0, confidence), freedom + POOLED);
         let limit = onset.sse + variance.max(f64::MIN_POSITIVE) * self.residual.memory * t * t;
-        let (low, high) = fit.extent(run, index, onset, &self.shape, limit);
+        let (low, high) = fit.extent(run, index, onset, pass, limit);
         (low.hypot(t * self.shared), high.hypot(t * self.shared))
     }
 
@@ -223,34 +258,37 @@ impl OnsetModel {
     pub(in crate::delay) fn onsets(
         &self,
         trial: &Prepared<'_>,
-        confidence: f64,
+        settings: &Settings,
     ) -> Vec<Option<StepOnset>> {
+        let confidence = settings.interval;
         let factor = self.period.seconds() / trial.period.seconds();
-        let scaled = Self { shape: self.shape.scaled(factor), shared: self.shared * factor, ..self.clone() };
-        let run = run_of(trial);
+        let scaled =
+            Self { shape: self.shape.scaled(factor), shared: self.shared * factor, ..self.clone() };
+        let run = run_of(trial, settings.max_delay);
         let Some(mut search) = Search::of(std::slice::from_ref(&run), 1, 1.0) else {
             return vec![None; run.steps.len()];
         };
         search.reach = ceil_to_index(self.reach as f64 * factor);
         let typical = self.typical * factor;
         let found = search.evaluate(scaled.shape, search.starting(typical), typical, PASSES);
-        let fit = search.fit(&scaled.shape);
+        let (fit, pass) = (search.fit(&scaled.shape), search.pass(scaled.shape, typical));
+        let by = (fit.as_ref(), &pass);
         let onsets = found.onsets.found.first().into_iter().flatten().enumerate();
         onsets
             .map(|(index, onset)| {
-                Some(scaled.step_onset(fit.as_ref(), &search.runs[0], (index, onset.as_ref()?), confidence))
+                Some(scaled.step_onset(by, &search.runs[0], (index, onset.as_ref()?), confidence))
             })
             .collect()
     }
 
     fn step_onset(
         &self,
-        fit: &dyn Fit,
+        (fit, pass): (&dyn Fit, &Pass<'_>),
         run: &Run,
         (index, onset): (usize, &Onset),
         confidence: f64,
     ) -> StepOnset {
-        let (low, high) = self.sides(fit, run, (index, onset), confidence);
+        let (low, high) = self.sides((fit, pass), run, (index, onset), confidence);
         let delay = onset.position - run.steps[index].at;
         let explained = 1.0 - onset.sse / onset.sse_without.max(f64::MIN_POSITIVE);
         let samples = onset.samples() as f64;
@@ -264,7 +302,7 @@ impl OnsetModel {
         StepOnset {
             fine: FineDelay { delay, low: delay - low, high: delay + high, confidence },
             window: onset.start..onset.end,
-            fitted: fit.fitted(run, index, onset, &self.shape),
+            fitted: fit.fitted(run, index, onset, pass),
             explained,
             p_value,
             rests: !self.shape.family.may_be_curved(),
@@ -293,17 +331,38 @@ impl OnsetModel {
         self.follows.r2
     }
 
-    /// Whether the mean of what is left at some distance from the onsets of all steps is more than
-    /// noise: the joint answers in another way than any shape.
+    /// Whether the joint answers in another way than any shape: the mean of what is left at some distance
+    /// from the onsets of all steps is more than noise, or onsets are others where less is looked at,
+    /// which a shape that fits would only make less exact (J. A. Hausman, "Specification tests in
+    /// econometrics", Econometrica 46, 1978).
     pub fn is_misfit(&self) -> bool {
         /// Part of the residuals' deviation, and standard errors, from which a mean counts.
         const PART: f64 = 0.3;
         const PLAIN: f64 = 4.0;
         /// What is left over in parts of the noise that needs no mean.
         const LARGE: f64 = 3.0;
+        /// Samples by which onsets of another reach are others.
+        const APART: f64 = 0.5;
         let (part, errors) = self.residual.systematic;
-        (part > PART && errors > PLAIN && self.misfit() > MISFIT) || self.misfit() > LARGE
+        let is_left = part > PART && errors > PLAIN && self.misfit() > MISFIT;
+        is_left || self.misfit() > LARGE || (self.apart.0 > APART && self.apart.1 > PLAIN)
     }
+}
+
+/// How far the onsets of the same steps are apart at the median, and in standard errors of that.
+fn apart(one: &[Option<f64>], other: &[Option<f64>]) -> (f64, f64) {
+    /// Onsets that are compared at least.
+    const FEWEST: usize = 6;
+    let both = one.iter().zip(other).filter_map(|(one, other)| Some((*other)? - (*one)?));
+    let differences: Vec<f64> = both.collect();
+    if differences.len() < FEWEST {
+        return (0.0, 0.0);
+    }
+    let middle = median(&differences).unwrap_or(0.0);
+    let about: Vec<f64> = differences.iter().map(|difference| difference - middle).collect();
+    // The median of n normal values has the standard error 1.2533 σ/√n.
+    let error = 1.2533 * robust_scale(&about) / (differences.len() as f64).sqrt();
+    (middle.abs(), middle.abs() / error.max(f64::MIN_POSITIVE))
 }
 
 /// What is left over in parts of the noise.
@@ -331,6 +390,16 @@ fn reach_of(hold: f64, every: usize, part: f64, few: bool) -> usize {
     ceil_to_index(reach.max(LEAST_REACH)) * every
 }
 
+/// Whether most steps find the joint at rest: those of strokes.
+fn rests(trials: &[Prepared<'_>]) -> bool {
+    let rests = |trial: &Prepared<'_>| {
+        let motions = trial.motions.iter().flatten();
+        motions.filter(|motion| motion.rest.is_some()).count()
+    };
+    let steps: usize = trials.iter().map(|trial| trial.steps.len()).sum();
+    2 * trials.iter().map(rests).sum::<usize>() > steps
+}
+
 /// Samples from each step to the next.
 fn holds(run: &Run) -> Vec<f64> {
     let ends = run.steps.iter().skip(1).map(|step| step.at).chain([run.output.len() as f64]);
@@ -340,13 +409,7 @@ fn holds(run: &Run) -> Vec<f64> {
 /// Every so many samples of a run.
 fn thinned(run: &Run, every: usize) -> Run {
     let factor = every as f64;
-    let step = |step: &Step| Step {
-        at: step.at / factor,
-        first: step.first / factor,
-        end: step.end / factor,
-        latest: step.latest / factor,
-        ..*step
-    };
+    let step = |step: &Step| Step { at: step.at / factor, latest: step.latest / factor, ..*step };
     Run {
         output: run.output.iter().step_by(every).copied().collect(),
         steps: run.steps.iter().map(step).collect(),
@@ -374,7 +437,7 @@ fn beginning(runs: &[Run], enough: usize) -> Vec<Run> {
 
 /// A trial as it is fitted: its output as it was measured, and its steps with what bounds the reaction to
 /// each.
-fn run_of(trial: &Prepared<'_>) -> Run {
+fn run_of(trial: &Prepared<'_>, longest: Option<usize>) -> Run {
     let samples = trial.raw.len();
     let output = trial.measured(0..samples).into_owned();
     let motions = trial.motions.iter().map(|motion| motion.as_deref());
@@ -383,9 +446,12 @@ fn run_of(trial: &Prepared<'_>) -> Run {
         at: step.sample as f64 - 1.0,
         before: step.before,
         after: step.after,
-        first: motion.map_or(0.0, |motion| motion.first as f64),
-        end: motion.map_or(samples as f64, |motion| motion.end as f64),
-        latest: motion.map_or(samples as f64, |motion| motion.latest as f64),
+        latest: {
+            let plainly = motion.map_or(samples, |motion| motion.latest);
+            let asked = longest.map(|longest| (step.sample - 1).saturating_add(longest));
+            plainly.min(asked.unwrap_or(usize::MAX)) as f64
+        },
+        rests: motion.and_then(|motion| motion.rest).is_some_and(|rest| rest.lasts()),
     });
     Run { output, steps: steps.collect() }
 }

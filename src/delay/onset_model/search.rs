@@ -19,6 +19,7 @@
 
 use super::alignment::alignments;
 use super::follows::Follows;
+use super::response::fit_of;
 use super::shape::{Family, Shape};
 use super::windows::{Fit, Onset, Onsets, Pass, Run, windows};
 use crate::numerics::median;
@@ -71,13 +72,21 @@ impl Search {
     /// What fits a shape in windows of this search.
     pub(super) fn fit(&self, shape: &Shape) -> Box<dyn Fit> {
         let longest = self.runs.iter().map(|run| run.output.len()).max().unwrap_or(0);
-        shape.fit(self.reach as f64 / 2.0, (2 * self.reach).min(longest) + 2)
+        fit_of(shape, self.reach as f64 / 2.0, (2 * self.reach).min(longest) + 2)
     }
 
     pub(super) fn pass(&self, shape: Shape, typical: f64) -> Pass<'static> {
         // What begins before a record with a few steps is most of it.
         let edge = if self.has_few_steps() { 0.0 } else { typical };
-        Pass { shape, reach: self.reach, typical, edge, noise: self.noise, windows: None }
+        Pass {
+            shape,
+            reach: self.reach,
+            typical,
+            edge,
+            noise: self.noise,
+            steady: self.has_few_steps(),
+            windows: None,
+        }
     }
 
     /// All onsets so many samples behind their steps.
@@ -89,9 +98,10 @@ impl Search {
     /// The median delay of the clear onsets.
     fn typical(&self, onsets: &Onsets) -> Option<f64> {
         let all = self.runs.iter().zip(&onsets.found);
-        let delays = all.flat_map(|(run, found)| run.steps.iter().zip(found)).filter_map(
-            |(step, found)| Some(found.filter(|onset| onset.is_clear)?.position - step.at),
-        );
+        let delays =
+            all.flat_map(|(run, found)| run.steps.iter().zip(found)).filter_map(|(step, found)| {
+                Some(found.filter(|onset| onset.is_clear)?.position - step.at)
+            });
         median(&delays.collect::<Vec<f64>>())
     }
 
@@ -213,9 +223,8 @@ impl Search {
                 let starts = self.starts(shape, &bend);
                 starts.into_iter().map(move |(positions, typical)| (shape, positions, typical))
             });
-            let found = found.map(|(shape, positions, typical)| {
-                self.evaluate(shape, positions, typical, 2)
-            });
+            let found = found
+                .map(|(shape, positions, typical)| self.evaluate(shape, positions, typical, 2));
             all.extend(found.min_by(|a, b| a.score.total_cmp(&b.score)));
         }
         let mut all = self.narrowed(all);

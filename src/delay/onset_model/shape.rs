@@ -15,9 +15,6 @@
 //! `s` is constant but for a jump at each onset. Where holds are curved, as by a gain that changes
 //! with the angle, `s' = q` with a `q` that may jump, too, and is of no interest.
 
-use super::dynamics::{Dynamics, Square, State};
-use super::windows::Fit;
-
 /// Which of the responses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Family {
@@ -139,7 +136,8 @@ impl Shape {
             logs: [first.ln(), second.ln()],
         };
         let times = |from: f64, factor: f64, to: f64| {
-            std::iter::successors(Some(from), move |t| Some(t * factor)).take_while(move |t| *t < to)
+            std::iter::successors(Some(from), move |t| Some(t * factor))
+                .take_while(move |t| *t < to)
         };
         match family {
             Family::Bend => vec![Self::BEND],
@@ -172,60 +170,4 @@ impl Shape {
             }
         }
     }
-
-    /// What fits it, in windows of fewer than `longest` samples; `unit` samples are the unit of the
-    /// time within, which keeps its numbers alike in size.
-    pub(super) fn fit(&self, unit: f64, longest: usize) -> Box<dyn Fit> {
-        let h = unit.recip();
-        let [t, zeta] = self.logs.map(f64::exp);
-        match (self.family, self.curved) {
-            (Family::Bend, false) | (Family::Slew, _) => {
-                boxed(Square::<2>::new(0.0, h, 0.0, 0.0), 1, false, longest)
-            }
-            (Family::Settling, _) => {
-                boxed(Square::<2>::new(-1.0 / t, 1.0 / t, 0.0, 0.0), 1, false, longest)
-            }
-            (Family::Bend, true) => boxed(chain::<3>(h, &[], true), 1, true, longest),
-            (Family::Lag, false) => boxed(chain::<3>(h, &[t], false), 2, false, longest),
-            (Family::Lag, true) => boxed(chain::<4>(h, &[t], true), 2, true, longest),
-            (Family::Pair, false) => boxed(pair::<4>(h, t, zeta, false), 3, false, longest),
-            (Family::Pair, true) => boxed(pair::<5>(h, t, zeta, true), 3, true, longest),
-        }
-    }
-}
-
-/// Dynamics whose speed `s` is the state of an index; where holds are curved, its rate is the next.
-fn boxed<const N: usize>(
-    generator: Square<N>,
-    speed: usize,
-    curved: bool,
-    longest: usize,
-) -> Box<dyn Fit> {
-    let unit = |index: usize| State::<N>::from_fn(|i, _| f64::from(u8::from(i == index)));
-    let nuisance = curved.then(|| unit(speed + 1));
-    Box::new(Dynamics::new(generator, unit(speed), nuisance, longest))
-}
-
-/// An integrator behind lags of one pole each.
-fn chain<const N: usize>(h: f64, lags: &[f64], curved: bool) -> Square<N> {
-    let mut a = Square::<N>::zeros();
-    a[(0, 1)] = h;
-    for (lag, row) in lags.iter().zip(1..) {
-        (a[(row, row)], a[(row, row + 1)]) = (-lag.recip(), lag.recip());
-    }
-    if curved {
-        a[(N - 2, N - 1)] = h;
-    }
-    a
-}
-
-/// An integrator behind a pair of poles.
-fn pair<const N: usize>(h: f64, omega: f64, zeta: f64, curved: bool) -> Square<N> {
-    let mut a = Square::<N>::zeros();
-    (a[(0, 1)], a[(1, 2)]) = (h, omega);
-    (a[(2, 1)], a[(2, 2)], a[(2, 3)]) = (-omega, -2.0 * zeta * omega, omega);
-    if curved {
-        a[(3, 4)] = h;
-    }
-    a
 }

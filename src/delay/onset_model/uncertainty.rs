@@ -17,7 +17,7 @@
 
 use super::search::{Candidate, Search};
 use super::windows::Onset;
-use crate::numerics::{least_change, median, noise_of_differences};
+use crate::numerics::{median, quantile};
 
 /// What the residuals of all windows of a joint say.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +36,8 @@ pub(super) struct Residual {
 pub(super) fn sensor_noise<'a>(outputs: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
     /// Part of samples that repeat the one before, from which a sensor is coarse (chosen).
     const REPEATED: f64 = 0.05;
+    /// Part of the changes that may be smaller than a quantum, by the noise of numbers.
+    const QUANTUM: f64 = 0.1;
     let differences = outputs.clone().flat_map(|y| y.windows(3));
     let second: Vec<f64> = differences.map(|y| (y[0] - 2.0 * y[1] + y[2]).abs()).collect();
     // Of normal noise half of the values are within 0.6745 standard deviations; y₀ − 2y₁ + y₂ has
@@ -47,23 +49,24 @@ pub(super) fn sensor_noise<'a>(outputs: impl Iterator<Item = &'a [f64]> + Clone)
     if repeated <= REPEATED * pairs().count() as f64 {
         return noise;
     }
-    // A quantum has a uniform error.
-    let quantum = least_change(pairs()).unwrap_or(0.0) / 12.0_f64.sqrt();
-    noise.max(quantum).max(noise_of_differences(outputs))
+    // A quantum, which few changes are below of, has a uniform error.
+    let changes: Vec<f64> = pairs().map(|y| (y[1] - y[0]).abs()).filter(|d| *d > 0.0).collect();
+    noise.max(quantile(&changes, QUANTUM).unwrap_or(0.0) / 12.0_f64.sqrt())
 }
 
 impl Residual {
     /// Of the windows of `candidate`.
     pub(super) fn of(search: &Search, candidate: &Candidate) -> Self {
         let fit = search.fit(&candidate.shape);
+        let pass = search.pass(candidate.shape, candidate.typical);
         let per_window = fit.parameters() as f64;
         let all = search.runs.iter().zip(&candidate.onsets.found);
         let windows: Vec<(&Onset, Vec<f64>)> = all
             .flat_map(|(run, found)| {
-                let fit = &fit;
+                let (fit, pass) = (&fit, &pass);
                 found.iter().enumerate().filter_map(move |(index, onset)| {
                     let onset = onset.as_ref()?;
-                    let fitted = fit.fitted(run, index, onset, &candidate.shape);
+                    let fitted = fit.fitted(run, index, onset, pass);
                     let measured = run.output.get(onset.start..onset.end)?;
                     let left = measured.iter().zip(&fitted).map(|(y, fitted)| y - fitted);
                     Some((onset, left.collect::<Vec<f64>>()))
@@ -114,9 +117,8 @@ fn memory<'a>(windows: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
 /// the onset: in deviations, and in standard errors. A noise with a memory has none.
 fn systematic(windows: &[(&Onset, Vec<f64>)], deviation: f64) -> (f64, f64) {
     /// Distances between which residuals are averaged, samples.
-    const EDGES: [f64; 15] = [
-        -64.0, -32.0, -16.0, -8.0, -4.0, -2.0, 0.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0,
-    ];
+    const EDGES: [f64; 15] =
+        [-64.0, -32.0, -16.0, -8.0, -4.0, -2.0, 0.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0];
     /// Steps of which a mean is taken.
     const FEWEST: usize = 6;
     let between = |from: f64, to: f64| -> Vec<f64> {

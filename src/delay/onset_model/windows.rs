@@ -25,11 +25,10 @@ pub(super) struct Step {
     pub(super) at: f64,
     pub(super) before: f64,
     pub(super) after: f64,
-    /// The first and behind the last sample that says something of it.
-    pub(super) first: f64,
-    pub(super) end: f64,
     /// The last position that its onset may have.
     pub(super) latest: f64,
+    /// Whether the joint went on resting, as at a stop.
+    pub(super) rests: bool,
 }
 
 impl Step {
@@ -91,6 +90,8 @@ pub(super) struct Pass<'a> {
     /// The delay of what begins before a record and ends behind it.
     pub(super) edge: f64,
     pub(super) noise: f64,
+    /// Whether a record begins in steady motion: its first window holds no motion of before.
+    pub(super) steady: bool,
     /// The windows, where they are to stay.
     pub(super) windows: Option<&'a [Vec<(usize, usize)>]>,
 }
@@ -107,20 +108,31 @@ pub(super) trait Fit: Sync {
     fn mean_square(&self, runs: &[Run], positions: &[Vec<f64>], pass: &Pass<'_>) -> f64;
 
     /// What is fitted to the window of an onset.
-    fn fitted(&self, run: &Run, index: usize, onset: &Onset, shape: &Shape) -> Vec<f64>;
+    fn fitted(&self, run: &Run, index: usize, onset: &Onset, pass: &Pass<'_>) -> Vec<f64>;
 
     /// How far from the onset the squared error is below `limit`, to both sides.
-    fn extent(&self, run: &Run, index: usize, onset: &Onset, shape: &Shape, limit: f64)
-    -> (f64, f64);
+    fn extent(
+        &self,
+        run: &Run,
+        index: usize,
+        onset: &Onset,
+        pass: &Pass<'_>,
+        limit: f64,
+    ) -> (f64, f64);
 }
 
 /// The window of a step, given where the onsets are taken to be.
-pub(super) fn window(run: &Run, positions: &[f64], index: usize, pass: &Pass<'_>) -> (usize, usize) {
+pub(super) fn window(
+    run: &Run,
+    positions: &[f64],
+    index: usize,
+    pass: &Pass<'_>,
+) -> (usize, usize) {
     /// Samples of the first and the last window at least, where the record may hold a reaction to
     /// what came before it, or, of an output that leads its input, to what comes behind it.
     const FEWEST: f64 = 10.0;
     let n = run.output.len();
-    let (here, step) = (positions[index], &run.steps[index]);
+    let here = positions[index];
     let start = match index.checked_sub(1) {
         Some(before) => positions[before],
         None => pass.edge.min(here - FEWEST),
@@ -130,8 +142,8 @@ pub(super) fn window(run: &Run, positions: &[f64], index: usize, pass: &Pass<'_>
         None => (n as f64 + pass.edge.min(0.0)).max(here + FEWEST),
     };
     let reach = pass.reach as f64;
-    let start = ceil_to_index(start.max(here - reach).max(step.first).max(0.0));
-    let end = floor_to_index(end.min(here + reach).min(step.end).max(0.0)).min(n);
+    let start = ceil_to_index(start.max(here - reach).max(0.0));
+    let end = floor_to_index(end.min(here + reach).max(0.0)).min(n);
     (start, end)
 }
 
@@ -149,9 +161,16 @@ pub(super) fn windows(
 
 impl<const N: usize> Dynamics<N> {
     /// The window of an onset, as sums.
-    fn window_of(&self, run: &Run, index: usize, bounds: (usize, usize), shape: &Shape) -> Option<Window<N>> {
-        let values = run.output.get(bounds.0..bounds.1)?;
-        self.window(values, shape.lasts(run.steps[index].change()))
+    fn window_of(
+        &self,
+        run: &Run,
+        index: usize,
+        (start, end): (usize, usize),
+        pass: &Pass<'_>,
+    ) -> Option<Window<N>> {
+        let values = run.output.get(start..end)?;
+        let ends = pass.shape.lasts(run.steps[index].change());
+        self.window(values, ends, pass.steady && index == 0)
     }
 
     /// The best onset between two positions of a window.
@@ -181,7 +200,13 @@ impl<const N: usize> Dynamics<N> {
         best
     }
 
-    fn find(&self, run: &Run, positions: &[f64], at: (usize, usize), pass: &Pass<'_>) -> Option<Onset> {
+    fn find(
+        &self,
+        run: &Run,
+        positions: &[f64],
+        at: (usize, usize),
+        pass: &Pass<'_>,
+    ) -> Option<Onset> {
         /// Times the noise that three parameters gain, from which an onset is clear (chosen).
         const CLEAR: f64 = 12.0;
         let (number, index) = at;
@@ -189,7 +214,7 @@ impl<const N: usize> Dynamics<N> {
             Some(windows) => *windows.get(number)?.get(index)?,
             None => window(run, positions, index, pass),
         };
-        let window = self.window_of(run, index, (start, end), &pass.shape)?;
+        let window = self.window_of(run, index, (start, end), pass)?;
         let first = MARGIN as f64;
         let last = ((end - start - 1 - MARGIN) as f64).min(run.steps[index].latest - start as f64);
         if last < first {
@@ -244,7 +269,7 @@ impl<const N: usize> Fit for Dynamics<N> {
                 if here < MARGIN as f64 || here > end as f64 - start as f64 - MARGIN as f64 {
                     continue;
                 }
-                let Some(window) = self.window_of(run, index, (start, end), &pass.shape) else {
+                let Some(window) = self.window_of(run, index, (start, end), pass) else {
                     continue;
                 };
                 sse += self.at(&window, here).sse;
@@ -254,8 +279,8 @@ impl<const N: usize> Fit for Dynamics<N> {
         if samples > 0.0 { sse / samples } else { f64::INFINITY }
     }
 
-    fn fitted(&self, run: &Run, index: usize, onset: &Onset, shape: &Shape) -> Vec<f64> {
-        let window = self.window_of(run, index, (onset.start, onset.end), shape);
+    fn fitted(&self, run: &Run, index: usize, onset: &Onset, pass: &Pass<'_>) -> Vec<f64> {
+        let window = self.window_of(run, index, (onset.start, onset.end), pass);
         let here = onset.position - onset.start as f64;
         window.map_or_else(Vec::new, |window| self.fitted(&window, here))
     }
@@ -265,10 +290,10 @@ impl<const N: usize> Fit for Dynamics<N> {
         run: &Run,
         index: usize,
         onset: &Onset,
-        shape: &Shape,
+        pass: &Pass<'_>,
         limit: f64,
     ) -> (f64, f64) {
-        let Some(window) = self.window_of(run, index, (onset.start, onset.end), shape) else {
+        let Some(window) = self.window_of(run, index, (onset.start, onset.end), pass) else {
             return (f64::INFINITY, f64::INFINITY);
         };
         let here = onset.position - onset.start as f64;

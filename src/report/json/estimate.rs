@@ -20,9 +20,8 @@ use crate::report::delay_table::DelayTableRow;
 use crate::report::doubt::doubted;
 use crate::report::settings::own_settings;
 use crate::report::{
-    Warning,
     Against, DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, JointSummary,
-    ReviewCount,
+    ReviewCount, Warning,
 };
 
 /// The document of `estimate --format json`.

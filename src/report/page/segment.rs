@@ -240,7 +240,7 @@ fn rounded_time(seconds: f64) -> String {
 mod tests {
     use super::*;
     use crate::batch::Threads;
-    use crate::delay::{FirstLast, Settings};
+    use crate::delay::{FirstLast, Method, Settings};
     use crate::study::estimate_joints;
     use crate::units::SamplePeriod;
 
@@ -271,15 +271,18 @@ mod tests {
 
     #[test]
     fn the_clearest_decision_is_where_the_noise_is_least() {
-        let settings =
-            Settings { low_pass: None, first_last: FirstLast::Keep, ..Settings::default() };
+        let settings = Settings {
+            low_pass: None,
+            first_last: FirstLast::Keep,
+            ..Settings::of(Method::TWO_LINE)
+        };
         let chosen = chosen(&settings);
         assert_eq!(chosen, [("Clearest", 1), ("Typical", 3), ("Most doubtful", 5)]);
     }
 
     #[test]
     fn a_rejected_decision_is_shown_where_one_says_something() {
-        let settings = Settings { low_pass: None, ..Settings::default() };
+        let settings = Settings { low_pass: None, ..Settings::of(Method::TWO_LINE) };
         assert!(chosen(&settings).iter().all(|(why, _)| *why != "Rejected"), "ends are not judged");
         let settings = Settings { min_delay: 1000, ..settings };
         assert_eq!(chosen(&settings), [("Rejected", 2)]);

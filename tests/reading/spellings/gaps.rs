@@ -144,7 +144,7 @@ fn each_sample_of_the_delays_has_its_own_time_where_joints_split_apart() {
     let header = "time_s,a.input,a.output,b.input,b.output\n".to_owned();
     let log: String = stepping("", 400, 1.0).lines().enumerate().map(row).collect();
     let joints = Reading::of(header + &log).fill(0.05).joints();
-    let settings = Settings { low_pass: None, ..Settings::default() };
+    let settings = Settings { low_pass: None, ..Settings::of(Method::TWO_LINE) };
     let estimates: Vec<JointEstimate> = estimate_joints(&joints, &settings, || (), &Threads)
         .into_iter()
         .map(Result::unwrap)

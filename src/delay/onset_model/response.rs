@@ -1,0 +1,70 @@
+//! The linear state of each shape.
+
+use super::dynamics::{Dynamics, Square, State, Steady};
+use super::shape::{Family, Shape};
+use super::windows::Fit;
+
+/// What fits a `shape` in windows of fewer than `longest` samples; `unit` samples are the unit of the
+/// time within, which keeps its numbers alike in size.
+pub(super) fn fit_of(shape: &Shape, unit: f64, longest: usize) -> Box<dyn Fit> {
+    let h = unit.recip();
+    let [t, zeta] = shape.logs.map(f64::exp);
+    match (shape.family, shape.curved) {
+        (Family::Bend, false) | (Family::Slew, _) => {
+            boxed(Square::<2>::new(0.0, h, 0.0, 0.0), 1, false, longest)
+        }
+        (Family::Settling, _) => {
+            boxed(Square::<2>::new(-1.0 / t, 1.0 / t, 0.0, 0.0), 1, false, longest)
+        }
+        (Family::Bend, true) => boxed(chain::<3>(h, &[], true), 1, true, longest),
+        (Family::Lag, false) => boxed(chain::<3>(h, &[t], false), 2, false, longest),
+        (Family::Lag, true) => boxed(chain::<4>(h, &[t], true), 2, true, longest),
+        (Family::Pair, false) => boxed(pair::<4>(h, t, zeta, false), 3, false, longest),
+        (Family::Pair, true) => boxed(pair::<5>(h, t, zeta, true), 3, true, longest),
+    }
+}
+
+/// Dynamics whose speed `s` is the state of an index; where holds are curved, its rate is the next.
+fn boxed<const N: usize>(
+    generator: Square<N>,
+    speed: usize,
+    curved: bool,
+    longest: usize,
+) -> Box<dyn Fit> {
+    let unit = |index: usize| State::<N>::from_fn(|i, _| f64::from(u8::from(i == index)));
+    let nuisance = curved.then(|| unit(speed + 1));
+    // Steady motion: what lies between the output and its speed has followed, so that it is the speed,
+    // but for the rate of a pair of poles, which is zero.
+    let mut steady = Square::<N>::identity();
+    for between in 1..speed {
+        steady[(between, between)] = 0.0;
+    }
+    if speed > 1 {
+        steady[(1, speed)] = 1.0;
+    }
+    Box::new(Dynamics::new(generator, unit(speed), nuisance, Steady(steady), longest))
+}
+
+/// An integrator behind lags of one pole each.
+fn chain<const N: usize>(h: f64, lags: &[f64], curved: bool) -> Square<N> {
+    let mut a = Square::<N>::zeros();
+    a[(0, 1)] = h;
+    for (lag, row) in lags.iter().zip(1..) {
+        (a[(row, row)], a[(row, row + 1)]) = (-lag.recip(), lag.recip());
+    }
+    if curved {
+        a[(N - 2, N - 1)] = h;
+    }
+    a
+}
+
+/// An integrator behind a pair of poles.
+fn pair<const N: usize>(h: f64, omega: f64, zeta: f64, curved: bool) -> Square<N> {
+    let mut a = Square::<N>::zeros();
+    (a[(0, 1)], a[(1, 2)]) = (h, omega);
+    (a[(2, 1)], a[(2, 2)], a[(2, 3)]) = (-omega, -2.0 * zeta * omega, omega);
+    if curved {
+        a[(3, 4)] = h;
+    }
+    a
+}
