@@ -20,12 +20,12 @@ struct Row {
     verdict: String,
 }
 
-/// The decisions of `estimate` with these options.
+/// The decisions of Algorithm 1 with these options.
 fn decisions(log: &Path, options: &str) -> Vec<Row> {
     let folder = tempfile::tempdir().unwrap();
     let table = folder.path().join("decisions.csv");
     let output = Command::new(env!("CARGO_BIN_EXE_tauscope"))
-        .args(["estimate", "--quiet", "--keep-first-last", "--decisions"])
+        .args(["estimate", "--method", "two-line", "--quiet", "--keep-first-last", "--decisions"])
         .arg(&table)
         .arg(log)
         .args(options.split(' '))

@@ -15,14 +15,14 @@ use super::windows::{Fit, MARGIN, Onset, Pass, Run, Step};
 use crate::delay::broken_line::p_value;
 use crate::delay::interval::FineDelay;
 use crate::delay::prepared::Prepared;
-use crate::delay::settings::Settings;
-use crate::numerics::{median, robust_scale, student_quantile};
+use crate::delay::settings::{FirstLast, Settings};
+use crate::numerics::{median, student_quantile};
 use crate::units::{SamplePeriod, ceil_to_index, floor_to_index};
 
 /// Samples from which the shape is found, and those from which its misfit is (chosen: more change
 /// nothing but the time).
-const ENOUGH_FOR_SHAPE: usize = 4_000;
-const ENOUGH_FOR_MISFIT: usize = 20_000;
+const ENOUGH_FOR_SHAPE: usize = 3_000;
+const ENOUGH_FOR_MISFIT: usize = 10_000;
 
 /// Samples of a hold that are looked at: of longer ones every second, third … sample.
 const SAMPLES_OF_HOLD: f64 = 500.0;
@@ -36,9 +36,6 @@ const LEAST_REACH: f64 = 16.0;
 
 /// Parts of the reach that are tried where nothing fits all of it.
 const PARTS: [f64; 3] = [0.5, 0.25, 0.125];
-
-/// The part that a shape is held against which fits all of it.
-const CHECKED: [f64; 1] = [0.25];
 
 /// What a shape leaves over in parts of the noise, from which it does not fit.
 const MISFIT: f64 = 1.15;
@@ -73,9 +70,6 @@ pub struct OnsetModel {
     /// behind the next step.
     early: f64,
     late: f64,
-    /// How far onsets are apart from those of another reach at the median, samples, and in standard
-    /// errors of that.
-    apart: (f64, f64),
 }
 
 /// Why onsets are no delays of this output behind this input.
@@ -122,14 +116,14 @@ impl OnsetModel {
             lengths.then(first(a).total_cmp(&first(b)))
         });
         let mut all = vec![Self::within(&runs, period, 1.0)?];
-        let parts = if all[0].0.misfit() < MISFIT { &CHECKED[..] } else { &PARTS };
+        let parts = if all[0].0.misfit() < MISFIT { &[][..] } else { &PARTS };
         all.extend(parts.iter().filter_map(|part| Self::within(&runs, period, *part)));
         let as_well = |a: &Self, b: &Self| {
             let [a, b] = [a, b].map(|model| model.follows.r2.min(PLAIN));
             a > b - WORSE
         };
         let mut best = 0;
-        for next in (1..all.len()).filter(|_| all[0].0.misfit() >= MISFIT) {
+        for next in 1..all.len() {
             let (model, best_model) = (&all[next].0, &all[best].0);
             let is_narrower = model.width < best_model.width && as_well(model, best_model);
             if is_narrower || !as_well(best_model, model) {
@@ -142,11 +136,12 @@ impl OnsetModel {
         let is_as_good = as_well(&all[other].0, &all[best].0);
         let mut model = all.swap_remove(best).0;
         if is_as_good && other != best {
-            model.apart = apart;
-            model.shared = model.shared.hypot(apart.0);
+            model.shared = model.shared.hypot(apart);
         }
         // Each stroke gathers speed in a way of its own.
-        let is_shown = !(rests(trials) && (model.is_misfit() || model.follows.is_unrelated()));
+        let is_stroke = |trial: &Prepared<'_>| FirstLast::Auto.are_judged(trial.steps.len());
+        let strokes = trials.iter().all(is_stroke) && model.is_misfit();
+        let is_shown = !(rests(trials) && (strokes || model.follows.is_unrelated()));
         is_shown.then_some(model)
     }
 
@@ -186,7 +181,6 @@ impl OnsetModel {
             width: f64::INFINITY,
             early: 0.0,
             late: 0.0,
-            apart: (0.0, 0.0),
         };
         model.measure(&search, &found);
         let clear = |onset: &Option<Onset>| onset.filter(|it| it.is_clear).map(|it| it.position);
@@ -332,37 +326,23 @@ impl OnsetModel {
     }
 
     /// Whether the joint answers in another way than any shape: the mean of what is left at some distance
-    /// from the onsets of all steps is more than noise, or onsets are others where less is looked at,
-    /// which a shape that fits would only make less exact (J. A. Hausman, "Specification tests in
-    /// econometrics", Econometrica 46, 1978).
+    /// from the onsets of all steps is more than noise.
     pub fn is_misfit(&self) -> bool {
         /// Part of the residuals' deviation, and standard errors, from which a mean counts.
         const PART: f64 = 0.3;
         const PLAIN: f64 = 4.0;
         /// What is left over in parts of the noise that needs no mean.
         const LARGE: f64 = 3.0;
-        /// Samples by which onsets of another reach are others.
-        const APART: f64 = 0.5;
         let (part, errors) = self.residual.systematic;
         let is_left = part > PART && errors > PLAIN && self.misfit() > MISFIT;
-        is_left || self.misfit() > LARGE || (self.apart.0 > APART && self.apart.1 > PLAIN)
+        is_left || self.misfit() > LARGE
     }
 }
 
-/// How far the onsets of the same steps are apart at the median, and in standard errors of that.
-fn apart(one: &[Option<f64>], other: &[Option<f64>]) -> (f64, f64) {
-    /// Onsets that are compared at least.
-    const FEWEST: usize = 6;
+/// How far the onsets of the same steps are apart at the median.
+fn apart(one: &[Option<f64>], other: &[Option<f64>]) -> f64 {
     let both = one.iter().zip(other).filter_map(|(one, other)| Some((*other)? - (*one)?));
-    let differences: Vec<f64> = both.collect();
-    if differences.len() < FEWEST {
-        return (0.0, 0.0);
-    }
-    let middle = median(&differences).unwrap_or(0.0);
-    let about: Vec<f64> = differences.iter().map(|difference| difference - middle).collect();
-    // The median of n normal values has the standard error 1.2533 σ/√n.
-    let error = 1.2533 * robust_scale(&about) / (differences.len() as f64).sqrt();
-    (middle.abs(), middle.abs() / error.max(f64::MIN_POSITIVE))
+    median(&both.collect::<Vec<f64>>()).unwrap_or(0.0).abs()
 }
 
 /// What is left over in parts of the noise.
@@ -376,7 +356,9 @@ impl Search {
         let runs: Vec<Run> = runs.iter().map(|run| thinned(run, every)).collect();
         let hold = median(&runs.iter().flat_map(holds).collect::<Vec<f64>>())?;
         let noise = sensor_noise(runs.iter().map(|run| run.output.as_slice()));
-        let mut search = Self { runs, reach: 0, noise, hold };
+        let changes = runs.iter().flat_map(|run| &run.steps).map(|step| step.change().abs());
+        let change = median(&changes.collect::<Vec<f64>>())?;
+        let mut search = Self { runs, reach: 0, noise, hold, change, is_local: part < 1.0 };
         search.reach = reach_of(hold, 1, part, search.has_few_steps());
         Some(search)
     }

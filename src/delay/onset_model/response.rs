@@ -1,5 +1,7 @@
 //! The linear state of each shape.
 
+use std::ops::Range;
+
 use super::dynamics::{Dynamics, Square, State, Steady};
 use super::shape::{Family, Shape};
 use super::windows::Fit;
@@ -11,36 +13,38 @@ pub(super) fn fit_of(shape: &Shape, unit: f64, longest: usize) -> Box<dyn Fit> {
     let [t, zeta] = shape.logs.map(f64::exp);
     match (shape.family, shape.curved) {
         (Family::Bend, false) | (Family::Slew, _) => {
-            boxed(Square::<2>::new(0.0, h, 0.0, 0.0), 1, false, longest)
+            boxed(Square::<2>::new(0.0, h, 0.0, 0.0), 1..1, false, longest)
         }
         (Family::Settling, _) => {
-            boxed(Square::<2>::new(-1.0 / t, 1.0 / t, 0.0, 0.0), 1, false, longest)
+            boxed(Square::<2>::new(-1.0 / t, 1.0 / t, 0.0, 0.0), 0..1, false, longest)
         }
-        (Family::Bend, true) => boxed(chain::<3>(h, &[], true), 1, true, longest),
-        (Family::Lag, false) => boxed(chain::<3>(h, &[t], false), 2, false, longest),
-        (Family::Lag, true) => boxed(chain::<4>(h, &[t], true), 2, true, longest),
-        (Family::Pair, false) => boxed(pair::<4>(h, t, zeta, false), 3, false, longest),
-        (Family::Pair, true) => boxed(pair::<5>(h, t, zeta, true), 3, true, longest),
+        (Family::Bend, true) => boxed(chain::<3>(h, &[], true), 1..1, true, longest),
+        (Family::Lag, false) => boxed(chain::<3>(h, &[t], false), 1..2, false, longest),
+        (Family::Lag, true) => boxed(chain::<4>(h, &[t], true), 1..2, true, longest),
+        (Family::Pair, false) => boxed(pair::<4>(h, t, zeta, false), 1..3, false, longest),
+        (Family::Pair, true) => boxed(pair::<5>(h, t, zeta, true), 1..3, true, longest),
     }
 }
 
-/// Dynamics whose speed `s` is the state of an index; where holds are curved, its rate is the next.
+/// Dynamics whose speed `s` is the state behind those that follow it; where holds are curved, its rate
+/// is the next.
 fn boxed<const N: usize>(
     generator: Square<N>,
-    speed: usize,
+    followers: Range<usize>,
     curved: bool,
     longest: usize,
 ) -> Box<dyn Fit> {
+    let speed = followers.end;
     let unit = |index: usize| State::<N>::from_fn(|i, _| f64::from(u8::from(i == index)));
     let nuisance = curved.then(|| unit(speed + 1));
-    // Steady motion: what lies between the output and its speed has followed, so that it is the speed,
-    // but for the rate of a pair of poles, which is zero.
+    // In steady motion the first of those that follow is what it follows, and the rates of the others are
+    // zero.
     let mut steady = Square::<N>::identity();
-    for between in 1..speed {
-        steady[(between, between)] = 0.0;
+    for follower in followers.clone() {
+        steady[(follower, follower)] = 0.0;
     }
-    if speed > 1 {
-        steady[(1, speed)] = 1.0;
+    if let Some(first) = followers.clone().next() {
+        steady[(first, speed)] = 1.0;
     }
     Box::new(Dynamics::new(generator, unit(speed), nuisance, Steady(steady), longest))
 }

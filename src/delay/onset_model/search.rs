@@ -41,6 +41,10 @@ pub(super) struct Search {
     pub(super) noise: f64,
     /// Median hold, samples.
     pub(super) hold: f64,
+    /// Median size of the steps of the input.
+    pub(super) change: f64,
+    /// Whether only a part of the reach is looked at.
+    pub(super) is_local: bool,
 }
 
 /// A shape with the onsets behind it.
@@ -67,6 +71,12 @@ impl Search {
 
     pub(super) fn has_few_steps(&self) -> bool {
         self.steps() <= FEW
+    }
+
+    /// Whether a family is tried: where only the surroundings of onsets are looked at, nothing oscillates,
+    /// settles or arrives within them.
+    fn may_be(&self, family: Family) -> bool {
+        !self.is_local || family == Family::Lag
     }
 
     /// What fits a shape in windows of this search.
@@ -190,7 +200,7 @@ impl Search {
         let here = best.0;
         let mut at = |by: [f64; 2]| {
             let moved = shape.moved(by);
-            if !moved.is_allowed(self.hold) {
+            if !moved.is_allowed(self.hold, self.change) {
                 return f64::INFINITY;
             }
             let value = value(moved);
@@ -213,16 +223,15 @@ impl Search {
 
     /// The shapes that the record supports, the best one first.
     pub(super) fn select(&self) -> Vec<Candidate> {
-        let changes = self.runs.iter().flat_map(|run| &run.steps).map(|step| step.change().abs());
-        let change = median(&changes.collect::<Vec<f64>>()).unwrap_or(1.0);
         let bend = self.first();
         let mut all = vec![bend.clone()];
-        for family in Family::WITH_PARAMETERS {
-            let grid = Shape::grid(family, self.hold, change).into_iter();
-            let found = grid.filter(|shape| shape.is_allowed(self.hold)).flat_map(|shape| {
-                let starts = self.starts(shape, &bend);
-                starts.into_iter().map(move |(positions, typical)| (shape, positions, typical))
-            });
+        for family in Family::WITH_PARAMETERS.into_iter().filter(|it| self.may_be(*it)) {
+            let grid = Shape::grid(family, self.hold, self.change).into_iter();
+            let found =
+                grid.filter(|shape| shape.is_allowed(self.hold, self.change)).flat_map(|shape| {
+                    let starts = self.starts(shape, &bend);
+                    starts.into_iter().map(move |(positions, typical)| (shape, positions, typical))
+                });
             let found = found
                 .map(|(shape, positions, typical)| self.evaluate(shape, positions, typical, 2));
             all.extend(found.min_by(|a, b| a.score.total_cmp(&b.score)));
@@ -244,9 +253,20 @@ impl Search {
         all
     }
 
-    /// Refines all candidates.
+    /// Refines the candidates that are not plainly worse than the best once they are near their least.
     fn narrowed(&self, all: Vec<Candidate>) -> Vec<Candidate> {
-        all.into_iter().map(|candidate| self.refined(candidate, ROUNDS)).collect()
+        /// Rounds behind which a candidate is near its least.
+        const NEAR: usize = 3;
+        /// A criterion that is larger by this for each sample is plainly worse: an error 1.6 times
+        /// as large.
+        const WORSE: f64 = 0.5;
+        let near: Vec<Candidate> = all.into_iter().map(|it| self.refined(it, NEAR)).collect();
+        let samples = |it: &Candidate| it.found().map(|onset| onset.samples() as f64).sum::<f64>();
+        let most = near.iter().map(samples).fold(0.0, f64::max);
+        let best = near.iter().map(|it| it.score).fold(f64::INFINITY, f64::min);
+        let limit = best + WORSE * most / 2.0;
+        let kept = near.into_iter().filter(|it| it.score <= limit);
+        kept.map(|it| self.refined(it, ROUNDS)).collect()
     }
 
     fn keep_those_that_follow(&self, all: &mut Vec<Candidate>) {

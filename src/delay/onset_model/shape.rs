@@ -111,15 +111,17 @@ impl Shape {
         self
     }
 
-    /// Whether samples can show it where holds last `hold` samples. A lag of less than 0.7 samples
+    /// Whether samples can show it where holds last `hold` samples and steps of the input are by
+    /// `change`. A lag of less than 0.7 samples
     /// moves the corner between samples, as a later onset does.
-    pub(super) fn is_allowed(&self, hold: f64) -> bool {
+    pub(super) fn is_allowed(&self, hold: f64, change: f64) -> bool {
         let [first, second] = self.logs;
         let time = 0.7_f64.ln()..=(8.0 * hold).ln();
         match self.family {
             Family::Bend => true,
             Family::Lag | Family::Settling => time.contains(&first),
-            Family::Slew => first.is_finite(),
+            // One that outlasts holds is a bend.
+            Family::Slew => self.lasts(change) < hold,
             Family::Pair => {
                 (-(4.0 * hold).ln()..=0.9).contains(&first)
                     && (0.02_f64.ln()..=3.0_f64.ln()).contains(&second)
@@ -144,7 +146,7 @@ impl Shape {
             Family::Lag => times(1.0, 2.5, 1.5 * hold).map(|t| shape(t, 1.0)).collect(),
             Family::Settling => times(1.5, 2.5, 4.0 * hold).map(|t| shape(t, 1.0)).collect(),
             Family::Slew => {
-                times(0.02, 2.0, 1.3).map(|part| shape(part * hold / change, 1.0)).collect()
+                times(0.02, 2.0, 1.0).map(|part| shape(part * hold / change, 1.0)).collect()
             }
             Family::Pair => times(10.0, 2.4, 2.0 * hold)
                 .flat_map(|t| [0.15, 0.5, 1.2].map(|zeta| shape(std::f64::consts::TAU / t, zeta)))

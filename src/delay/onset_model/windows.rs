@@ -16,7 +16,7 @@ pub(super) const MARGIN: usize = 2;
 const FINE: f64 = 0.01;
 
 /// Positions over a window that are looked at before the best one is searched finely.
-const COARSE: usize = 120;
+const COARSE: usize = 60;
 
 /// A step of the input, and what bounds the reaction to it; positions are indices of its trial.
 #[derive(Clone, Copy, Debug)]
