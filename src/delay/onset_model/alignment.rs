@@ -145,7 +145,15 @@ mod tests {
         let (mut at, mut before, mut steps) = (40.0, 0.0, Vec::new());
         for _ in 0..20 {
             let after = 4.0 * random();
-            steps.push(Step { at, before, after, latest: 2000.0, rests: false });
+            steps.push(Step {
+                at,
+                before,
+                after,
+                first: 0.0,
+                end: 2000.0,
+                latest: 2000.0,
+                rests: false,
+            });
             before = after;
             at += (60.0 + 60.0 * random()).floor();
         }

@@ -8,12 +8,13 @@
 use std::ops::Range;
 
 use super::follows::Follows;
-use super::search::{Candidate, Search};
+use super::search::{Candidate, FEW, Search};
 use super::shape::Shape;
 use super::uncertainty::{Residual, choice, sensor_noise};
 use super::windows::{Fit, MARGIN, Onset, Pass, Run, Step};
 use crate::delay::broken_line::p_value;
 use crate::delay::interval::FineDelay;
+use crate::delay::motion::StepMotion;
 use crate::delay::prepared::Prepared;
 use crate::delay::settings::{FirstLast, Settings};
 use crate::numerics::{median, student_quantile};
@@ -21,7 +22,7 @@ use crate::units::{SamplePeriod, ceil_to_index, floor_to_index};
 
 /// Samples from which the shape is found, and those from which its misfit is (chosen: more change
 /// nothing but the time).
-const ENOUGH_FOR_SHAPE: usize = 3_000;
+const ENOUGH_FOR_SHAPE: usize = 4_000;
 const ENOUGH_FOR_MISFIT: usize = 10_000;
 
 /// Samples of a hold that are looked at: of longer ones every second, third … sample.
@@ -116,7 +117,9 @@ impl OnsetModel {
             lengths.then(first(a).total_cmp(&first(b)))
         });
         let mut all = vec![Self::within(&runs, period, 1.0)?];
-        let parts = if all[0].0.misfit() < MISFIT { &[][..] } else { &PARTS };
+        // Of a bump test the whole is looked at.
+        let few = runs.iter().map(|run| run.steps.len()).sum::<usize>() <= FEW;
+        let parts = if few || all[0].0.misfit() < MISFIT { &[][..] } else { &PARTS };
         all.extend(parts.iter().filter_map(|part| Self::within(&runs, period, *part)));
         let as_well = |a: &Self, b: &Self| {
             let [a, b] = [a, b].map(|model| model.follows.r2.min(PLAIN));
@@ -140,7 +143,8 @@ impl OnsetModel {
         }
         // Each stroke gathers speed in a way of its own.
         let is_stroke = |trial: &Prepared<'_>| FirstLast::Auto.are_judged(trial.steps.len());
-        let strokes = trials.iter().all(is_stroke) && model.is_misfit();
+        let settles = !model.shape.family.may_be_curved();
+        let strokes = trials.iter().all(is_stroke) && model.is_misfit() && !settles;
         let is_shown = !(rests(trials) && (strokes || model.follows.is_unrelated()));
         is_shown.then_some(model)
     }
@@ -358,7 +362,7 @@ impl Search {
         let noise = sensor_noise(runs.iter().map(|run| run.output.as_slice()));
         let changes = runs.iter().flat_map(|run| &run.steps).map(|step| step.change().abs());
         let change = median(&changes.collect::<Vec<f64>>())?;
-        let mut search = Self { runs, reach: 0, noise, hold, change, is_local: part < 1.0 };
+        let mut search = Self { runs, reach: 0, noise, hold, change };
         search.reach = reach_of(hold, 1, part, search.has_few_steps());
         Some(search)
     }
@@ -424,10 +428,14 @@ fn run_of(trial: &Prepared<'_>, longest: Option<usize>) -> Run {
     let output = trial.measured(0..samples).into_owned();
     let motions = trial.motions.iter().map(|motion| motion.as_deref());
     let motions = motions.chain(std::iter::repeat(None));
+    // A bump test is its way to a level.
+    let bounds = |motion: Option<&StepMotion>| motion.copied().filter(|_| trial.steps.len() > FEW);
     let steps = trial.steps.iter().zip(motions).map(|(step, motion)| Step {
         at: step.sample as f64 - 1.0,
         before: step.before,
         after: step.after,
+        first: bounds(motion).map_or(0.0, |motion| motion.first as f64),
+        end: bounds(motion).map_or(samples as f64, |motion| motion.end as f64),
         latest: {
             let plainly = motion.map_or(samples, |motion| motion.latest);
             let asked = longest.map(|longest| (step.sample - 1).saturating_add(longest));

@@ -26,7 +26,7 @@ use crate::numerics::median;
 
 /// Steps up to which a record is taken as a whole: a disturbed window is then no small part of it,
 /// and a curved hold cannot be told from a response.
-const FEW: usize = 3;
+pub(super) const FEW: usize = 3;
 const FEW_FOR_WEIGHTS: usize = 5;
 
 /// Part by which the sizes of onsets may be explained worse than by another shape.
@@ -43,8 +43,6 @@ pub(super) struct Search {
     pub(super) hold: f64,
     /// Median size of the steps of the input.
     pub(super) change: f64,
-    /// Whether only a part of the reach is looked at.
-    pub(super) is_local: bool,
 }
 
 /// A shape with the onsets behind it.
@@ -73,10 +71,9 @@ impl Search {
         self.steps() <= FEW
     }
 
-    /// Whether a family is tried: where only the surroundings of onsets are looked at, nothing oscillates,
-    /// settles or arrives within them.
+    /// Whether a family is tried: of one step the time that a motion lasts is that of its record.
     fn may_be(&self, family: Family) -> bool {
-        !self.is_local || family == Family::Lag
+        family != Family::Slew || !self.has_few_steps()
     }
 
     /// What fits a shape in windows of this search.
@@ -256,10 +253,10 @@ impl Search {
     /// Refines the candidates that are not plainly worse than the best once they are near their least.
     fn narrowed(&self, all: Vec<Candidate>) -> Vec<Candidate> {
         /// Rounds behind which a candidate is near its least.
-        const NEAR: usize = 3;
-        /// A criterion that is larger by this for each sample is plainly worse: an error 1.6 times
+        const NEAR: usize = 5;
+        /// A criterion that is larger by this for each sample is plainly worse: an error 2.7 times
         /// as large.
-        const WORSE: f64 = 0.5;
+        const WORSE: f64 = 1.0;
         let near: Vec<Candidate> = all.into_iter().map(|it| self.refined(it, NEAR)).collect();
         let samples = |it: &Candidate| it.found().map(|onset| onset.samples() as f64).sum::<f64>();
         let most = near.iter().map(samples).fold(0.0, f64::max);

@@ -17,7 +17,7 @@
 
 use super::search::{Candidate, Search};
 use super::windows::Onset;
-use crate::numerics::median;
+use crate::numerics::{median, quantile};
 
 /// What the residuals of all windows of a joint say.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,8 +36,8 @@ pub(super) struct Residual {
 pub(super) fn sensor_noise<'a>(outputs: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
     /// Part of samples that repeat the one before, from which a sensor is coarse (chosen).
     const REPEATED: f64 = 0.05;
-    /// Changes of this part of the median one are rounding.
-    const ROUNDING: f64 = 1e-3;
+    /// Part of the changes that may be smaller than a quantum, by the noise of numbers.
+    const QUANTUM: f64 = 0.1;
     let differences = outputs.clone().flat_map(|y| y.windows(3));
     let second: Vec<f64> = differences.map(|y| (y[0] - 2.0 * y[1] + y[2]).abs()).collect();
     // Of normal noise half of the values are within 0.6745 standard deviations; y₀ − 2y₁ + y₂ has
@@ -49,11 +49,9 @@ pub(super) fn sensor_noise<'a>(outputs: impl Iterator<Item = &'a [f64]> + Clone)
     if repeated <= REPEATED * pairs().count() as f64 {
         return noise;
     }
-    // A quantum, the least change but for the rounding of numbers, has a uniform error.
+    // A quantum, which few changes are below, has a uniform error.
     let changes: Vec<f64> = pairs().map(|y| (y[1] - y[0]).abs()).filter(|d| *d > 0.0).collect();
-    let rounding = ROUNDING * median(&changes).unwrap_or(0.0);
-    let least = changes.into_iter().filter(|d| *d > rounding).fold(f64::INFINITY, f64::min);
-    if least.is_finite() { noise.max(least / 12.0_f64.sqrt()) } else { noise }
+    noise.max(quantile(&changes, QUANTUM).unwrap_or(0.0) / 12.0_f64.sqrt())
 }
 
 impl Residual {

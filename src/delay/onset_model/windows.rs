@@ -12,11 +12,14 @@ use crate::units::{ceil_to_index, floor_to_index};
 /// change of slope fits.
 pub(super) const MARGIN: usize = 2;
 
+/// Samples before a step that show what was under way.
+const SEEN: f64 = 10.0;
+
 /// How finely an onset is found, samples.
 const FINE: f64 = 0.01;
 
 /// Positions over a window that are looked at before the best one is searched finely.
-const COARSE: usize = 60;
+const COARSE: usize = 100;
 
 /// A step of the input, and what bounds the reaction to it; positions are indices of its trial.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +28,9 @@ pub(super) struct Step {
     pub(super) at: f64,
     pub(super) before: f64,
     pub(super) after: f64,
+    /// The first and behind the last sample that says something of it.
+    pub(super) first: f64,
+    pub(super) end: f64,
     /// The last position that its onset may have.
     pub(super) latest: f64,
     /// Whether the joint went on resting, as at a stop.
@@ -132,7 +138,7 @@ pub(super) fn window(
     /// what came before it, or, of an output that leads its input, to what comes behind it.
     const FEWEST: f64 = 10.0;
     let n = run.output.len();
-    let here = positions[index];
+    let (here, step) = (positions[index], &run.steps[index]);
     let start = match index.checked_sub(1) {
         Some(before) => positions[before],
         None => pass.edge.min(here - FEWEST),
@@ -142,8 +148,8 @@ pub(super) fn window(
         None => (n as f64 + pass.edge.min(0.0)).max(here + FEWEST),
     };
     let reach = pass.reach as f64;
-    let start = ceil_to_index(start.max(here - reach).max(0.0));
-    let end = floor_to_index(end.min(here + reach).max(0.0)).min(n);
+    let start = ceil_to_index(start.max(here - reach).max(step.first).max(0.0));
+    let end = floor_to_index(end.min(here + reach).min(step.end).max(0.0)).min(n);
     (start, end)
 }
 
@@ -170,7 +176,9 @@ impl<const N: usize> Dynamics<N> {
     ) -> Option<Window<N>> {
         let values = run.output.get(start..end)?;
         let ends = pass.shape.lasts(run.steps[index].change());
-        self.window(values, ends, pass.steady && index == 0)
+        // A level to which an output was on its way before is seen in the samples before its step.
+        let is_hidden = pass.shape.family.may_be_curved() || run.steps[index].at < SEEN;
+        self.window(values, ends, pass.steady && index == 0 && is_hidden)
     }
 
     /// The best onset between two positions of a window.
