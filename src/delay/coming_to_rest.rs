@@ -29,7 +29,7 @@ impl ComingToRest {
             return Self::NotShown;
         }
         // An onset model has responses that settle among others.
-        let is_modelled = settings.method.spec().models_response;
+        let is_modelled = settings.method.spec().models_response();
         let settles = (!is_modelled).then(|| settling(trials, settings)).flatten();
         if let Some(settling) = settles {
             return Self::Settles(Box::new(settling));

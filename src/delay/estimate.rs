@@ -65,7 +65,7 @@ impl Estimator {
         }
         let method = implementation(settings.method);
         let rest = ComingToRest::of(trials, &settings);
-        let is_joint = rest.settling().is_none() && settings.method.spec().scope == Scope::Joint;
+        let is_joint = rest.settling().is_none() && settings.method.spec().scope >= Scope::Joint;
         let shared = is_joint.then(|| {
             let mut prepared = Prepared::all(trials, &settings);
             for trial in &mut prepared {

@@ -60,6 +60,7 @@ pub enum CandidateLines {
 /// A method and its settings; the default is the paper's search with what real logs need
 /// beside it, see [`Settings::paper`].
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub struct Settings {
     /// How a delay is found.
     pub method: Method,

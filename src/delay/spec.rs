@@ -22,8 +22,6 @@ pub struct MethodSpec {
     pub cuts_segments: bool,
     /// Whether it gives each delay an interval.
     pub has_intervals: bool,
-    /// Whether it finds the response behind the delays, whatever it is: an output that settles, too.
-    pub models_response: bool,
     /// What its decision on a step depends on.
     pub scope: Scope,
     /// Its low-pass where no other is asked for; none where it looks at the output as it
@@ -32,6 +30,13 @@ pub struct MethodSpec {
     /// How sure a reaction must be where nothing else is asked for: see
     /// [`Settings::confidence`](super::Settings::confidence).
     pub confidence: Option<f64>,
+}
+
+impl MethodSpec {
+    /// Whether it finds the response behind the delays.
+    pub fn models_response(&self) -> bool {
+        self.scope == Scope::Response
+    }
 }
 
 /// What a method's decision on a step depends on.
@@ -43,6 +48,8 @@ pub enum Scope {
     Trial,
     /// All trials of a joint, which share a lag.
     Joint,
+    /// All trials of a joint, which share a response, whatever it is: an output that settles, too.
+    Response,
 }
 
 /// How a delay is found: one of [`Method::all`].

@@ -41,6 +41,7 @@ fn trial(plant: Plant, delay_s: f64, steps: usize, hold: f64, seed: u32) -> Tria
     Trial::new("1", 0.0, period, input, output).unwrap()
 }
 
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the record")]
 fn response(
     plant: Plant,
     delay_s: f64,
@@ -58,7 +59,7 @@ fn response(
         }
         let time = k as f64 * h - delay_s;
         let index = (time / PERIOD_S + 1e-9).floor().clamp(0.0, input.len() as f64 - 1.0);
-        let u = input[usize::try_from(index as i64).unwrap()];
+        let u = input[index as usize];
         let speed = 10.0 * u;
         match plant {
             Plant::Integrator => y += h * speed,

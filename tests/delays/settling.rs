@@ -92,7 +92,7 @@ fn judged(found: &TrialEstimate, truth: &[f64]) -> (Vec<f64>, usize) {
 #[test]
 fn every_method_finds_the_onsets_of_an_output_that_has_not_settled_when_the_next_step_comes() {
     let (trial, truth) = record(PLAIN, 1);
-    for method in Method::all().filter(|method| !method.spec().models_response) {
+    for method in Method::all().filter(|method| !method.spec().models_response()) {
         let found = estimate(&trial, &settings(method)).unwrap();
         let settling = found.settling.as_ref().unwrap();
         // Within four standard errors, and a part for what one record may be off.

@@ -60,7 +60,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         let warnings = EstimatedJoint { joint, estimate }.warnings();
         notes.extend(warnings.into_iter().map(|it| format!("joint `{name}`: {}", it.text)));
         // What is said of two lines is not said of an onset.
-        let by_lines = !estimate.settings.method.spec().models_response;
+        let by_lines = !estimate.settings.method.spec().models_response();
         if estimate.dead_time.is_none() && by_lines {
             notes.extend(unsmoothed(joint, estimate));
             notes.extend(cut_at_the_next_step(joint, estimate));

@@ -28,8 +28,7 @@ static SPEC: MethodSpec = MethodSpec {
     has_rows: true,
     cuts_segments: true,
     has_intervals: true,
-    models_response: true,
-    scope: Scope::Joint,
+    scope: Scope::Response,
     low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),
     confidence: Some(CONFIDENCE),
 };

@@ -24,7 +24,7 @@ pub(in crate::delay) trait DelayMethod: Sync {
     fn method(&self) -> Method;
 
     /// What the `trials` of a joint share. Only methods of
-    /// [`Scope::Joint`](crate::delay::Scope::Joint) are asked.
+    /// [`Scope::Joint`](crate::delay::Scope::Joint) or wider are asked.
     fn shared(&self, _trials: &[Prepared<'_>], _settings: &Settings) -> Shared {
         Shared::default()
     }

@@ -32,7 +32,6 @@ static SPEC: MethodSpec = MethodSpec {
     has_rows: false,
     cuts_segments: false,
     has_intervals: true,
-    models_response: false,
     scope: Scope::Joint,
     low_pass: None,
     confidence: Some(CONFIDENCE),

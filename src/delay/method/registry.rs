@@ -86,7 +86,7 @@ mod tests {
             let moved = close.decisions[0].candidates != apart.decisions[0].candidates;
             assert_eq!(moved, spec.has_rows, "{method}");
             let is_shared = close.lag.is_some() || close.onset_model.is_some();
-            assert_eq!(is_shared, spec.scope == Scope::Joint, "{method}");
+            assert_eq!(is_shared, spec.scope >= Scope::Joint, "{method}");
             assert_eq!(Settings::of(method).check(), Ok(()), "{method}");
         }
     }

@@ -31,7 +31,6 @@ static SPEC: MethodSpec = MethodSpec {
     has_rows: true,
     cuts_segments: true,
     has_intervals: false,
-    models_response: false,
     scope: Scope::Segment,
     low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),
     confidence: None,

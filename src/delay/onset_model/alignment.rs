@@ -18,20 +18,19 @@ pub(super) type Alignment = (f64, f64);
 /// Delays in a hold that are compared.
 const PER_HOLD: f64 = 60.0;
 
-/// The longest delay that is looked for, and the longest lead, in holds.
-const LONGEST: f64 = 6.0;
+/// The longest delay that is looked for usually, and the longest lead, in holds.
+pub(super) const LONGEST: f64 = 6.0;
 const LEAD: f64 = 1.0;
 
 /// Part of the windows that must be in the record at a delay.
 const MOST: f64 = 0.6;
 
-/// The delays at which `L` has its maxima, the largest first. Of a record with a `few` steps delays of
-/// a hold are the longest.
-pub(super) fn alignments(runs: &[Run], hold: f64, few: bool, pass: &Pass<'_>) -> Vec<Alignment> {
+/// The delays at which `L` has its maxima, the largest first; `longest` is the
+/// longest delay in holds.
+pub(super) fn alignments(runs: &[Run], hold: f64, longest: f64, pass: &Pass<'_>) -> Vec<Alignment> {
     let sums: Vec<Sums> = runs.iter().map(|run| Sums::of(&run.output)).collect();
     let by = (hold / PER_HOLD).floor().max(1.0);
-    let longest = if few { hold } else { LONGEST * hold };
-    let count = floor_to_index((longest + LEAD * hold) / by);
+    let count = floor_to_index((longest + LEAD) * hold / by);
     let first = -((LEAD * hold / by).floor() * by);
     let curve: Vec<(f64, f64, f64)> = (0..=count)
         .map(|k| {
@@ -134,6 +133,7 @@ impl Sums {
 
 #[cfg(test)]
 mod tests {
+    use super::super::dynamics::Before;
     use super::super::shape::Shape;
     use super::super::windows::Step;
     use super::*;
@@ -173,10 +173,10 @@ mod tests {
                 typical: 0.0,
                 edge: 0.0,
                 noise: 0.005,
-                steady: false,
+                before: Before::Any,
                 windows: None,
             };
-            let found = alignments(&[run(delay)], 60.0, false, &pass);
+            let found = alignments(&[run(delay)], 60.0, LONGEST, &pass);
             assert!((found[0].0 - delay).abs() <= 1.0, "{delay}: {found:?}");
         }
     }

@@ -54,6 +54,15 @@ pub(super) struct Dynamics<const N: usize> {
     steady: Steady<N>,
 }
 
+/// What was under way before a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Before {
+    /// Any motion.
+    Any,
+    /// A steady one.
+    Steady,
+}
+
 /// The states of steady motion: a column each, the others being 0.
 #[derive(Clone, Debug)]
 pub(super) struct Steady<const N: usize>(pub(super) Square<N>);
@@ -141,9 +150,9 @@ impl<const N: usize> Dynamics<N> {
         N + 2 + usize::from(self.nuisance.is_some())
     }
 
-    /// Sums over the `values` of a window, the motion of before being `steady` or any; `None` where
+    /// Sums over the `values` of a window, with what was under way `before`; `None` where
     /// they are too few, or more than was asked for at first.
-    pub(super) fn window(&self, values: &[f64], ends: f64, steady: bool) -> Option<Window<N>> {
+    pub(super) fn window(&self, values: &[f64], ends: f64, before: Before) -> Option<Window<N>> {
         let n = values.len();
         if n <= self.parameters() || n >= self.powers.len() {
             return None;
@@ -159,10 +168,9 @@ impl<const N: usize> Dynamics<N> {
             z[0] += y;
             behind[k] = z;
         }
-        let inverse = if steady {
-            self.steady.inverse(&self.information[n])?
-        } else {
-            inverse(&self.information[n])?
+        let inverse = match before {
+            Before::Steady => self.steady.inverse(&self.information[n])?,
+            Before::Any => inverse(&self.information[n])?,
         };
         let free = inverse * behind[0];
         let sse_without = (squares - behind[0].dot(&free)).max(0.0);
@@ -320,7 +328,7 @@ mod tests {
         let mut white = uniform(3);
         let y: Vec<f64> = (0..60).map(|k| response(f64::from(k) - 23.4) + white()).collect();
         let dynamics = lagged();
-        let window = dynamics.window(&y, f64::INFINITY, false).unwrap();
+        let window = dynamics.window(&y, f64::INFINITY, Before::Any).unwrap();
         for position in [9.0, 17.25, 23.4, 40.9] {
             let columns = DMatrix::from_fn(60, 4, |j, column| {
                 let t = j as f64;
@@ -347,7 +355,7 @@ mod tests {
             .collect();
         let a = Square::<2>::new(0.0, 1.0, 0.0, 0.0);
         let dynamics = Dynamics::new(a, State::<2>::new(0.0, 1.0), None, Steady::any(), 100);
-        let window = dynamics.window(&y, 15.0, false).unwrap();
+        let window = dynamics.window(&y, 15.0, Before::Any).unwrap();
         let found = dynamics.at(&window, 20.3);
         assert!(found.sse < 1e-6 && (found.size - 0.5).abs() < 1e-6, "{found:?}");
         assert!(dynamics.at(&window, 22.0).sse > 0.1);
@@ -355,7 +363,7 @@ mod tests {
 
     #[test]
     fn a_window_that_is_too_short_has_no_onset() {
-        assert!(lagged().window(&[0.0; 5], f64::INFINITY, false).is_none());
-        assert!(lagged().window(&[0.0; 200], f64::INFINITY, false).is_none());
+        assert!(lagged().window(&[0.0; 5], f64::INFINITY, Before::Any).is_none());
+        assert!(lagged().window(&[0.0; 200], f64::INFINITY, Before::Any).is_none());
     }
 }

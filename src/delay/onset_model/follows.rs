@@ -14,6 +14,9 @@
 use super::windows::{Onset, Run};
 use crate::numerics::fisher_tail;
 
+/// What a step of the input changes on each side of zero, and the size of its onset.
+type Row = ([f64; 2], f64);
+
 /// How far the sizes of onsets go with the steps of the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Follows {
@@ -31,14 +34,14 @@ impl Follows {
 
     pub(super) fn of(runs: &[Run], found: &[Vec<Option<Onset>>]) -> Self {
         let onsets = runs.iter().zip(found).flat_map(|(run, found)| run.steps.iter().zip(found));
-        let rows: Vec<([f64; 2], f64)> = onsets
+        let rows: Vec<Row> = onsets
             .filter(|(step, _)| !step.rests)
             .filter_map(|(step, found)| {
                 let part = |of: fn(f64) -> f64| of(step.after) - of(step.before);
                 Some(([part(|u| u.max(0.0)), part(|u| u.min(0.0))], found.as_ref()?.size))
             })
             .collect();
-        let sum = |of: &dyn Fn(&([f64; 2], f64)) -> f64| rows.iter().map(of).sum::<f64>();
+        let sum = |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).sum::<f64>();
         let total = sum(&|(_, a)| a * a);
         let [aa, ab, bb] = [(0, 0), (0, 1), (1, 1)].map(|(i, j)| sum(&|(x, _)| x[i] * x[j]));
         let [ay, by] = [0, 1].map(|i| sum(&|(x, a)| x[i] * a));

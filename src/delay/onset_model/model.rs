@@ -165,7 +165,7 @@ impl OnsetModel {
         let (shape, typical) = (chosen.shape.scaled(factor), chosen.typical);
         // At the rate of the record, what is left over and how the sizes go with the input.
         let mut search = Search::of(&beginning(runs, ENOUGH_FOR_MISFIT), 1, part)?;
-        search.reach = reach_of(hold, every, part, search.has_few_steps());
+        search.reach = reach_of(hold, every, part, search.longest_reach());
         let found = search.evaluate(shape, search.starting(typical), typical, PASSES);
         let residual = Residual::of(&search, &found);
         let follows = Follows::of(&search.runs, &found.onsets.found);
@@ -355,23 +355,27 @@ fn misfit(deviation: f64, noise: f64) -> f64 {
 }
 
 impl Search {
+    /// Samples to each side of an onset that are looked at at most.
+    fn longest_reach(&self) -> f64 {
+        if self.has_few_steps() { REACH_OF_FEW } else { REACHES.1 }
+    }
+
     /// Every so many samples of runs, about a part of the reach.
     fn of(runs: &[Run], every: usize, part: f64) -> Option<Self> {
         let runs: Vec<Run> = runs.iter().map(|run| thinned(run, every)).collect();
         let hold = median(&runs.iter().flat_map(holds).collect::<Vec<f64>>())?;
-        let noise = sensor_noise(runs.iter().map(|run| run.output.as_slice()));
+        let noise = sensor_noise(&runs.iter().map(|run| run.output.as_slice()));
         let changes = runs.iter().flat_map(|run| &run.steps).map(|step| step.change().abs());
         let change = median(&changes.collect::<Vec<f64>>())?;
         let mut search = Self { runs, reach: 0, noise, hold, change };
-        search.reach = reach_of(hold, 1, part, search.has_few_steps());
+        search.reach = reach_of(hold, 1, part, search.longest_reach());
         Some(search)
     }
 }
 
 /// Samples to each side of an onset that are looked at, where every so many of a hold are.
-fn reach_of(hold: f64, every: usize, part: f64, few: bool) -> usize {
-    let (least, most) = REACHES;
-    let most = if few { REACH_OF_FEW } else { most };
+fn reach_of(hold: f64, every: usize, part: f64, most: f64) -> usize {
+    let (least, _) = REACHES;
     let reach = (REACH * hold / every as f64).clamp(least, most) * part;
     ceil_to_index(reach.max(LEAST_REACH)) * every
 }

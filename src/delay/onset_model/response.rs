@@ -13,30 +13,29 @@ pub(super) fn fit_of(shape: &Shape, unit: f64, longest: usize) -> Box<dyn Fit> {
     let [t, zeta] = shape.logs.map(f64::exp);
     match (shape.family, shape.curved) {
         (Family::Bend, false) | (Family::Slew, _) => {
-            boxed(Square::<2>::new(0.0, h, 0.0, 0.0), 1..1, false, longest)
+            boxed(Square::<2>::new(0.0, h, 0.0, 0.0), 1..1, longest)
         }
         (Family::Settling, _) => {
-            boxed(Square::<2>::new(-1.0 / t, 1.0 / t, 0.0, 0.0), 0..1, false, longest)
+            boxed(Square::<2>::new(-1.0 / t, 1.0 / t, 0.0, 0.0), 0..1, longest)
         }
-        (Family::Bend, true) => boxed(chain::<3>(h, &[], true), 1..1, true, longest),
-        (Family::Lag, false) => boxed(chain::<3>(h, &[t], false), 1..2, false, longest),
-        (Family::Lag, true) => boxed(chain::<4>(h, &[t], true), 1..2, true, longest),
-        (Family::Pair, false) => boxed(pair::<4>(h, t, zeta, false), 1..3, false, longest),
-        (Family::Pair, true) => boxed(pair::<5>(h, t, zeta, true), 1..3, true, longest),
+        (Family::Bend, true) => boxed(chain::<3>(h, &[]), 1..1, longest),
+        (Family::Lag, false) => boxed(chain::<3>(h, &[t]), 1..2, longest),
+        (Family::Lag, true) => boxed(chain::<4>(h, &[t]), 1..2, longest),
+        (Family::Pair, false) => boxed(pair::<4>(h, t, zeta), 1..3, longest),
+        (Family::Pair, true) => boxed(pair::<5>(h, t, zeta), 1..3, longest),
     }
 }
 
-/// Dynamics whose speed `s` is the state behind those that follow it; where holds are curved, its rate
-/// is the next.
+/// Dynamics whose speed `s` is the state behind those that follow it; where there is a state more, holds
+/// are curved, and it is the rate of the speed.
 fn boxed<const N: usize>(
     generator: Square<N>,
     followers: Range<usize>,
-    curved: bool,
     longest: usize,
 ) -> Box<dyn Fit> {
     let speed = followers.end;
     let unit = |index: usize| State::<N>::from_fn(|i, _| f64::from(u8::from(i == index)));
-    let nuisance = curved.then(|| unit(speed + 1));
+    let nuisance = (N > speed + 1).then(|| unit(speed + 1));
     // In steady motion the first of those that follow is what it follows, and the rates of the others are
     // zero.
     let mut steady = Square::<N>::identity();
@@ -50,24 +49,24 @@ fn boxed<const N: usize>(
 }
 
 /// An integrator behind lags of one pole each.
-fn chain<const N: usize>(h: f64, lags: &[f64], curved: bool) -> Square<N> {
+fn chain<const N: usize>(h: f64, lags: &[f64]) -> Square<N> {
     let mut a = Square::<N>::zeros();
     a[(0, 1)] = h;
     for (lag, row) in lags.iter().zip(1..) {
         (a[(row, row)], a[(row, row + 1)]) = (-lag.recip(), lag.recip());
     }
-    if curved {
+    if N > lags.len() + 2 {
         a[(N - 2, N - 1)] = h;
     }
     a
 }
 
 /// An integrator behind a pair of poles.
-fn pair<const N: usize>(h: f64, omega: f64, zeta: f64, curved: bool) -> Square<N> {
+fn pair<const N: usize>(h: f64, omega: f64, zeta: f64) -> Square<N> {
     let mut a = Square::<N>::zeros();
     (a[(0, 1)], a[(1, 2)]) = (h, omega);
     (a[(2, 1)], a[(2, 2)], a[(2, 3)]) = (-omega, -2.0 * zeta * omega, omega);
-    if curved {
+    if N > 4 {
         a[(3, 4)] = h;
     }
     a

@@ -17,7 +17,8 @@
 //! problems whose variables separate", SIAM Journal on Numerical Analysis 10 (1973); G. Schwarz,
 //! "Estimating the dimension of a model", Annals of Statistics 6 (1978).
 
-use super::alignment::alignments;
+use super::alignment::{LONGEST, alignments};
+use super::dynamics::Before;
 use super::follows::Follows;
 use super::response::fit_of;
 use super::shape::{Family, Shape};
@@ -91,7 +92,7 @@ impl Search {
             typical,
             edge,
             noise: self.noise,
-            steady: self.has_few_steps(),
+            before: if self.has_few_steps() { Before::Steady } else { Before::Any },
             windows: None,
         }
     }
@@ -282,7 +283,8 @@ impl Search {
         const WELL: f64 = 0.9;
         const MORE: f64 = 0.05;
         let few = self.has_few_steps();
-        let tops = alignments(&self.runs, self.hold, few, &self.pass(Shape::BEND, 0.0));
+        let longest = if few { 1.0 } else { LONGEST };
+        let tops = alignments(&self.runs, self.hold, longest, &self.pass(Shape::BEND, 0.0));
         let bend = |delay: f64| self.evaluate(Shape::BEND, self.starting(delay), delay, 2);
         let Some((delay, most)) = tops.first().copied() else { return bend(0.0) };
         let mut best = bend(delay);

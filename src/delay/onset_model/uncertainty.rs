@@ -33,7 +33,7 @@ pub(super) struct Residual {
 
 /// Standard deviation of a sensor's noise, from differences of second order of what it measured; of
 /// a coarse one that of its quantum.
-pub(super) fn sensor_noise<'a>(outputs: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
+pub(super) fn sensor_noise<'a>(outputs: &(impl Iterator<Item = &'a [f64]> + Clone)) -> f64 {
     /// Part of samples that repeat the one before, from which a sensor is coarse (chosen).
     const REPEATED: f64 = 0.05;
     /// Part of the changes that may be smaller than a quantum, by the noise of numbers.

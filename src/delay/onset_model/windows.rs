@@ -4,7 +4,7 @@
 //! onset, its own; each pass finds every onset between its neighbours, which the next pass takes
 //! for the ends of the windows.
 
-use super::dynamics::{Dynamics, Jump, Window};
+use super::dynamics::{Before, Dynamics, Jump, Window};
 use super::shape::Shape;
 use crate::units::{ceil_to_index, floor_to_index};
 
@@ -96,8 +96,8 @@ pub(super) struct Pass<'a> {
     /// The delay of what begins before a record and ends behind it.
     pub(super) edge: f64,
     pub(super) noise: f64,
-    /// Whether a record begins in steady motion: its first window holds no motion of before.
-    pub(super) steady: bool,
+    /// What was under way before a record.
+    pub(super) before: Before,
     /// The windows, where they are to stay.
     pub(super) windows: Option<&'a [Vec<(usize, usize)>]>,
 }
@@ -178,7 +178,8 @@ impl<const N: usize> Dynamics<N> {
         let ends = pass.shape.lasts(run.steps[index].change());
         // A level to which an output was on its way before is seen in the samples before its step.
         let is_hidden = pass.shape.family.may_be_curved() || run.steps[index].at < SEEN;
-        self.window(values, ends, pass.steady && index == 0 && is_hidden)
+        let is_steady = pass.before == Before::Steady && index == 0 && is_hidden;
+        self.window(values, ends, if is_steady { Before::Steady } else { Before::Any })
     }
 
     /// The best onset between two positions of a window.

@@ -8,6 +8,7 @@ use crate::cli::args::{AgainstArgs, AlgorithmArgs, DataArgs, ReviewArgs, RunArgs
 use crate::cli::each_log::FolderArgs;
 use crate::cli::output::Detail;
 use crate::cli::viewer::StreamArgs;
+use crate::delay::{Method, Settings};
 
 /// Estimate the delay of every input step of every joint
 ///
@@ -32,6 +33,16 @@ pub(crate) struct Args {
 }
 
 impl Args {
+    /// The settings of each method that was asked for. A log that grows is decided by Algorithm 1, step by
+    /// step.
+    pub(super) fn runs(&self) -> Vec<Settings> {
+        if self.follow.is_on {
+            self.algorithm.runs_by(Method::TWO_LINE)
+        } else {
+            self.algorithm.runs()
+        }
+    }
+
     /// The files that are read.
     pub(super) fn inputs(&self) -> Vec<PathBuf> {
         let further = self.review.review.iter().chain(&self.against.against);

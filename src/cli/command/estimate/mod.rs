@@ -9,7 +9,7 @@ use crate::cli::each_log::Each;
 use crate::cli::exit::Completion;
 use crate::cli::failure::nothing_usable;
 use crate::cli::run::{Session, compared, estimated, failures, left_over, notes, others};
-use crate::delay::{CandidateLines, Method, Settings};
+use crate::delay::{CandidateLines, Settings};
 use crate::report::{
     EstimateJson, against_table, against_text, delay_levels_text, estimate_table, steps_table,
 };
@@ -27,12 +27,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let is_drawn = args.output.is_recorded();
     let lines = if is_drawn { CandidateLines::All } else { CandidateLines::Best };
     let with_lines = |settings| Settings { lines, ..settings };
-    let runs = if args.follow.is_on {
-        args.algorithm.runs_by(Method::TWO_LINE)
-    } else {
-        args.algorithm.runs()
-    };
-    let settings: Vec<_> = runs.into_iter().map(with_lines).collect();
+    let settings: Vec<_> = args.runs().into_iter().map(with_lines).collect();
     let csv_text = args.folder.csv_text();
     let inputs = args.inputs();
     let files = Files::check(&args.output, &inputs, csv_text)?;
