@@ -63,7 +63,7 @@ impl FolderReport {
         let paper = |log: &LogResult| {
             let runs = std::iter::once(&log.document).chain(array(&log.document, "also"));
             runs.into_iter()
-                .all(|run| run.pointer("/settings/method") == Some(&json!(Method::default().id())))
+                .all(|run| run.pointer("/settings/method") == Some(&json!(Method::TWO_LINE.id())))
         };
         let paper = self.logs.iter().all(paper);
         let methods = if paper { Methods::PaperOnly } else { Methods::Others };

@@ -102,7 +102,7 @@ fn each_shape_is_found_with_its_delay() {
         (Plant::Integrator, "bend", 0.123),
         (Plant::Lag(0.12), "bend_lag", 0.087),
         (Plant::Oscillation(0.4, 0.3), "oscillation", 0.151),
-        (Plant::Oscillation(0.5, 1.6), "bend_lag2", 0.064),
+        (Plant::Oscillation(0.5, 1.1), "bend_lag2", 0.064),
         (Plant::FirstOrder(0.3), "settling", 0.212),
         (Plant::Servo(6.0), "slew", 0.135),
     ];

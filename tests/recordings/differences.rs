@@ -7,7 +7,8 @@ use serde_json::Value;
 /// A desk with the result of an earlier run, by other settings, in JSON and as a table.
 fn desk_with_earlier() -> Desk {
     let desk = Desk::with(vec![joint("boom"), joint("stick")]);
-    let earlier = desk.json("estimate log.csv --alpha 4 --passband 1 --decisions table.csv", 0);
+    let earlier = desk
+        .json("estimate log.csv --method two-line --alpha 4 --passband 1 --decisions table.csv", 0);
     desk.write("earlier.json", &earlier.to_string());
     desk
 }
@@ -19,7 +20,7 @@ fn decisions(run: &Value, joint: usize) -> Vec<Value> {
 #[test]
 fn differences_are_those_of_both_results_the_largest_first() {
     let desk = desk_with_earlier();
-    let now = desk.json("estimate log.csv --against earlier.json", 0);
+    let now = desk.json("estimate log.csv --method two-line --against earlier.json", 0);
     let earlier: Value = serde_json::from_str(&desk.read("earlier.json")).unwrap();
     let against = &now["against"][0];
     assert_eq!(against["name"], "earlier");
@@ -46,9 +47,9 @@ fn differences_are_those_of_both_results_the_largest_first() {
         }
     }
     // The table of decisions says the same.
-    let by_table = desk.json("estimate log.csv --against table.csv", 0);
+    let by_table = desk.json("estimate log.csv --method two-line --against table.csv", 0);
     assert_eq!(by_table["against"][0]["joints"], against["joints"]);
-    let text = desk.run("estimate log.csv --against earlier.json");
+    let text = desk.run("estimate log.csv --method two-line --against earlier.json");
     let text = String::from_utf8(text.stdout).unwrap();
     assert!(text.contains("against earlier (two-line, α 4 samples"), "{text}");
     assert!(text.contains("accepted by both"), "{text}");
@@ -57,9 +58,10 @@ fn differences_are_those_of_both_results_the_largest_first() {
 #[test]
 fn the_same_result_differs_nowhere() {
     let desk = Desk::with(vec![joint("boom")]);
-    let once = desk.json("estimate log.csv", 0);
+    let once = desk.json("estimate log.csv --method two-line", 0);
     desk.write("once.json", &once.to_string());
-    let again = desk.json("estimate log.csv --against once.json --against log.csv", 0);
+    let again =
+        desk.json("estimate log.csv --method two-line --against once.json --against log.csv", 0);
     for against in again["against"].as_array().unwrap() {
         let found = &against["joints"][0];
         assert_eq!(found["differences"], Value::Array(Vec::new()));
@@ -71,33 +73,33 @@ fn the_same_result_differs_nowhere() {
 #[test]
 fn steps_without_a_counterpart_are_said_and_a_log_without_any_is_refused() {
     let desk = Desk::with(vec![joint("boom")]);
-    let once = desk.json("estimate log.csv --decisions all.csv", 0);
+    let once = desk.json("estimate log.csv --method two-line --decisions all.csv", 0);
     let table = desk.read("all.csv");
     let lines: Vec<&str> = table.lines().collect();
     desk.write("fewer.csv", &(lines[..lines.len() - 2].join("\n") + "\n"));
-    let output = desk.run("estimate log.csv --against fewer.csv");
+    let output = desk.run("estimate log.csv --method two-line --against fewer.csv");
     let steps = decisions(&once, 0).len();
     let (text, said) = (String::from_utf8(output.stdout).unwrap(), output.stderr);
     let said = String::from_utf8(said).unwrap();
     let missing = format!("2 steps without a counterpart there: step {}; step {steps}", steps - 1);
     assert!(text.contains(&missing) && said.contains(&missing), "{text}{said}");
     desk.write("other.csv", &table.replace("boom,", "bucket,"));
-    let refused = desk.refusal("estimate log.csv --against other.csv");
+    let refused = desk.refusal("estimate log.csv --method two-line --against other.csv");
     assert!(refused.contains("none of its steps is in this log"), "{refused}");
     assert!(refused.contains("joints here: boom; there: bucket"), "{refused}");
     desk.write("sweep.json", "{\"schema\": \"tauscope/sweep/1\"}");
-    let refused = desk.refusal("estimate log.csv --against sweep.json");
+    let refused = desk.refusal("estimate log.csv --method two-line --against sweep.json");
     assert!(
         refused.contains("schema `tauscope/estimate/1`; found `tauscope/sweep/1`"),
         "{refused}"
     );
     desk.write("notes.txt", "nothing of the kind\n");
-    let refused = desk.refusal("estimate log.csv --against notes.txt");
+    let refused = desk.refusal("estimate log.csv --method two-line --against notes.txt");
     assert!(
         refused.contains("`--against` takes the JSON of `estimate --format json`"),
         "{refused}"
     );
-    let refused = desk.refusal("estimate log.csv --against missing.json");
+    let refused = desk.refusal("estimate log.csv --method two-line --against missing.json");
     assert!(refused.contains("missing.json: cannot be read"), "{refused}");
 }
 
@@ -106,8 +108,9 @@ fn another_log_is_estimated_with_the_same_settings() {
     let desk = Desk::with(vec![joint("boom")]);
     let other = Desk::with(vec![banded("boom")]);
     desk.write("banded.csv", &other.read("log.csv"));
-    let found = desk.json("estimate log.csv --passband none --against banded.csv", 0);
-    let alone = other.json("estimate log.csv --passband none", 0);
+    let found =
+        desk.json("estimate log.csv --method two-line --passband none --against banded.csv", 0);
+    let alone = other.json("estimate log.csv --method two-line --passband none", 0);
     let against = &found["against"][0]["joints"][0];
     let there = decisions(&alone, 0);
     for one in against["differences"].as_array().unwrap() {
@@ -175,8 +178,12 @@ mod recorded {
     #[test]
     fn the_timeline_of_differences_goes_through_them_in_their_order() {
         let desk = desk_with_earlier();
-        let json = desk.json("estimate log.csv --against earlier.json", 0);
-        let back = recording(&desk, "estimate log.csv --against earlier.json", "against.rrd");
+        let json = desk.json("estimate log.csv --method two-line --against earlier.json", 0);
+        let back = recording(
+            &desk,
+            "estimate log.csv --method two-line --against earlier.json",
+            "against.rrd",
+        );
         let differences = json["against"][0]["joints"][0]["differences"].as_array().unwrap();
         let lines = back.texts("/boom/difference/log", "TextLog:text");
         assert_eq!(lines.len(), differences.len());
@@ -200,7 +207,7 @@ mod recorded {
         for ((_, all), (_, shown)) in all.iter().zip(&shown) {
             assert!((f64::from(*shown) - all).abs() <= 1e-4 * all.abs());
         }
-        let alone = recording(&desk, "estimate log.csv", "alone.rrd");
+        let alone = recording(&desk, "estimate log.csv --method two-line", "alone.rrd");
         assert!(alone.ticks("/boom/drawing/measured", "difference").is_empty());
     }
 
@@ -237,7 +244,7 @@ mod recorded {
     fn many_joints_are_in_files_of_a_few_with_one_that_leads_to_them() {
         let desk = many();
         let bytes = |name: &str| std::fs::read(desk.folder.path().join(name)).unwrap();
-        let index = recording(&desk, "estimate log.csv --threads 1", "x.rrd");
+        let index = recording(&desk, "estimate log.csv --method two-line --threads 1", "x.rrd");
         let names = ["x.rrd", "x_1.rrd", "x_2.rrd", "x_3.rrd"];
         let first = names.map(bytes);
         assert!(!desk.has("x_4.rrd"));
@@ -250,7 +257,7 @@ mod recorded {
             let back = ReadBack::of(&bytes(&format!("x_{}.rrd", (number - 1) / 8 + 1)));
             assert!(back.chunks.contains_key(&format!("/joint_{number:02}/output/raw")));
         }
-        let json = desk.json("estimate log.csv --review-sheet sheet.csv", 0);
+        let json = desk.json("estimate log.csv --method two-line --review-sheet sheet.csv", 0);
         assert_eq!(json["joints"].as_array().unwrap().len(), 21);
         let sheet = desk.read("sheet.csv");
         let mut reader = csv::Reader::from_reader(sheet.as_bytes());
@@ -264,7 +271,11 @@ mod recorded {
             );
         }
         // The same bytes by any number of threads.
-        assert!(desk.run("estimate log.csv --threads 3 -o x.rrd --quiet").status.success());
+        assert!(
+            desk.run("estimate log.csv --method two-line --threads 3 -o x.rrd --quiet")
+                .status
+                .success()
+        );
         assert!(names.map(bytes) == first);
     }
 
@@ -276,7 +287,7 @@ mod recorded {
         assert!(refused.contains("x_2.rrd: this is a file that is read"), "{refused}");
         assert!(!desk.has("x_1.rrd") && !desk.has("x.rrd"));
         desk.write("y_2.rrd", "notes");
-        let refused = desk.refusal("estimate log.csv -o y.rrd --quiet");
+        let refused = desk.refusal("estimate log.csv --method two-line -o y.rrd --quiet");
         assert!(refused.contains("y_2.rrd: is there already"), "{refused}");
         assert_eq!(desk.read("y_2.rrd"), "notes");
     }

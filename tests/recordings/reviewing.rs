@@ -117,7 +117,7 @@ fn a_step_that_changed_is_said_and_a_review_that_is_none_names_its_place() {
     estimated(&desk, "--review-sheet sheet.csv");
     let sheet = desk.read("sheet.csv").replace(",,,,,", ",accepted,,,Ann,");
     desk.write("review.csv", &sheet);
-    let output = desk.run("estimate log.csv --review review.csv --beta 2");
+    let output = desk.run("estimate log.csv --method two-line --review review.csv --beta 2");
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("the review still applies"), "{said}");
     let moved = "joint,trial,i,verdict,delay_s,note,reviewer,p\nboom,1,2,rejected,,,Ann,1\n";

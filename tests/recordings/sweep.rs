@@ -34,7 +34,8 @@ fn grid() -> Grid {
         Base { settings, keeps_low_pass }
     };
     let slow = Some(LowPass { cutoff_hz: 5.0, order: 4 });
-    Grid::new(Method::all().map(base).collect(), vec![slow, None], vec![10], vec![1, 5])
+    let methods = Method::all().filter(|method| !method.spec().models_response());
+    Grid::new(methods.map(base).collect(), vec![slow, None], vec![10], vec![1, 5])
 }
 
 impl Swept {

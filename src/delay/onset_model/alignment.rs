@@ -22,10 +22,14 @@ const PER_HOLD: f64 = 60.0;
 pub(super) const LONGEST: f64 = 6.0;
 const LEAD: f64 = 1.0;
 
+/// Part of the largest gain from which another shows as well (chosen).
+const ALIKE: f64 = 0.97;
+
 /// Part of the windows that must be in the record at a delay.
 const MOST: f64 = 0.6;
 
-/// The delays at which `L` has its maxima, the largest first; `longest` is the
+/// The delays at which `L` has its maxima, the largest first, of those alike the
+/// nearest; `longest` is the
 /// longest delay in holds.
 pub(super) fn alignments(runs: &[Run], hold: f64, longest: f64, pass: &Pass<'_>) -> Vec<Alignment> {
     let sums: Vec<Sums> = runs.iter().map(|run| Sums::of(&run.output)).collect();
@@ -51,7 +55,15 @@ pub(super) fn alignments(runs: &[Run], hold: f64, longest: f64, pass: &Pass<'_>)
     };
     let mut tops: Vec<Alignment> =
         (0..curve.len()).filter(is_top).map(|index| curve[index]).collect();
-    tops.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let most = tops.iter().map(|(_, gain)| *gain).fold(f64::NEG_INFINITY, f64::max);
+    // Where holds are equally long a delay shows as well a few holds later: the nearest counts.
+    let rank = |(delay, gain): &Alignment| -> (f64, f64) {
+        if *gain >= ALIKE * most { (0.0, delay.abs()) } else { (1.0, -gain) }
+    };
+    tops.sort_by(|a, b| {
+        let (a, b) = (rank(a), rank(b));
+        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
     tops
 }
 

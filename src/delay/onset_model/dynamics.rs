@@ -31,7 +31,7 @@
 //! estimation of jumps in linear systems", IEEE Transactions on Automatic Control 21 (1976); here
 //! without process noise, so that the likelihood is a least-squares problem.
 
-use nalgebra::{Cholesky, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 
 use crate::units::ceil_to_index;
 
@@ -302,7 +302,8 @@ fn inverse<const N: usize>(information: &Square<N>) -> Option<Square<N>> {
     const PRIOR: f64 = 1e-11;
     let scale = information.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 1.0 });
     let scaled = |m: &Square<N>| Square::<N>::from_fn(|i, j| m[(i, j)] * scale[i] * scale[j]);
-    let inverse = Cholesky::new(scaled(information) + Square::<N>::identity() * PRIOR)?.inverse();
+    let held = scaled(information) + Square::<N>::identity() * PRIOR;
+    let inverse = held.cholesky()?.inverse();
     Some(scaled(&inverse))
 }
 

@@ -45,6 +45,9 @@ const MISFIT: f64 = 1.15;
 const PLAIN: f64 = 0.7;
 const WORSE: f64 = 0.03;
 
+/// Rounding of sums over windows, in parts of an output's range.
+const ROUNDING: f64 = 1e-7;
+
 /// Passes over the windows of a record once its shape is known.
 const PASSES: usize = 3;
 
@@ -111,10 +114,9 @@ impl OnsetModel {
         let runs = alike.map(|trial| run_of(trial, longest));
         let mut runs: Vec<Run> = runs.filter(|run| !run.steps.is_empty()).collect();
         // What is found hangs on no order of the trials.
-        let first = |run: &Run| run.output.first().copied().unwrap_or(0.0);
         runs.sort_by(|a, b| {
-            let lengths = b.output.len().cmp(&a.output.len());
-            lengths.then(first(a).total_cmp(&first(b)))
+            let bits = |run: &Run| run.output.iter().map(|y| y.to_bits()).collect::<Vec<u64>>();
+            b.output.len().cmp(&a.output.len()).then_with(|| bits(a).cmp(&bits(b)))
         });
         let mut all = vec![Self::within(&runs, period, 1.0)?];
         // Of a bump test the whole is looked at.
@@ -364,7 +366,11 @@ impl Search {
     fn of(runs: &[Run], every: usize, part: f64) -> Option<Self> {
         let runs: Vec<Run> = runs.iter().map(|run| thinned(run, every)).collect();
         let hold = median(&runs.iter().flat_map(holds).collect::<Vec<f64>>())?;
-        let noise = sensor_noise(&runs.iter().map(|run| run.output.as_slice()));
+        let outputs = runs.iter().map(|run| run.output.as_slice());
+        let values = || outputs.clone().flatten().copied();
+        let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
+        // An output that was computed has no noise but its rounding.
+        let noise = sensor_noise(&outputs).max(ROUNDING * range);
         let changes = runs.iter().flat_map(|run| &run.steps).map(|step| step.change().abs());
         let change = median(&changes.collect::<Vec<f64>>())?;
         let mut search = Self { runs, reach: 0, noise, hold, change };
