@@ -105,8 +105,8 @@ fn the_order_of_the_trials_and_what_is_held_back_change_no_name() {
     trials.swap(0, 4);
     let reordered = named(&trials, 2, "");
     assert_eq!(AT_50_HZ.0, reordered.0);
-    // The same trials are held back: the same fit but for rounding.
-    assert!((AT_50_HZ.1 - reordered.1).abs() < 1e-5, "{} s, {} s", AT_50_HZ.1, reordered.1);
+    // The same trials are held back: the same fit but for where its search ends.
+    assert!((AT_50_HZ.1 - reordered.1).abs() < 1e-4, "{} s, {} s", AT_50_HZ.1, reordered.1);
 }
 
 /// Friction with the one viscous part or the other would follow it as well: without inertia the two are

@@ -74,6 +74,8 @@ pub struct OnsetModel {
     /// behind the next step.
     early: f64,
     late: f64,
+    /// Whether the output comes to rest where its input says, or at stops.
+    comes_to_rest: bool,
 }
 
 /// Why onsets are no delays of this output behind this input.
@@ -147,7 +149,9 @@ impl OnsetModel {
         let is_stroke = |trial: &Prepared<'_>| FirstLast::Auto.are_judged(trial.steps.len());
         let settles = !model.shape.family.may_be_curved();
         let strokes = trials.iter().all(is_stroke) && model.is_misfit() && !settles;
-        let is_shown = !(rests(trials) && (strokes || model.follows.is_unrelated()));
+        // An output that comes to rest where its input says, or at stops, follows it, whatever its speed.
+        model.comes_to_rest = trials.iter().any(|trial| trial.is_tested);
+        let is_shown = !(rests(trials) && (strokes || model.is_unrelated()));
         is_shown.then_some(model)
     }
 
@@ -187,6 +191,7 @@ impl OnsetModel {
             width: f64::INFINITY,
             early: 0.0,
             late: 0.0,
+            comes_to_rest: false,
         };
         model.measure(&search, &found);
         let clear = |onset: &Option<Onset>| onset.filter(|it| it.is_clear).map(|it| it.position);
@@ -224,7 +229,7 @@ impl OnsetModel {
         /// The part of onsets that must be out of place (chosen: most).
         const MOST: f64 = 0.5;
         let typical_s = self.typical * self.period.seconds();
-        if self.follows.is_unrelated() {
+        if self.is_unrelated() {
             Some(Obstacle::Unrelated)
         } else if self.early > MOST {
             Some(Obstacle::Leads(-typical_s))
@@ -307,6 +312,10 @@ impl OnsetModel {
             p_value,
             rests: !self.shape.family.may_be_curved(),
         }
+    }
+
+    fn is_unrelated(&self) -> bool {
+        !self.comes_to_rest && self.follows.is_unrelated()
     }
 
     /// Its name: `bend`, `bend_lag`, `bend_lag2`, `oscillation`, `settling` or `slew`.
