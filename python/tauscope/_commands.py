@@ -111,8 +111,8 @@ def estimate(data: Any, *, progress: Progress = None, **settings: Any) -> _resul
 
     >>> import numpy as np
     >>> u = np.tile(np.repeat([0.0, 1.0, -1.0], 60), 4)
-    >>> y = np.concatenate([np.zeros(12), np.cumsum(0.1 * u)[:-12]])
-    >>> found = estimate((u, y), sample_period=0.01, passband="none", beta=2)
+    >>> y = np.concatenate([np.zeros(13), np.cumsum(0.1 * u)[:-13]])
+    >>> found = estimate((u, y), sample_period=0.01)
     >>> round(float(found.delays["delta_s"].median()), 3)
     0.12
     """
