@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use super::hinge;
 use super::interface::{DelayMethod, Shared};
-use super::lag_aware::from_rest;
 use super::step_context::StepContext;
 use super::two_line;
 use crate::delay::condition::Condition;
@@ -68,8 +67,8 @@ impl DelayMethod for Auto {
         let by_lines = two_line::decide_all(trial, &untested).into_iter().enumerate();
         let context = |index| StepContext { trial, index, settings };
         let Some(model) = shared.onset_model.as_deref() else {
-            // Strokes, whose steps share no response.
-            let each = hinge::decide_all(trial, settings, from_rest);
+            // Strokes, whose steps share no response: broken lines, with intervals that hold the first motion.
+            let each = hinge::decide_by_broken_lines(trial, settings);
             let pairs = by_lines.zip(each);
             return pairs
                 .map(|((index, lines), own)| with_own_onset(&context(index), lines, &own))

@@ -163,7 +163,7 @@ fn is_shown<'a>(onsets: impl Iterator<Item = &'a Onset>) -> bool {
 }
 
 /// The decision on a step at which the joint rested and then departed.
-pub(super) fn from_rest(context: &StepContext<'_>) -> Option<Decision> {
+fn from_rest(context: &StepContext<'_>) -> Option<Decision> {
     let StepContext { settings, .. } = *context;
     let output = context.output();
     let (found, start) = context.gradual()?;
