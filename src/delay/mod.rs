@@ -1,10 +1,13 @@
 //! The delay of every input step of one joint.
 //!
+//! By default it is the onset of the response that the joint's record supports, the same for all of its
+//! steps ([`OnsetModel`]).
+//!
 //! Algorithm 1 of Albrecht and Taylor: around each input step the output is cut into a
 //! segment, every pair of regression lines through it is a candidate, the pair with the
 //! least squared error wins, and [conditions](Condition) decide whether its breakpoint counts:
 //! the paper's six, one for segments without a candidate, and two for joints at rest.
-//! Two more [methods](Method) find it between samples, with an interval.
+//! Two more [methods](Method) find it between samples by lines, with an interval.
 //!
 //! - [`steps`](InputStep): where the input changes
 //! - [`Neutral`], [`Transition`]: the level at which a joint rests, and what kind of step
@@ -15,6 +18,7 @@
 //! - [`Check`]: the conditions, with the numbers compared
 //! - [`estimate`]: all of it, in the order of the steps
 //! - [`FineDelay`]: a delay between samples, with its interval
+//! - [`OnsetModel`]: the response of a joint, and [`Obstacle`]: why onsets are no delays
 //! - [`Lag`]: what all steps of a joint follow their dead times with
 //! - [`broken_line`], [`broken_regression`], [`stroke`]: one break in samples, in points, and
 //!   both ends of a stroke

@@ -57,8 +57,8 @@ pub enum CandidateLines {
     Best,
 }
 
-/// A method and its settings; the default is the paper's search with what real logs need
-/// beside it, see [`Settings::paper`].
+/// A method and its settings; the default is the onset model. The paper's search is that of
+/// [`Method::TWO_LINE`], with what real logs need beside it, see [`Settings::paper`].
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub struct Settings {

@@ -13,7 +13,7 @@ use crate::delay::condition::Condition;
 use crate::delay::decision::Decision;
 use crate::delay::onset_model::{Obstacle, OnsetModel, StepOnset};
 use crate::delay::prepared::Prepared;
-use crate::delay::settings::{CONFIDENCE, CandidateLines, Settings};
+use crate::delay::settings::{CONFIDENCE, Settings};
 use crate::delay::spec::{Method, MethodSpec, Scope};
 use crate::numerics::LowPass;
 use crate::units::SamplePeriod;
@@ -124,11 +124,6 @@ fn answered(context: &StepContext<'_>, by_lines: Decision, onset: Option<StepOns
     if let Some(confidence) = settings.confidence {
         decision.test_reaction(context.departed().or(p_value), confidence);
     }
-    decision.onset = onset.map(|mut onset| {
-        if settings.lines == CandidateLines::Best {
-            onset.fitted = Vec::new();
-        }
-        Box::new(onset)
-    });
+    decision.onset = onset.map(Box::new);
     decision
 }

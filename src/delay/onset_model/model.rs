@@ -5,8 +5,6 @@
 //! motion is nearly a bend: of some reaches the one whose intervals are the shortest is taken,
 //! among those whose onsets answer the input as well.
 
-use std::ops::Range;
-
 use super::follows::Follows;
 use super::search::{Candidate, FEW, Search};
 use super::shape::Shape;
@@ -94,11 +92,7 @@ pub enum Obstacle {
 pub struct StepOnset {
     /// The delay, which may be negative.
     pub fine: FineDelay,
-    /// The window that it was found in, as indices of the trial's samples.
-    pub window: Range<usize>,
-    /// What is fitted there, output units; empty where only the best candidates are kept.
-    pub fitted: Vec<f64>,
-    /// Part of the window's squared error without an onset that it removes.
+    /// Part of its window's squared error without an onset that it removes.
     pub explained: f64,
     /// How often noise alone looks as much like an onset.
     pub p_value: f64,
@@ -117,8 +111,8 @@ impl OnsetModel {
         let mut runs: Vec<Run> = runs.filter(|run| !run.steps.is_empty()).collect();
         // What is found hangs on no order of the trials.
         runs.sort_by(|a, b| {
-            let bits = |run: &Run| run.output.iter().map(|y| y.to_bits()).collect::<Vec<u64>>();
-            b.output.len().cmp(&a.output.len()).then_with(|| bits(a).cmp(&bits(b)))
+            let [one, other] = [a, b].map(|run| run.output.iter().map(|y| y.to_bits()));
+            b.output.len().cmp(&a.output.len()).then_with(|| one.cmp(other))
         });
         let mut all = vec![Self::within(&runs, period, 1.0)?];
         // Of a bump test the whole is looked at.
@@ -160,7 +154,7 @@ impl OnsetModel {
         let holds: Vec<f64> = runs.iter().flat_map(holds).collect();
         let hold = median(&holds)?;
         let every = ceil_to_index(hold / SAMPLES_OF_HOLD).max(1);
-        let search = Search::of(&beginning(runs, ENOUGH_FOR_SHAPE * every), every, part)?;
+        let search = Search::of(beginning(runs, ENOUGH_FOR_SHAPE * every), every, part)?;
         let mut candidates = search.select();
         for candidate in &mut candidates {
             candidate.typical *= every as f64;
@@ -170,7 +164,7 @@ impl OnsetModel {
         let shared = search.shared_variance(chosen).sqrt() * factor;
         let (shape, typical) = (chosen.shape.scaled(factor), chosen.typical);
         // At the rate of the record, what is left over and how the sizes go with the input.
-        let mut search = Search::of(&beginning(runs, ENOUGH_FOR_MISFIT), 1, part)?;
+        let mut search = Search::of(beginning(runs, ENOUGH_FOR_MISFIT), 1, part)?;
         search.reach = reach_of(hold, every, part, search.longest_reach());
         let found = search.evaluate(shape, search.starting(typical), typical, PASSES);
         let residual = Residual::of(&search, &found);
@@ -270,8 +264,8 @@ impl OnsetModel {
         let scaled =
             Self { shape: self.shape.scaled(factor), shared: self.shared * factor, ..self.clone() };
         let run = run_of(trial, settings.max_delay);
-        let Some(mut search) = Search::of(std::slice::from_ref(&run), 1, 1.0) else {
-            return vec![None; run.steps.len()];
+        let Some(mut search) = Search::of(vec![run], 1, 1.0) else {
+            return vec![None; trial.steps.len()];
         };
         search.reach = ceil_to_index(self.reach as f64 * factor);
         let typical = self.typical * factor;
@@ -306,8 +300,6 @@ impl OnsetModel {
         );
         StepOnset {
             fine: FineDelay { delay, low: delay - low, high: delay + high, confidence },
-            window: onset.start..onset.end,
-            fitted: fit.fitted(run, index, onset, pass),
             explained,
             p_value,
             rests: !self.shape.family.may_be_curved(),
@@ -372,8 +364,10 @@ impl Search {
     }
 
     /// Every so many samples of runs, about a part of the reach.
-    fn of(runs: &[Run], every: usize, part: f64) -> Option<Self> {
-        let runs: Vec<Run> = runs.iter().map(|run| thinned(run, every)).collect();
+    fn of(mut runs: Vec<Run>, every: usize, part: f64) -> Option<Self> {
+        if every > 1 {
+            runs = runs.iter().map(|run| thinned(run, every)).collect();
+        }
         let hold = median(&runs.iter().flat_map(holds).collect::<Vec<f64>>())?;
         let outputs = runs.iter().map(|run| run.output.as_slice());
         let values = || outputs.clone().flatten().copied();
@@ -414,7 +408,13 @@ fn holds(run: &Run) -> Vec<f64> {
 /// Every so many samples of a run.
 fn thinned(run: &Run, every: usize) -> Run {
     let factor = every as f64;
-    let step = |step: &Step| Step { at: step.at / factor, latest: step.latest / factor, ..*step };
+    let step = |step: &Step| Step {
+        at: step.at / factor,
+        first: step.first / factor,
+        end: step.end / factor,
+        latest: step.latest / factor,
+        ..*step
+    };
     Run {
         output: run.output.iter().step_by(every).copied().collect(),
         steps: run.steps.iter().map(step).collect(),
