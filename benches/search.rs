@@ -1,9 +1,8 @@
-//! The search for the best pair of lines, and for the best broken line: samples per second
-//! on one core.
+//! The search for the best pair of lines: samples per second on one core.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
-use tauscope::delay::{Candidates, broken_line};
+use tauscope::delay::Candidates;
 
 /// A kink in the middle, with a little of everything above it.
 fn segment(samples: usize) -> Vec<f64> {
@@ -26,10 +25,6 @@ fn search(criterion: &mut Criterion) {
                 bencher.iter(|| Candidates::search(black_box(values), 1, beta));
             });
         }
-        let id = BenchmarkId::new("broken line", samples);
-        group.bench_with_input(id, &values, |bencher, values| {
-            bencher.iter(|| broken_line(black_box(values), 0.95));
-        });
     }
     group.finish();
 }

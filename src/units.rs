@@ -20,9 +20,6 @@ pub(crate) fn radians_in(unit: Option<&str>) -> f64 {
 pub struct SamplePeriod(f64);
 
 impl SamplePeriod {
-    /// One second.
-    pub(crate) const ONE_SECOND: Self = Self(1.0);
-
     /// The period of `seconds`, or `None` unless it is finite and positive.
     pub fn from_seconds(seconds: f64) -> Option<Self> {
         (seconds.is_finite() && seconds > 0.0).then_some(Self(seconds))

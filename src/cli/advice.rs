@@ -4,7 +4,7 @@
 use std::error::Error;
 
 use super::typed::mapping_options;
-use crate::delay::{EstimateError, Growing, Method, Scope};
+use crate::delay::{EstimateError, Growing, Method};
 use crate::design::{NotKept, PlanError, SuspectsError, rounded};
 use crate::experiment::ReadError;
 use crate::explain::AddError;
@@ -95,7 +95,7 @@ fn on_uneven_times(step: f64, period: f64) -> String {
 fn on_growing(error: Growing) -> String {
     let expected = match error {
         Growing::Method { .. } => {
-            let alone = Method::all().filter(|method| method.spec().scope == Scope::Segment);
+            let alone = Method::all().filter(|method| !method.spec().has_intervals);
             format!("--method {}", alone.map(Method::id).collect::<Vec<_>>().join("|"))
         }
         Growing::Confidence => "--confidence none".to_owned(),

@@ -43,7 +43,7 @@ use super::decision::{Decision, Verdict};
 use super::in_seconds::InSeconds;
 use super::input_motion::InputMotion;
 use super::interval::FineDelay;
-use super::method::decide_by_broken_lines;
+use super::method::implementation;
 use super::prepared::Prepared;
 use super::settings::{FirstLast, Settings};
 use super::spec::Method;
@@ -126,14 +126,14 @@ pub fn choose(trials: &Record, settings: &Settings, automatic: Automatic) -> (Se
         let low_pass = || record.low_pass(settings.low_pass, statistics.motion_ends_hz);
         chosen.low_pass = if smooths { low_pass() } else { None };
     }
-    if automatic.beta && settings.method.spec().has_rows {
+    if automatic.beta {
         let beta = if chosen.low_pass.is_some() { 1 } else { record.blur() };
         chosen = chosen.with_beta(beta.into());
     }
     (chosen, Chosen { automatic, statistics })
 }
 
-/// What broken lines show of a joint.
+/// What bends show of a joint.
 struct Observed<'a> {
     /// Trials of the first one's sample period.
     outputs: Vec<&'a [f64]>,
@@ -165,6 +165,7 @@ impl<'a> Observed<'a> {
             // Every change of the input is a step where it is for the paper.
             grows: settings.paper || settings.grows,
             first_last: FirstLast::Keep,
+            low_pass: None,
             ..Settings::of(Method::HINGE)
         };
         let period = trials.first().map(Trial::period);
@@ -180,13 +181,14 @@ impl<'a> Observed<'a> {
             noise: NoiseModel::white(),
             innovations: 0.0,
         };
-        for trial in trials.iter().filter(|trial| Some(trial.period()) == period) {
-            // Without a low-pass nothing can fail to fit.
-            let Ok(prepared) = Prepared::of(trial, &hinge) else { continue };
-            if prepared.steps.is_empty() {
-                continue;
-            }
-            record.add(trial.output(), &decide_by_broken_lines(&prepared, &hinge));
+        // Without a low-pass nothing can fail to fit.
+        let prepared = Prepared::all(trials, &hinge);
+        let alike = prepared.into_iter().filter(|trial| Some(trial.period) == period);
+        let alike: Vec<Prepared<'_>> = alike.filter(|trial| !trial.steps.is_empty()).collect();
+        let method = implementation(Method::HINGE);
+        let shared = method.shared(&alike, &hinge);
+        for trial in &alike {
+            record.add(&trial.raw, &method.decide(trial, &shared, &hinge));
         }
         record.noise = NoiseModel::of(&record.quiet, LINE);
         record.innovations = record.innovations();

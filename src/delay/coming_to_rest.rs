@@ -3,7 +3,6 @@
 use super::input_motion::InputKind;
 use super::prepared::Prepared;
 use super::settings::Settings;
-use super::settling::Settling;
 use super::steps::joint_steps;
 use super::stops::Stops;
 use super::tracking::Tracking;
@@ -11,8 +10,6 @@ use crate::experiment::Record;
 
 /// How the output of a joint comes to rest; the first of these that its record shows.
 pub(super) enum ComingToRest {
-    /// It settles at a level for each level of the input, by an exponential law.
-    Settles(Box<Settling>),
     /// It goes where the input says, and stays.
     Tracks(Tracking),
     /// It runs into stops.
@@ -28,12 +25,6 @@ impl ComingToRest {
         if settings.paper || settings.grows || settings.input == InputKind::Continuous {
             return Self::NotShown;
         }
-        // An onset model has responses that settle among others.
-        let is_modelled = settings.method.spec().models_response();
-        let settles = (!is_modelled).then(|| settling(trials, settings)).flatten();
-        if let Some(settling) = settles {
-            return Self::Settles(Box::new(settling));
-        }
         let steps = joint_steps(trials, settings);
         let at_stops = || Stops::of(trials, &steps).map(Self::AtStops);
         let tracks = Tracking::of(trials, &steps).map(Self::Tracks);
@@ -45,24 +36,11 @@ impl ComingToRest {
         match self {
             Self::Tracks(tracking) => tracking.bound(trial, settings),
             Self::AtStops(stops) => stops.bound(trial),
-            Self::Settles(_) | Self::NotShown => {}
+            Self::NotShown => {}
         }
-    }
-
-    pub(super) fn settling(&self) -> Option<&Settling> {
-        if let Self::Settles(settling) = self { Some(settling) } else { None }
     }
 
     pub(super) fn tracking(&self) -> Option<Tracking> {
         if let Self::Tracks(tracking) = self { Some(*tracking) } else { None }
     }
-}
-
-fn settling(trials: &Record, settings: &Settings) -> Option<Settling> {
-    // Most outputs do not settle, which is seen before anything is prepared.
-    let bare: Vec<_> = trials.iter().map(|trial| Prepared::bare(trial, settings)).collect();
-    let start = Settling::start(trials, &bare, settings)?;
-    let prepared = Prepared::all(trials, settings);
-    let period = prepared.first()?.period;
-    Settling::of(start, &prepared, &settings.at(period))
 }

@@ -9,7 +9,6 @@ use super::onset_model::StepOnset;
 use super::reviewer_verdict::ReviewerVerdict;
 use super::search::{Candidate, Candidates};
 use super::segment::Segment;
-use super::settling::Response;
 use super::steps::InputStep;
 
 use crate::units::signed;
@@ -32,8 +31,6 @@ pub struct Decision {
     pub checks: Checks,
     /// The delay between samples, where the method gives it.
     pub fine: Option<FineDelay>,
-    /// What was fitted to an output that settles; the lines of its candidates are chords of it.
-    pub response: Option<Box<Response>>,
     /// The onset, where the method fits the joint's response.
     pub onset: Option<Box<StepOnset>>,
     /// What a reviewer said of it.

@@ -154,7 +154,7 @@ impl Decision {
 
     /// Whether the output settles at a level.
     fn rests(&self) -> bool {
-        self.response.is_some() || self.onset.as_ref().is_some_and(|onset| onset.rests)
+        self.onset.as_ref().is_some_and(|onset| onset.rests)
     }
 
     /// `1 − SSE₂ / SSE₁`. The residuals of both lines are orthogonal to every line through
@@ -163,13 +163,8 @@ impl Decision {
         if let Some(onset) = &self.onset {
             return onset.explained;
         }
-        if let Some(response) = &self.response {
-            return response.explained();
-        }
-        // Rows are whole; a break between samples was fitted to every sample, whichever of its
-        // candidates were kept.
-        let rows = (self.candidates.len() + 1) * self.candidates.spacing();
-        let last = self.fine.map_or(self.segment.first + rows, |_| self.segment.last + 1);
+        // Rows are whole.
+        let last = self.segment.first + (self.candidates.len() + 1) * self.candidates.spacing();
         let fitted = |k: usize| {
             let line = if k < best.breakpoint { best.before } else { best.after };
             line.at(k as f64)
@@ -192,13 +187,10 @@ impl Decision {
 
     fn crossing(&self, best: &Candidate) -> f64 {
         // The lines are Algorithm 1's, and not the answer.
-        if self.response.is_some() || self.onset.is_some() {
+        if self.onset.is_some() {
             return 0.0;
         }
-        // Lines that meet between two samples cross where they break.
-        let q = self
-            .fine
-            .map_or(best.breakpoint as f64, |fine| self.input_step.sample as f64 + fine.delay);
+        let q = best.breakpoint as f64;
         let jump = (best.after.at(q) - best.before.at(q)).abs();
         let turn = best.slope_change().abs();
         // The lines close by the change of slope at every sample.

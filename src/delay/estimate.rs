@@ -4,11 +4,11 @@ use std::fmt;
 
 use super::coming_to_rest::ComingToRest;
 use super::input_motion::{InputKind, InputMotion};
-use super::method::{DelayMethod, Shared, decide_settling, implementation};
+use super::method::{DelayMethod, Shared, implementation};
 use super::prepared::Prepared;
 use super::profile::DelayProfile;
 use super::settings::Settings;
-use super::spec::{Method, Scope};
+use super::spec::Method;
 use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::{Record, Trial};
 
@@ -25,7 +25,7 @@ pub fn estimate(trial: &Trial, settings: &Settings) -> Result<TrialEstimate, Est
     Estimator::of(&[trial.clone()].into(), settings)?.estimate(trial)
 }
 
-/// Estimates all trials of a joint, which share what its lag looks like.
+/// Estimates all trials of a joint, which share the response behind their dead times.
 pub fn estimate_joint(
     trials: &Record,
     settings: &Settings,
@@ -65,18 +65,19 @@ impl Estimator {
         }
         let method = implementation(settings.method);
         let rest = ComingToRest::of(trials, &settings);
-        let is_joint = rest.settling().is_none() && settings.method.spec().scope >= Scope::Joint;
-        let shared = is_joint.then(|| {
-            let mut prepared = Prepared::all(trials, &settings);
+        let shared = settings.method.spec().has_intervals.then(|| {
+            // Onsets are found in what was measured.
+            let unsmoothed = Settings { low_pass: None, ..settings.clone() };
+            let mut prepared = Prepared::all(trials, &unsmoothed);
             for trial in &mut prepared {
                 rest.bound(trial, &settings.at(trial.period));
             }
             let period = prepared.first().map(|trial| trial.period);
-            // A lag is looked for in the trials of the first one's period.
+            // A response is looked for in the trials of the first one's period.
             let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
             method.shared(&prepared, &settings)
         });
-        Ok(Self { settings, method, shared: shared.unwrap_or_default(), rest, motion })
+        Ok(Self { settings, method, shared: shared.flatten(), rest, motion })
     }
 
     /// How the input of the joint moves.
@@ -90,30 +91,13 @@ impl Estimator {
     /// [`EstimateError::Filter`] when the filter does not fit this trial.
     pub(crate) fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
         let settings = self.settings.at(trial.period());
-        let mut prepared = match self.rest.settling() {
-            Some(_) => Prepared::of(trial, &settings)?,
-            None => Prepared::lean(trial, &settings)?,
-        };
+        let mut prepared = Prepared::lean(trial, &settings)?;
         self.rest.bound(&mut prepared, &settings);
-        let decisions = match self.rest.settling() {
-            Some(settling) => decide_settling(&prepared, settling, &settings),
-            None => self.method.decide(&prepared, &self.shared, &settings),
-        };
+        let decisions = self.method.decide(&prepared, &self.shared, &settings);
         let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
-        let Shared { lag, onset_model } = self.shared.clone();
-        let settling = self.rest.settling().cloned();
         let (label, smoothed) = (trial.label().to_owned(), prepared.smoothed);
-        let tracking = self.rest.tracking();
-        Ok(TrialEstimate {
-            label,
-            smoothed,
-            decisions,
-            profile,
-            lag,
-            onset_model,
-            settling,
-            tracking,
-        })
+        let (onset_model, tracking) = (self.shared.clone(), self.rest.tracking());
+        Ok(TrialEstimate { label, smoothed, decisions, profile, onset_model, tracking })
     }
 }
 

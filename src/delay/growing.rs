@@ -5,7 +5,6 @@
 
 use super::profile::DelayProfile;
 use super::settings::Settings;
-use super::spec::Scope;
 use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::Trial;
 use crate::numerics::FilterError;
@@ -30,7 +29,7 @@ pub enum Growing {
 /// # Errors
 /// [`Growing`] when they depend on the whole record.
 pub(crate) fn check_growing(settings: &Settings) -> Result<(), Growing> {
-    if settings.method.spec().scope != Scope::Segment {
+    if settings.method.spec().has_intervals {
         return Err(Growing::Method { method: settings.method.id() });
     }
     if settings.confidence.is_some() {
@@ -65,12 +64,9 @@ pub(crate) fn final_part(
     let profile = DelayProfile::of(&decisions, samples, settings.interpolation);
     let smoothed = estimate.smoothed.as_ref();
     let smoothed = smoothed.map(|all| all.iter().copied().take(samples).collect());
-    let (label, lag) = (estimate.label.clone(), estimate.lag.clone());
-    let settling = estimate.settling.clone();
+    let (label, onset_model) = (estimate.label.clone(), estimate.onset_model.clone());
     let tracking = estimate.tracking;
-    let onset_model = estimate.onset_model.clone();
-    let estimate =
-        TrialEstimate { label, smoothed, decisions, profile, lag, onset_model, settling, tracking };
+    let estimate = TrialEstimate { label, smoothed, decisions, profile, onset_model, tracking };
     Ok(Some((beginning, estimate)))
 }
 

@@ -58,7 +58,7 @@ impl Decision {
             Condition::Sse => Remedy::MaxSse(above(value)),
             // M = 2 rows are the fewest that have a candidate.
             Condition::TooShort => match self.segment.len() / 2 {
-                beta if settings.method.spec().has_rows && beta > 0 => Remedy::Beta(beta),
+                beta if beta > 0 => Remedy::Beta(beta),
                 _ => none,
             },
             Condition::NothingHappened => check.value.map_or(none, |p_value| {

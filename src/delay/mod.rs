@@ -7,7 +7,6 @@
 //! segment, every pair of regression lines through it is a candidate, the pair with the
 //! least squared error wins, and [conditions](Condition) decide whether its breakpoint counts:
 //! the paper's six, one for segments without a candidate, and two for joints at rest.
-//! Two more [methods](Method) find it between samples by lines, with an interval.
 //!
 //! - [`steps`](InputStep): where the input changes
 //! - [`Neutral`], [`Transition`]: the level at which a joint rests, and what kind of step
@@ -19,9 +18,6 @@
 //! - [`estimate`]: all of it, in the order of the steps
 //! - [`FineDelay`]: a delay between samples, with its interval
 //! - [`OnsetModel`]: the response of a joint, and [`Obstacle`]: why onsets are no delays
-//! - [`Lag`]: what all steps of a joint follow their dead times with
-//! - [`broken_line`], [`broken_regression`], [`stroke`]: one break in samples, in points, and
-//!   both ends of a stroke
 //! - [`dead_time`]: one dead time of a joint whose input moves all the time
 //! - [`delay_scan`]: one delay for a whole record
 //! - [`RunnerUp`]: how near a verdict was
@@ -39,7 +35,6 @@
 mod against;
 mod auto;
 mod beyond_holds;
-mod broken_line;
 mod checks;
 mod coming_to_rest;
 mod condition;
@@ -47,6 +42,7 @@ mod dead_time;
 mod decision;
 mod doubt;
 mod estimate;
+mod first_order;
 mod growing;
 mod held_input;
 mod hold;
@@ -54,14 +50,12 @@ mod in_seconds;
 mod input_motion;
 mod input_noise;
 mod interval;
-mod lag;
 mod lengths;
 mod margin;
 mod method;
 mod motion;
 mod neutral;
 mod onset_model;
-mod onsets;
 mod prepared;
 mod profile;
 mod reviewer_verdict;
@@ -69,7 +63,6 @@ mod scan;
 mod search;
 mod segment;
 mod settings;
-mod settling;
 mod spec;
 mod step_delay;
 mod steps;
@@ -86,9 +79,6 @@ pub use crate::numerics::Line;
 pub use against::{AgainstOfKind, AgainstState, Correlation, Direction, StepState};
 pub use auto::{Automatic, Chosen, RecordStatistics, choose};
 pub(crate) use beyond_holds::delay_beyond_holds;
-pub use broken_line::{
-    BrokenLine, BrokenRegression, Stroke, broken_line, broken_regression, stroke,
-};
 pub use checks::Checks;
 pub use condition::{Check, Condition, Outcome};
 pub use dead_time::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown, Window, dead_time};
@@ -96,6 +86,7 @@ pub use decision::{Breakpoint, Decision, Verdict};
 pub use doubt::{Doubt, Flag, doubts};
 pub(crate) use estimate::Estimator;
 pub use estimate::{estimate, estimate_joint};
+pub(crate) use first_order::{FirstOrder, followed};
 pub use growing::Growing;
 pub(crate) use growing::{check_growing, final_part};
 pub(crate) use held_input::held_inputs;
@@ -103,7 +94,6 @@ pub(crate) use hold::level_tolerance;
 pub use in_seconds::InSeconds;
 pub use input_motion::{InputKind, InputMotion};
 pub use interval::FineDelay;
-pub use lag::{Lag, LagPart};
 pub(crate) use margin::Remedy;
 pub use margin::RunnerUp;
 pub(crate) use method::end_at_the_next_step;
@@ -116,9 +106,7 @@ pub use search::{Candidate, Candidates};
 pub use segment::Segment;
 pub(crate) use settings::CONFIDENCE;
 pub use settings::{CandidateLines, FirstLast, Interpolation, Settings, SettingsError};
-pub(crate) use settling::{FirstOrder, followed};
-pub use settling::{Response, Settling};
-pub use spec::{Method, MethodSpec, Scope};
+pub use spec::{Method, MethodSpec};
 pub use step_delay::{StepDelay, step_delays};
 pub use steps::InputStep;
 pub(crate) use steps::joint_steps;

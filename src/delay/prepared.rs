@@ -21,6 +21,8 @@ pub(super) struct Prepared<'a> {
     pub(super) smoothed: Option<Vec<f64>>,
     pub(super) period: SamplePeriod,
     pub(super) steps: Vec<InputStep>,
+    /// Samples that were filled in while nothing was logged, in order.
+    pub(super) unlogged: &'a [Range<usize>],
     /// What the output does about each step, where rest or a stop is shown.
     pub(super) motions: Vec<Option<Box<StepMotion>>>,
     /// Whether the output comes to rest between steps, so that some of them change nothing: each
@@ -40,8 +42,8 @@ impl<'a> Prepared<'a> {
         };
         let period = trial.period();
         let motions = motions(&raw, &steps, period, &settings.at(period));
-        let mended = Vec::new();
-        Ok(Self { raw, mended, smoothed, period, steps, motions, is_tested: false })
+        let (mended, unlogged) = (Vec::new(), trial.unlogged());
+        Ok(Self { raw, mended, smoothed, period, steps, unlogged, motions, is_tested: false })
     }
 
     /// A trial prepared in less memory where its output is smoothed: of what was mended, the
@@ -65,19 +67,6 @@ impl<'a> Prepared<'a> {
         };
         prepared.smoothed = Some(filter.smooth_in_place(raw, trial.period())?);
         Ok(prepared)
-    }
-
-    /// The output as it was measured and the steps alone: enough to see what most joints do not.
-    pub(super) fn bare(trial: &'a Trial, settings: &Settings) -> Self {
-        Self {
-            raw: Cow::Borrowed(trial.output()),
-            mended: Vec::new(),
-            smoothed: None,
-            period: trial.period(),
-            steps: trial_steps(trial, settings),
-            motions: Vec::new(),
-            is_tested: false,
-        }
     }
 
     /// The `trials` that can be prepared.

@@ -1,6 +1,5 @@
 //! Every candidate breakpoint of a segment: both lines and their squared error.
 
-use super::broken_line::Bends;
 use crate::numerics::{Line, RunningLine};
 
 /// Difference of two squared errors, as a part of the segment's total sum of squares,
@@ -46,8 +45,6 @@ const POWER: f64 = 4.0;
 enum Lines {
     /// Fitted apart: before and after.
     Apart(Vec<Line>, Vec<Line>),
-    /// Meeting at every sample, and those of one that meet between two.
-    Meeting(Box<Bends>, (usize, (Line, Line))),
     /// Those of one alone.
     One(usize, (Line, Line)),
 }
@@ -62,8 +59,6 @@ impl Lines {
     fn get(&self, index: usize) -> Option<(Line, Line)> {
         match self {
             Self::Apart(before, after) => Some((*before.get(index)?, *after.get(index)?)),
-            Self::Meeting(_, (best, lines)) if *best == index => Some(*lines),
-            Self::Meeting(bends, _) => bends.get(index),
             Self::One(one, lines) => (*one == index).then_some(*lines),
         }
     }
@@ -130,31 +125,6 @@ impl Candidates {
             *sse *= scale.unit * scale.unit;
         }
         found
-    }
-
-    /// Pairs of lines that were fitted elsewhere, a breakpoint at every sample behind
-    /// `first_sample`; the one at `best` was chosen.
-    pub(super) fn fitted(
-        first_sample: usize,
-        sse: Vec<f64>,
-        lines: (Vec<Line>, Vec<Line>),
-        best: usize,
-    ) -> Self {
-        let best = (best < sse.len()).then_some(best);
-        let lines = Lines::Apart(lines.0, lines.1);
-        Self { first_sample, beta: 1, sse, few: None, lines, best }
-    }
-
-    /// Lines that meet and were fitted elsewhere; the best meet between two samples.
-    pub(super) fn broken(
-        first_sample: usize,
-        sse: Vec<f64>,
-        bends: Bends,
-        best: (usize, (Line, Line)),
-    ) -> Self {
-        let chosen = (best.0 < sse.len()).then_some(best.0);
-        let lines = Lines::Meeting(Box::new(bends), best);
-        Self { first_sample, beta: 1, sse, few: None, lines, best: chosen }
     }
 
     /// The best candidate with its lines, and what is [kept](Few) of the errors of the others,

@@ -99,12 +99,9 @@ pub struct Settings {
     /// Whether the input is taken as steps or as moving all the time.
     pub input: InputKind,
     /// Whether the record still grows: nothing is then taken from the whole of it, neither whether
-    /// the output settles or tracks its input, nor what its sensor's noise is, and every change of
+    /// the output tracks its input, nor what its sensor's noise is, and every change of
     /// the input is a step, as with `paper`.
     pub grows: bool,
-    /// Whether the output settles at a level for each level of the input, as a speed or a pressure
-    /// does; none where the record is to show it.
-    pub settles: Option<bool>,
     /// How `τ_k` goes on between two steps.
     pub interpolation: Interpolation,
     /// Reject a step as `nothing_happened` unless its change of slope is this unlikely to
@@ -146,7 +143,6 @@ impl Settings {
             min_step: 0.0,
             input: InputKind::Auto,
             grows: false,
-            settles: None,
             interpolation: Interpolation::Hold,
             confidence: spec.confidence,
             interval: 0.95,

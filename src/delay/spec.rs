@@ -16,40 +16,16 @@ pub struct MethodSpec {
     pub source: Option<&'static str>,
     /// What it does, in a line of help.
     pub summary: &'static str,
-    /// Whether it compares candidates β samples apart; β means nothing to others.
-    pub has_rows: bool,
-    /// Whether its segments end at the next step where they would hold the reaction to it, too.
-    pub cuts_segments: bool,
-    /// Whether it gives each delay an interval.
+    /// Whether it finds the response behind the delays, over all trials of a joint, and gives each delay
+    /// an interval. The decisions of others depend on no sample behind the next step, and come in steps
+    /// of β.
     pub has_intervals: bool,
-    /// What its decision on a step depends on.
-    pub scope: Scope,
     /// Its low-pass where no other is asked for; none where it looks at the output as it
     /// was measured, since smoothing removes from noise what intervals are made of.
     pub low_pass: Option<LowPass>,
     /// How sure a reaction must be where nothing else is asked for: see
     /// [`Settings::confidence`](super::Settings::confidence).
     pub confidence: Option<f64>,
-}
-
-impl MethodSpec {
-    /// Whether it finds the response behind the delays.
-    pub fn models_response(&self) -> bool {
-        self.scope == Scope::Response
-    }
-}
-
-/// What a method's decision on a step depends on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Scope {
-    /// The step's segment and the decisions before it, so that it stays as a record grows.
-    Segment,
-    /// The whole trial.
-    Trial,
-    /// All trials of a joint, which share a lag.
-    Joint,
-    /// All trials of a joint, which share a response, whatever it is: an output that settles, too.
-    Response,
 }
 
 /// How a delay is found: one of [`Method::all`].

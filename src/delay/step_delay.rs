@@ -41,7 +41,7 @@ pub fn step_delays(trials: &Record) -> Result<Vec<Vec<Option<StepDelay>>>, Estim
     // A line between the samples of a slow sensor looks like a lag: what is asked then is where the output
     // bends, without one.
     let is_interpolated = trials.iter().any(|trial| !trial.interpolated().is_empty());
-    let method = if is_interpolated { Method::HINGE } else { Method::LAG_AWARE };
+    let method = if is_interpolated { Method::HINGE } else { Method::AUTO };
     let settings = Settings { first_last: FirstLast::Keep, ..Settings::of(method) };
     let estimates = estimate_joint(trials, &settings);
     let of = |(trial, estimate): (&Trial, Result<_, EstimateError>)| {

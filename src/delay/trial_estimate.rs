@@ -3,12 +3,10 @@
 use std::sync::Arc;
 
 use super::decision::Decision;
-use super::lag::Lag;
 use super::onset_model::OnsetModel;
 use super::profile::DelayProfile;
 use super::reviewer_verdict::ReviewerVerdict;
 use super::settings::{Interpolation, SettingsError};
-use super::settling::Settling;
 use super::tracking::Tracking;
 use crate::numerics::FilterError;
 
@@ -49,13 +47,8 @@ pub struct TrialEstimate {
     pub decisions: Vec<Decision>,
     /// The delay of every sample.
     pub profile: DelayProfile,
-    /// How the joint follows after its dead time, where the method looks for it.
-    pub lag: Option<Lag>,
     /// The response of the joint behind its dead times, where the method looks for it.
     pub onset_model: Option<Arc<OnsetModel>>,
-    /// How the output settles, where it does: the onsets are then those of an exponential,
-    /// whatever the method.
-    pub settling: Option<Settling>,
     /// Where the output comes to rest, where its input says that: its arrivals answer no step.
     pub tracking: Option<Tracking>,
 }

@@ -59,22 +59,9 @@ impl<'a> SegmentFigure<'a> {
         Some(self.decision.input_step.sample as f64 + self.decision.delay()?)
     }
 
-    /// Both lines of a candidate, which break at `q`; of an output that settles, what was fitted to
-    /// it before and behind.
+    /// Both lines of a candidate, which break at `q`.
     pub(crate) fn lines(&self, candidate: &Candidate, q: f64) -> [Vec<Place>; 2] {
-        /// Points of a response on each side.
-        const POINTS: usize = 200;
         let segment = self.decision.segment;
-        if let Some(response) = &self.decision.response {
-            let places: Vec<Place> =
-                (segment.first..).map(|k| k as f64).zip(response.values()).collect();
-            let (before, after) = places.split_at(places.partition_point(|(k, _)| *k <= q));
-            return [before, after].map(|part| {
-                let heights: Vec<f64> = part.iter().map(|(_, y)| *y).collect();
-                let kept = thinned_to(&heights, POINTS).into_iter();
-                kept.filter_map(|index| part.get(index).copied()).collect()
-            });
-        }
         let ends = |line: &Line, from: f64, to: f64| [from, to].map(|k| (k, line.at(k))).to_vec();
         let before = ends(&candidate.before, segment.first as f64, q);
         [before, ends(&candidate.after, q, segment.last as f64)]
@@ -86,10 +73,6 @@ impl<'a> SegmentFigure<'a> {
         let Some(best) = self.decision.candidates.best() else { return Vec::new() };
         let segment = self.decision.segment;
         let values = output.get(segment.indices()).unwrap_or_default();
-        if let Some(response) = &self.decision.response {
-            let left = values.iter().zip(response.values()).map(|(y, fitted)| y - fitted);
-            return (segment.first..).map(|k| k as f64).zip(left).collect();
-        }
         let left = |(k, y): (usize, &f64)| {
             let line = if k < best.breakpoint { best.before } else { best.after };
             (k as f64, y - line.at(k as f64))
@@ -122,52 +105,6 @@ mod tests {
     use crate::delay::{Method, Settings, estimate};
     use crate::numerics::testing::normals;
     use crate::units::SamplePeriod;
-
-    /// What settles at the level of its input, 20 samples late and with a time constant of 30
-    /// samples, and the trial of it.
-    fn settling() -> (Vec<f64>, Trial) {
-        let levels = [0.0, 1.0, -0.5, 2.0, 0.5, 1.5, -1.0, 0.0];
-        let input: Vec<f64> = levels.iter().flat_map(|level| [*level; 300]).collect();
-        let mut y = 0.0;
-        let mut ideal = Vec::new();
-        for k in 0_usize..input.len() {
-            ideal.push(y);
-            let late = k.checked_sub(20).map_or(0.0, |k| input[k]);
-            y += (late - y) / 30.0;
-        }
-        let mut noise = normals(31);
-        let output = ideal.iter().map(|y| y + 0.004 * noise()).collect();
-        let period = SamplePeriod::from_seconds(0.01).unwrap();
-        (ideal, Trial::new("1", 0.0, period, input, output).unwrap())
-    }
-
-    #[test]
-    fn of_an_output_that_settles_the_response_is_drawn_and_meets_what_was_simulated() {
-        let (ideal, trial) = settling();
-        let decisions = estimate(&trial, &Settings::of(Method::TWO_LINE)).unwrap().decisions;
-        let accepted = decisions.iter().filter(|d| d.verdict() == Verdict::Accepted);
-        let mut drawn = 0;
-        for decision in accepted {
-            assert!(decision.response.is_some());
-            let figure = SegmentFigure::new(&trial, decision);
-            let broken = figure.breakpoint().unwrap();
-            let best = decision.candidates.best().unwrap();
-            let [before, after] = figure.lines(&best, broken);
-            assert!(before.iter().all(|(k, _)| *k <= broken));
-            assert!(after.iter().all(|(k, _)| *k > broken));
-            for (k, y) in before.iter().chain(&after) {
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "a sample"
-                )]
-                let expected = ideal[*k as usize - 1];
-                assert!((y - expected).abs() < 0.02, "{y} at {k}, simulated {expected}");
-            }
-            drawn += 1;
-        }
-        assert!(drawn >= 5, "only {drawn} steps are accepted");
-    }
 
     #[test]
     fn lines_run_from_end_to_end_of_the_segment_and_break_where_they_are_told() {

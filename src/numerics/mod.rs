@@ -23,10 +23,10 @@ pub(crate) use autoregression::Autoregression;
 pub use filter::{FilterError, LowPass, MAX_ORDER};
 pub use line::Line;
 pub(crate) use line::RunningLine;
-pub(crate) use moments::{autocovariances, column_products, dot, moments, subtract_line};
+pub(crate) use moments::{autocovariances, column_products, dot};
 pub(crate) use noise::NoiseModel;
 pub(crate) use normal_equations::NormalEquations;
-pub(crate) use projection::{Basis, Projection};
+pub(crate) use projection::Basis;
 pub(crate) use rank::{PseudoInverse, REGRESSORS};
 pub(crate) use regression::{Regression, residuals_of};
 pub(crate) use rounding::{

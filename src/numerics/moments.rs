@@ -54,60 +54,6 @@ pub(crate) fn dots(a: &[f64], others: [&[f64]; 4]) -> [f64; 4] {
     products
 }
 
-/// `Σ y`, `Σ k·y` and `Σ y²` of the `values` less `offset`, `k` counted from 0.
-pub(crate) fn moments(values: &[f64], offset: f64) -> (f64, f64, f64) {
-    const LANES: usize = 4;
-    let (mut sums, mut ramps, mut squares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-    let chunks = values.chunks_exact(LANES);
-    let rest = chunks.remainder();
-    let mut first = 0.0;
-    for chunk in chunks {
-        let slots = sums.iter_mut().zip(&mut ramps).zip(&mut squares);
-        for (((sum, ramp), square), y) in slots.zip(chunk) {
-            let y = y - offset;
-            *sum += y;
-            *ramp += first * y;
-            *square += y * y;
-        }
-        first += LANES as f64;
-    }
-    // Σ k·y = Σ first·y + Σ lane·y, since k = first + lane.
-    let lanes = sums.iter().zip(0_u32..).map(|(sum, lane)| f64::from(lane) * sum);
-    let mut moment = ramps.iter().sum::<f64>() + lanes.sum::<f64>();
-    let (mut sum, mut square) = (sums.iter().sum::<f64>(), squares.iter().sum::<f64>());
-    for y in rest {
-        let y = y - offset;
-        sum += y;
-        moment += first * y;
-        square += y * y;
-        first += 1.0;
-    }
-    (sum, moment, square)
-}
-
-/// Subtracts the line `value + slope·k` from the `values`, `k` counted from 0; the sum of
-/// squares of the residual.
-pub(crate) fn subtract_line(values: &mut [f64], value: f64, slope: f64) -> f64 {
-    const LANES: usize = 4;
-    let lanes: [f64; LANES] = [0.0, 1.0, 2.0, 3.0].map(|lane| value + slope * lane);
-    let mut squares = [0.0; LANES];
-    let mut first = 0.0;
-    let mut chunks = values.chunks_exact_mut(LANES);
-    for chunk in &mut chunks {
-        for ((square, lane), y) in squares.iter_mut().zip(lanes).zip(chunk) {
-            *y -= lane + slope * first;
-            *square += *y * *y;
-        }
-        first += LANES as f64;
-    }
-    let mut power = squares.iter().sum::<f64>();
-    for (y, lane) in chunks.into_remainder().iter_mut().zip(lanes) {
-        *y -= lane + slope * first;
-        power += *y * *y;
-    }
-    power
-}
-
 /// Mean products of the values in `windows` with those 0, 1, … `longest` samples before.
 pub(crate) fn autocovariances<W: AsRef<[f64]>>(windows: &[W], longest: usize) -> Vec<f64> {
     let windows = || windows.iter().map(AsRef::as_ref);
@@ -131,28 +77,5 @@ mod tests {
         let found = dots(&values(1), others.each_ref().map(Vec::as_slice));
         let each = others.map(|other| dot(&values(1), &other));
         assert!(found.iter().zip(each).all(|(one, other)| (one - other).abs() < 1e-9));
-    }
-
-    #[test]
-    fn moments_are_the_sums_they_are_called() {
-        for length in [0, 3, 8, 23] {
-            let values: Vec<f64> = (0..length).map(|k| f64::from(k * 5 % 7) + 2.0).collect();
-            let found = moments(&values, 2.0);
-            let mut each = (0.0, 0.0, 0.0);
-            for (y, k) in values.iter().zip(0_u32..) {
-                let y = y - 2.0;
-                each = (each.0 + y, each.1 + f64::from(k) * y, each.2 + y * y);
-            }
-            assert_eq!(found, each);
-        }
-    }
-
-    #[test]
-    fn a_line_is_taken_off() {
-        let mut values: Vec<f64> = (0..11).map(|k| 3.0 - 0.5 * f64::from(k)).collect();
-        values[9] += 2.0;
-        let power = subtract_line(&mut values, 3.0, -0.5);
-        assert!((power - 4.0).abs() < 1e-12 && (values[9] - 2.0).abs() < 1e-12);
-        assert!(values[..9].iter().chain(&values[10..]).all(|y| y.abs() < 1e-12));
     }
 }

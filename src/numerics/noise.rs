@@ -5,7 +5,6 @@
 
 use super::autoregression::Autoregression;
 use super::moments::dot;
-use super::projection::{self, Projection};
 
 /// Longest memory of the noise that is looked for in short windows, samples (chosen).
 const LONGEST_MEMORY: usize = 8;
@@ -98,15 +97,6 @@ impl NoiseModel {
         Self::of_found(found)
     }
 
-    /// The noise in the residuals of regressions of short windows.
-    pub(crate) fn of_projections(projections: &[Projection]) -> Self {
-        let usual = without_misfits(projections, Projection::power);
-        let samples: usize = usual.iter().map(|projection| projection.samples()).sum();
-        let longest = LONGEST_MEMORY.min(samples / 10);
-        let covariances = projection::autocovariances(&usual, longest);
-        Self::of_found(Autoregression::of(&covariances, samples))
-    }
-
     /// The noise in the residual of a model, of which the mean of each window was subtracted.
     ///
     /// What that takes from the covariances, the variance of the mean of a window, is put
@@ -142,20 +132,6 @@ impl NoiseModel {
         };
         let (real, imaginary) = terms.fold((1.0, 0.0), part);
         real * real + imaginary * imaginary
-    }
-
-    /// What whitening makes, `d = 1 … order` samples behind the break, of a level and of a
-    /// ramp that begin there: `(w_d, h_d)`.
-    pub(crate) fn onset(&self) -> Vec<(f64, f64)> {
-        let (mut level, mut shift) = (1.0, 0.0);
-        let mut onset = Vec::with_capacity(self.order());
-        for (a, d) in self.coefficients.iter().zip(1..) {
-            let d = f64::from(d);
-            onset.push((level, d * level + shift));
-            level -= a;
-            shift += d * a;
-        }
-        onset
     }
 
     /// The variance of the mean of a window, averaged over the samples in them, where the
@@ -209,31 +185,6 @@ impl NoiseModel {
         let power = dot(&response, &response);
         let correlation = |lag: usize| dot(&response, &response[lag..]) / power;
         (0..count.min(response.len())).map(correlation).collect()
-    }
-
-    /// Turns whitened `values` into those whose products with any column are the products of
-    /// `values` with the whitened column.
-    pub(crate) fn pull(&self, values: &mut [f64]) {
-        let order = self.order();
-        if order == 0 {
-            return;
-        }
-        // Forwards: no value is used after it was changed.
-        let mut from = 0;
-        while let Some(block) = values.get(from..from + LANES + order) {
-            let mut sums = [0.0; LANES];
-            for (a, later) in self.coefficients.iter().zip(block.windows(LANES).skip(1)) {
-                sums.iter_mut().zip(later).for_each(|(sum, y)| *sum += a * y);
-            }
-            let block = &mut values[from..];
-            block.iter_mut().zip(sums).for_each(|(y, sum)| *y -= sum);
-            from += LANES;
-        }
-        for k in from..values.len() {
-            let later = &values[k + 1..];
-            let expected: f64 = self.coefficients.iter().zip(later).map(|(a, y)| a * y).sum();
-            values[k] -= expected;
-        }
     }
 
     /// Whitens `values` in place; the first ones become 0.
@@ -327,35 +278,6 @@ fn without_misfits<T>(all: &[T], power: impl Fn(&T) -> f64) -> Vec<&T> {
 mod tests {
     use super::*;
     use crate::numerics::testing::noise;
-
-    #[test]
-    fn whitening_makes_of_a_line_and_of_an_onset_what_is_promised() {
-        let noise = NoiseModel::new(vec![0.5, -0.2]);
-        let mut line: Vec<f64> = (0..30).map(f64::from).collect();
-        noise.whiten(&mut line);
-        for (k, value) in line.iter().enumerate().skip(2) {
-            let expected = noise.level * k as f64 + noise.shift;
-            assert!((value - expected).abs() < 1e-12, "{k}: {value} {expected}");
-        }
-        let mut ramp: Vec<f64> = (0..9).map(|k| f64::from((k - 4).max(0))).collect();
-        noise.whiten(&mut ramp);
-        for (d, (_, h)) in noise.onset().into_iter().enumerate() {
-            assert!((ramp[5 + d] - h).abs() < 1e-12);
-        }
-    }
-
-    #[test]
-    fn products_with_what_is_pulled_are_those_with_a_whitened_column() {
-        let noise = NoiseModel::new(vec![0.5, -0.2]);
-        let mut column: Vec<f64> = (0..29).map(|k| f64::from(k * k)).collect();
-        let mut values: Vec<f64> = (0..29).map(|k| f64::from(k % 4)).collect();
-        noise.whiten(&mut values);
-        let mut pulled = values.clone();
-        noise.pull(&mut pulled);
-        let with_column = dot(&pulled, &column);
-        noise.whiten(&mut column);
-        assert!((with_column - dot(&values, &column)).abs() < 1e-12);
-    }
 
     #[test]
     fn little_memory_is_none() {

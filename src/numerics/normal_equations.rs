@@ -65,19 +65,6 @@ impl NormalEquations {
         Self { size, products, squares }
     }
 
-    /// These equations with the columns in another `order`, before any is eliminated.
-    pub(crate) fn reordered(&self, order: &[usize]) -> Self {
-        let product = |i: &usize, j: &usize| self.at(*i.min(j), *i.max(j));
-        let rows = order.iter().map(|i| order.iter().map(|j| product(i, j)).collect::<Vec<_>>());
-        let squares = order.iter().map(|i| product(i, i)).collect();
-        Self { size: order.len(), products: rows.flatten().collect(), squares }
-    }
-
-    /// Number of columns, the target among them.
-    pub(crate) fn size(&self) -> usize {
-        self.size
-    }
-
     /// The entry at a row and a column of the upper triangle.
     pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
         self.products[row * self.size + column]

@@ -5,10 +5,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Distance from the span of others, in parts of its length, below which a column that was
-/// computed counts as dependent: the root of what rounding leaves of a product.
-pub(crate) const EXACT: f64 = 1e-7;
-
 /// Distance below which a column of forward differences with steps of 1e-6 counts as dependent:
 /// it is known no better.
 pub(crate) const DIFFERENCED: f64 = 1e-6;

@@ -133,11 +133,7 @@ fn add_lines(
         let mut index = Index::default();
         let (mut values, mut lengths) = (Vec::new(), Vec::new());
         for (trial, segment) in layout.segments() {
-            // Of an output that settles the lines are but chords of what was fitted.
-            let best = segment.decision.shown_candidate();
-            let Some(best) = best.filter(|_| segment.decision.response.is_none()) else {
-                continue;
-            };
+            let Some(best) = segment.decision.shown_candidate() else { continue };
             let (line, ends) = side(&best, segment);
             let steps = [segment.decision.input_step.sample, segment.decision.next_sample()];
             for k in vertices(ends, steps) {

@@ -11,8 +11,8 @@ use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths::{self, at};
-use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, OnsetModel, Outcome};
-use crate::delay::{Settings, Settling, Tracking, Verdict};
+use crate::delay::{Check, Condition, Decision, FineDelay, OnsetModel, Outcome};
+use crate::delay::{Settings, Tracking, Verdict};
 use crate::experiment::Joint;
 use crate::numerics::quantile;
 use crate::report::{EstimatedJoint, JointSummary, dead_time_sentences};
@@ -411,8 +411,6 @@ impl Facts<'_, '_> {
         rows.extend(decision.fine.map(|fine| self.interval(fine)));
         rows.extend(self.by_lines());
         rows.extend(self.trial.estimate.onset_model.as_deref().map(onset_row));
-        rows.extend(self.trial.estimate.lag.iter().flat_map(lag_rows));
-        rows.extend(self.trial.estimate.settling.iter().flat_map(settling_rows));
         rows.extend(self.trial.estimate.tracking.as_ref().map(tracking_row));
         rows.extend(self.how_near());
         let typical = |words: &str| ("median delay of the joint".to_owned(), words.to_owned());
@@ -543,11 +541,6 @@ impl Facts<'_, '_> {
     }
 }
 
-/// A number with half of its 95 % interval.
-fn known(part: LagPart) -> String {
-    format!("{} ± {}", number(part.value), number(1.96 * part.std_error))
-}
-
 /// The response behind the dead times.
 fn onset_row(model: &OnsetModel) -> (String, String) {
     let named = model.parameters();
@@ -561,41 +554,10 @@ fn onset_row(model: &OnsetModel) -> (String, String) {
     ("response behind the delay".to_owned(), text)
 }
 
-/// How the output settles behind its dead times.
-fn settling_rows(settling: &Settling) -> Vec<(String, String)> {
-    let rows = [
-        ("output settles with the time constant", Some(settling.rising_s())),
-        ("the same where the input falls", settling.falling_s()),
-        ("further lag", settling.further_s()),
-    ];
-    let row = |(name, part): (&str, Option<LagPart>)| {
-        Some((name.to_owned(), format!("{} s", known(part?))))
-    };
-    rows.into_iter().filter_map(row).collect()
-}
-
 /// Where the output comes to rest.
 fn tracking_row(tracking: &Tracking) -> (String, String) {
     let at = format!("{} + {}·u", number(tracking.offset()), number(tracking.gain()));
     ("output tracks the input, at rest".to_owned(), at)
-}
-
-/// What all steps of the joint follow their dead times with.
-fn lag_rows(lag: &Lag) -> Vec<(String, String)> {
-    if lag.order() == 0 {
-        let word = if lag.is_determined() { "none" } else { "not determined" };
-        return vec![("lag behind the dead time".to_owned(), word.to_owned())];
-    }
-    let rows = [
-        ("lag behind the dead time", Some(lag.mean_s()), " s"),
-        ("its time constant", lag.time_constant_s(), " s"),
-        ("its period", lag.period_s(), " s"),
-        ("its damping", lag.damping(), ""),
-    ];
-    let row = |(name, part, unit): (&str, Option<LagPart>, &str)| {
-        Some((name.to_owned(), format!("{}{unit}", known(part?))))
-    };
-    rows.into_iter().filter_map(row).collect()
 }
 
 fn with_unit(value: f64, unit: Option<&str>, per: &str) -> String {

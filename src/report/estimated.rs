@@ -1,6 +1,6 @@
 //! A joint with its estimate.
 
-use crate::delay::{AgainstState, DelayTable, Lag, Neutral, OnsetModel, Settling, Tracking};
+use crate::delay::{AgainstState, DelayTable, Neutral, OnsetModel, Tracking};
 use crate::experiment::Joint;
 use crate::study::JointEstimate;
 
@@ -14,19 +14,9 @@ pub struct EstimatedJoint<'a> {
 }
 
 impl EstimatedJoint<'_> {
-    /// The lag that its trials share, where the method looks for one.
-    pub fn lag(&self) -> Option<&Lag> {
-        self.estimate.estimated().find_map(|trial| trial.lag.as_ref())
-    }
-
     /// The response behind its dead times, where the method fits one.
     pub fn onset_model(&self) -> Option<&OnsetModel> {
         self.estimate.estimated().find_map(|trial| trial.onset_model.as_deref())
-    }
-
-    /// How its output settles, where it does.
-    pub fn settling(&self) -> Option<&Settling> {
-        self.estimate.estimated().find_map(|trial| trial.settling.as_ref())
     }
 
     /// Where its output comes to rest, where its input says that.

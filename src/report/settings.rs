@@ -87,9 +87,7 @@ pub(crate) fn settings_in_short(settings: &Settings) -> String {
     let Settings { method, low_pass, .. } = settings;
     let (alpha, beta) = (settings.alpha_length(), settings.beta_length());
     let mut parts = vec![method.to_string()];
-    if method.spec().has_rows {
-        parts.push(format!("α {alpha}, β {beta}"));
-    }
+    parts.push(format!("α {alpha}, β {beta}"));
     parts.extend(low_pass.map(|filter| format!("{} Hz", number(filter.cutoff_hz))));
     let usual = settings_rows(&Settings::of(*method));
     let changed = settings_rows(settings).into_iter().zip(usual);

@@ -6,9 +6,7 @@ use super::settings::{length, own_settings};
 use super::text_table::TextTable;
 use super::warning::Scatter;
 use super::{DelayRange, EstimatedJoint, Headline, JointSummary, dead_time_sentences};
-use crate::delay::{
-    Automatic, Chosen, Condition, FirstLast, Interpolation, LagPart, OnsetModel, Settings,
-};
+use crate::delay::{Automatic, Chosen, Condition, FirstLast, Interpolation, OnsetModel, Settings};
 use crate::numerics::LowPass;
 use crate::units::Length;
 use crate::wording::{measure, percent, rounded};
@@ -26,11 +24,8 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
     }
     let doubtful = doubtful_text(joints);
     let dead_times: String = joints.iter().flat_map(dead_time_lines).collect();
-    let lags: String = joints
-        .iter()
-        .flat_map(|joint| [onset_line(joint), tracking_line(joint), lag_line(joint)])
-        .flatten()
-        .collect();
+    let lines = joints.iter().flat_map(|joint| [onset_line(joint), tracking_line(joint)]);
+    let lags: String = lines.flatten().collect();
     let chosen: String = joints.iter().filter_map(chosen_line).collect();
     let own = joints.iter().filter_map(|joint| {
         let own = own_settings(joint, settings)?;
@@ -70,7 +65,7 @@ pub(crate) fn chosen_line(joint: &EstimatedJoint<'_>) -> Option<String> {
             None => format!("α = {} (as usual: no delay is known)", settings.alpha),
         });
     }
-    if automatic.beta && settings.method.spec().has_rows {
+    if automatic.beta {
         parts.push(format!("β = {}", settings.beta));
     }
     if automatic.passband {
@@ -89,15 +84,6 @@ fn low_pass_text(settings: &Settings) -> String {
         || "no low-pass".to_owned(),
         |LowPass { cutoff_hz, order }| format!("zero-phase low-pass {cutoff_hz} Hz, order {order}"),
     )
-}
-
-/// What is said of a joint whose steps do not show a common lag.
-pub(crate) const LAG_NOT_DETERMINED: &str = "the lag is not determined: each step starts from \
-    rest in a way of its own, and its onset is found by itself";
-
-/// A number with half of its 95 % interval.
-fn known(part: LagPart) -> String {
-    format!("{:.4} ± {:.4}", part.value, 1.96 * part.std_error)
 }
 
 /// The response of a joint behind its dead times in words, where the method fits one.
@@ -150,21 +136,6 @@ pub(crate) fn onset_sentence(model: &OnsetModel) -> String {
     )
 }
 
-/// How the output of a joint settles, in words, where it does.
-fn settling_line(joint: &EstimatedJoint<'_>) -> Option<String> {
-    let settling = joint.settling()?;
-    let rising = format!("time constant {} s", known(settling.rising_s()));
-    let falling = settling.falling_s();
-    let falling = falling.map(|part| format!("{} s where the input falls", known(part)));
-    let further = settling.further_s().map(|part| format!("a further lag of {} s", known(part)));
-    let parts: Vec<String> = [Some(rising), falling, further].into_iter().flatten().collect();
-    Some(format!(
-        "{}: the output settles ({}): each onset is that of an exponential, whatever the method\n",
-        joint.joint.name,
-        parts.join(", ")
-    ))
-}
-
 /// Where the output of a joint comes to rest, in words, where its input says that.
 pub(super) fn tracking_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     let tracking = joint.tracking()?;
@@ -176,29 +147,6 @@ pub(super) fn tracking_line(joint: &EstimatedJoint<'_>) -> Option<String> {
         rounded(tracking.offset()),
         rounded(tracking.gain().abs())
     ))
-}
-
-/// The lag of a joint in words, or how its output settles, where one was looked for.
-pub(super) fn lag_line(joint: &EstimatedJoint<'_>) -> Option<String> {
-    if let Some(line) = settling_line(joint) {
-        return Some(line);
-    }
-    let lag = joint.lag()?;
-    let parts = [
-        lag.time_constant_s().map(|part| format!("time constant {} s", known(part))),
-        lag.period_s().map(|part| format!("period {} s", known(part))),
-        lag.damping().map(|part| format!("damping {}", known(part))),
-    ];
-    let parts: Vec<_> = parts.into_iter().flatten().collect();
-    let name = &joint.joint.name;
-    if !lag.is_determined() {
-        return Some(format!("{name}: {LAG_NOT_DETERMINED}\n"));
-    }
-    if parts.is_empty() {
-        return Some(format!("{name}: no lag behind the dead time\n"));
-    }
-    let mean = known(lag.mean_s());
-    Some(format!("{name}: a lag of {mean} s behind the dead time ({})\n", parts.join(", ")))
 }
 
 /// What the cells of [`summary_cells`] are.
@@ -256,9 +204,7 @@ fn alpha_and_beta(settings: &Settings, automatic: Automatic) -> String {
 pub(super) fn settings_line(settings: &Settings, automatic: Automatic) -> String {
     let spec = settings.method.spec();
     let mut parts = Vec::new();
-    if spec.has_rows {
-        parts.push(alpha_and_beta(settings, automatic));
-    }
+    parts.push(alpha_and_beta(settings, automatic));
     if spec.has_intervals {
         parts.push(format!("{} % intervals", 100.0 * settings.interval));
     }

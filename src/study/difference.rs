@@ -43,10 +43,7 @@ impl StepResult {
             delay,
             delay_s: delay.map(|delay| delay * trial.period().seconds()),
             interval: decision.fine.map(|fine| (fine.low, fine.high)),
-            // Of an output that settles they are but chords.
-            lines: best
-                .filter(|_| decision.response.is_none())
-                .map(|best| [best.before, best.after]),
+            lines: best.map(|best| [best.before, best.after]),
         }
     }
 

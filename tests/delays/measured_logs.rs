@@ -1,12 +1,11 @@
 //! Measured logs of real machines, read with options alone. They are not part of this
 //! project: the folder that holds them is `TAUSCOPE_REAL_LOGS`, or `../shared/data`.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
 use serde::Deserialize;
-use tauscope::delay::{broken_regression, delay_scan, stroke};
+use tauscope::delay::delay_scan;
 
 use crate::real::log;
 
@@ -97,84 +96,6 @@ fn a_rotary_actuator_breaks_away_where_its_labels_say() {
     let mean = errors.iter().sum::<f64>() / 120.0;
     let spread = (errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / 119.0).sqrt();
     assert!(mean.abs() < 3.0 && spread < 2.5, "mean {mean}, spread {spread}");
-}
-
-#[derive(Deserialize)]
-struct Sample {
-    stroke: String,
-    angle_cnt: f64,
-}
-
-#[derive(Deserialize)]
-struct EndLabel {
-    stroke: String,
-    actuator: u32,
-    k_pressure_peak: f64,
-    k_pressure_endstop: f64,
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
-fn deviation(values: &[f64]) -> f64 {
-    let about = mean(values);
-    let squares = values.iter().map(|value| (value - about).powi(2)).sum::<f64>();
-    (squares / (values.len() - 1) as f64).sqrt()
-}
-
-#[test]
-fn a_rotary_actuator_stops_where_the_pressure_says() {
-    let Some(log) = log("rotary_hydraulic_strokes.csv") else { return };
-    let labels = log.with_file_name("rotary_hydraulic_labels.csv");
-    let mut strokes: BTreeMap<String, Vec<f64>> = BTreeMap::new();
-    for sample in csv::Reader::from_path(&log).unwrap().deserialize() {
-        let Sample { stroke, angle_cnt } = sample.unwrap();
-        strokes.entry(stroke).or_default().push(angle_cnt);
-    }
-    let labels: Vec<EndLabel> =
-        csv::Reader::from_path(labels).unwrap().deserialize().map(Result::unwrap).collect();
-    // Angle behind pressure, by actuator: at the onset, and at the stop.
-    let mut behind: BTreeMap<u32, (Vec<f64>, Vec<f64>)> = BTreeMap::new();
-    for (name, angles) in &strokes {
-        let label = labels.iter().find(|label| label.stroke == *name).unwrap();
-        let found = stroke(angles, 0.95).unwrap();
-        let (onsets, stops) = behind.entry(label.actuator).or_default();
-        onsets.push(found.onset.position - label.k_pressure_peak);
-        stops.push(found.stop.position - label.k_pressure_endstop);
-    }
-    assert_eq!(behind.values().map(|(_, stops)| stops.len()).sum::<usize>(), 120);
-    // Units 3 and 4 are damaged.
-    for unit in [1, 2, 5, 6] {
-        let (onsets, stops) = &behind[&unit];
-        let (at_onset, at_stop) = (deviation(onsets), deviation(stops));
-        assert!(at_stop <= 0.6, "unit {unit}: {at_stop} at the stop");
-        assert!(mean(stops).abs() < 2.0, "unit {unit}: {} at the stop", mean(stops));
-        assert!(at_onset <= 2.5, "unit {unit}: {at_onset} at the onset");
-    }
-}
-
-#[test]
-fn the_break_of_a_stagnant_layer_is_that_of_the_literature() {
-    let Some(log) = log("segmented_stagnant.csv") else { return };
-    let points: Vec<(f64, f64)> =
-        csv::Reader::from_path(&log).unwrap().deserialize().map(Result::unwrap).collect();
-    let found = broken_regression(&points).unwrap();
-    // R's segmented 1.6-2 on the same points.
-    let expected = [
-        (found.position.value, 0.041_106, 5e-7),
-        (found.position.std_error, 0.022_835, 5e-7),
-        (found.slope_before.value, -0.422_077, 5e-5),
-        (found.slope_before.std_error, 0.011_487, 5e-7),
-        (found.slope_after.value, -1.020_570, 5e-5),
-        (found.slope_after.std_error, 0.015_068, 5e-7),
-        (found.intercept, 0.544_661, 5e-7),
-        (found.sse, 0.009_140_20, 5e-9),
-    ];
-    for (value, expected, rounding) in expected {
-        assert!((value - expected).abs() <= rounding, "{value} {expected}");
-    }
-    assert_eq!(found.freedom, 24);
 }
 
 /// The whole delay that explains a table's output best, from its columns.

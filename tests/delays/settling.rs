@@ -2,9 +2,7 @@
 //! exact exponentials between samples.
 
 use crate::sample::{least, size};
-use tauscope::delay::{
-    Condition, FirstLast, Method, Settings, TrialEstimate, Verdict, estimate, estimate_joint,
-};
+use tauscope::delay::{Condition, FirstLast, Method, Settings, TrialEstimate, Verdict, estimate};
 use tauscope::experiment::Trial;
 use tauscope::units::SamplePeriod;
 
@@ -90,20 +88,17 @@ fn judged(found: &TrialEstimate, truth: &[f64]) -> (Vec<f64>, usize) {
 }
 
 #[test]
-fn every_method_finds_the_onsets_of_an_output_that_has_not_settled_when_the_next_step_comes() {
+fn the_onsets_of_an_output_are_found_that_has_not_settled_when_the_next_step_comes() {
     let (trial, truth) = record(PLAIN, 1);
-    for method in Method::all().filter(|method| !method.spec().models_response()) {
-        let found = estimate(&trial, &settings(method)).unwrap();
-        let settling = found.settling.as_ref().unwrap();
-        // Within four standard errors, and a part for what one record may be off.
-        let time_constant = settling.rising_s();
-        assert!((time_constant.value - 3.0).abs() < 4.0 * time_constant.std_error + 0.02);
-        let (errors, _) = judged(&found, &truth);
-        assert_eq!(errors.len(), 20, "{method}");
-        let largest = errors.iter().copied().fold(0.0, f64::max);
-        // Half of what a curve fit with SciPy on such records is off at most.
-        assert!(largest < 0.1, "{method}: {largest}");
-    }
+    let found = estimate(&trial, &settings(Method::AUTO)).unwrap();
+    let model = found.onset_model.as_ref().unwrap();
+    assert_eq!(model.shape(), "settling");
+    assert!((model.parameters()[0].1 - 3.0).abs() < 0.06, "{model:?}");
+    let (errors, _) = judged(&found, &truth);
+    assert_eq!(errors.len(), 20);
+    let largest = errors.iter().copied().fold(0.0, f64::max);
+    // Half of what a curve fit with SciPy on such records is off at most.
+    assert!(largest < 0.1, "{largest}");
 }
 
 #[test]
@@ -118,7 +113,7 @@ fn intervals_hold_the_dead_times_behind_a_further_lag_and_without() {
         let held: usize = (0..records)
             .map(|seed| {
                 let (trial, truth) = record(plant, 10 + seed);
-                judged(&estimate(&trial, &settings(Method::HINGE)).unwrap(), &truth).1
+                judged(&estimate(&trial, &settings(Method::AUTO)).unwrap(), &truth).1
             })
             .sum();
         // Four standard deviations: steps of a record share an error.
@@ -130,10 +125,8 @@ fn intervals_hold_the_dead_times_behind_a_further_lag_and_without() {
 #[test]
 fn a_joint_that_moves_on_does_not_settle_and_the_paper_asks_nothing() {
     let (trial, _) = record(PLAIN, 2);
-    let paper = Settings { paper: true, ..settings(Method::TWO_LINE) };
-    assert_eq!(estimate(&trial, &paper).unwrap().settling, None);
-    let told = Settings { settles: Some(false), ..settings(Method::HINGE) };
-    assert_eq!(estimate(&trial, &told).unwrap().settling, None);
+    let paper = Settings { paper: true, ..settings(Method::AUTO) };
+    assert_eq!(estimate(&trial, &paper).unwrap().onset_model, None);
     let mut angle = 0.0;
     let angles = trial.input().iter().map(|speed| {
         angle += 0.01 * speed;
@@ -141,31 +134,8 @@ fn a_joint_that_moves_on_does_not_settle_and_the_paper_asks_nothing() {
     });
     let angles = angles.collect();
     let joint = Trial::new("1", 0.0, trial.period(), trial.input().to_vec(), angles).unwrap();
-    for method in Method::all() {
-        let found = estimate_joint(&[joint.clone()].into(), &settings(method)).remove(0);
-        assert_eq!(found.unwrap().settling, None, "{method}");
-    }
-}
-
-#[test]
-fn a_time_constant_shorter_than_two_samples_is_not_shown_by_them() {
-    let mut next = random(4);
-    let levels: Vec<f64> = (0..60).map(|_| 4.0 * next()).collect();
-    let period_s = 0.1;
-    let left = (-period_s / 0.06_f64).exp();
-    let (mut input, mut output) = (Vec::new(), Vec::new());
-    let mut y = levels[0];
-    for level in levels.iter().flat_map(|level| [*level; 20]) {
-        y = level + (y - level) * left;
-        input.push(level);
-        output.push(y + 0.005 * normal(&mut next));
-    }
-    let period = SamplePeriod::from_seconds(period_s).unwrap();
-    let trial = Trial::new("1", 0.0, period, input, output).unwrap();
-    for method in Method::all() {
-        let found = estimate_joint(&[trial.clone()].into(), &settings(method)).remove(0);
-        assert_eq!(found.unwrap().settling, None, "{method}");
-    }
+    let found = estimate(&joint, &settings(Method::AUTO)).unwrap();
+    assert_eq!(found.onset_model.unwrap().shape(), "bend");
 }
 
 #[test]
@@ -177,27 +147,19 @@ fn a_step_in_a_dead_band_is_no_reaction() {
     input[middle..1500].iter_mut().for_each(|level| *level += 0.3);
     let output = trial.output().to_vec();
     let trial = Trial::new("1", 0.0, trial.period(), input, output).unwrap();
-    let found = estimate(&trial, &settings(Method::HINGE)).unwrap();
+    let found = estimate(&trial, &settings(Method::AUTO)).unwrap();
     let of_it = found.decisions.iter().find(|it| it.input_step.sample == middle + 1).unwrap();
     assert_eq!(of_it.verdict(), Verdict::Rejected(Condition::NothingHappened));
 }
 
 #[test]
-fn a_plain_reaction_is_no_doubt_and_its_response_is_what_was_measured() {
+fn a_plain_reaction_is_no_doubt() {
     let (trial, _) = record(PLAIN, 5);
-    for method in [Method::TWO_LINE, Method::HINGE] {
-        let found = estimate(&trial, &settings(method)).unwrap();
-        let accepted = found.decisions.iter().filter(|it| it.verdict() == Verdict::Accepted);
-        for decision in accepted.clone() {
-            let doubt = decision.doubt(trial.output());
-            assert!(doubt.settles && !doubt.is_doubtful(), "{}: {doubt:?}", decision.number);
-            let response = decision.response.as_ref().unwrap().values();
-            let measured = &trial.output()[decision.segment.indices()];
-            assert_eq!(response.len(), measured.len());
-            let squares = response.iter().zip(measured).map(|(a, b)| (a - b).powi(2));
-            let rms = (squares.sum::<f64>() / measured.len() as f64).sqrt();
-            assert!((rms / PLAIN.noise - 1.0).abs() < 0.2, "{}: {rms}", decision.number);
-        }
-        assert!(accepted.count() >= 18);
+    let found = estimate(&trial, &settings(Method::AUTO)).unwrap();
+    let accepted = found.decisions.iter().filter(|it| it.verdict() == Verdict::Accepted);
+    for decision in accepted.clone() {
+        let doubt = decision.doubt(trial.output());
+        assert!(doubt.settles && !doubt.is_doubtful(), "{}: {doubt:?}", decision.number);
     }
+    assert!(accepted.count() >= 18);
 }

@@ -7,7 +7,7 @@ use super::layering::sources;
 /// What finds a property of a record, and the files that may call it.
 const FINDERS: [(&str, &[&str]); 6] = [
     ("::find(self)", &["experiment/record.rs"]),
-    ("best_lag(", &["delay/settling/following.rs"]),
+    ("best_lag(", &["delay/first_order.rs"]),
     ("held_inputs(", &["delay/held_input.rs", "fit/mended.rs"]),
     ("Spikes::of(", &["fit/mended.rs"]),
     ("Follower::shown(", &["fit/first_order.rs"]),

@@ -2,7 +2,7 @@
 
 use clap::{Args as ClapArgs, ValueEnum};
 
-use super::conditions::{ConditionArgs, Passband, ids_with, method, passband};
+use super::conditions::{ConditionArgs, Passband, method, passband};
 use super::number::length;
 use crate::delay::{Automatic, Interpolation, Method, Settings};
 use crate::units::Length;
@@ -37,11 +37,9 @@ pub(crate) struct AlgorithmArgs {
 }
 
 fn passband_help() -> String {
-    let smoothed = ids_with(|spec| spec.low_pass.is_some());
-    format!(
-        "Zero-phase low-pass on the output: its cutoff, or `none` [default: 5 for {smoothed}, \
-         else none]"
-    )
+    "Zero-phase low-pass on the output that Algorithm 1's lines are fitted to: its cutoff, or `none` \
+     [default: 5]"
+        .to_owned()
 }
 
 /// A value, or one that is chosen from the record.

@@ -60,7 +60,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         let warnings = EstimatedJoint { joint, estimate }.warnings();
         notes.extend(warnings.into_iter().map(|it| format!("joint `{name}`: {}", it.text)));
         // What is said of two lines is not said of an onset.
-        let by_lines = !estimate.settings.method.spec().models_response();
+        let by_lines = !estimate.settings.method.spec().has_intervals;
         if estimate.dead_time.is_none() && by_lines {
             notes.extend(unsmoothed(joint, estimate));
             notes.extend(cut_at_the_next_step(joint, estimate));
@@ -132,7 +132,7 @@ fn is_on_a_coarse_grid(estimate: &JointEstimate) -> bool {
     const FEWEST: usize = 3;
     const COARSE: f64 = 0.4;
     let settings = &estimate.settings;
-    if !settings.method.spec().has_rows || settings.paper || settings.beta < 2 {
+    if settings.method.spec().has_intervals || settings.paper || settings.beta < 2 {
         return false;
     }
     let delays = accepted(estimate).filter(|decision| decision.fine.is_none());
@@ -150,7 +150,7 @@ fn smeared(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let holds = estimate.estimated().flat_map(|trial| &trial.decisions);
     let holds: Vec<f64> = holds.map(|decision| decision.hold as f64).collect();
     let hold_s = median(&holds)? * first.seconds();
-    let unsmoothed = Method::all().find(|method| method.spec().low_pass.is_none())?;
+    let unsmoothed = Method::AUTO;
     (hold_s * cutoff_hz < 1.0).then(|| {
         format!(
             "joint `{}`: the input is held for {} s (median), less than a period of the low-pass of \
@@ -181,7 +181,7 @@ fn as_long_as_allowed(joint: &Joint, estimate: &JointEstimate) -> Option<String>
     let settings = estimate.settings.in_samples(&joint.trials);
     let longest = settings.max_delay? as f64;
     let delays: Vec<f64> = accepted(estimate).filter_map(Decision::delay).collect();
-    let near = if settings.method.spec().has_rows { settings.beta as f64 } else { 1.0 };
+    let near = if settings.method.spec().has_intervals { 1.0 } else { settings.beta as f64 };
     let bounded = delays.iter().filter(|delay| **delay > longest - near).count();
     (bounded > 0 && bounded as f64 >= PART * delays.len() as f64).then(|| {
         format!(
@@ -201,9 +201,7 @@ fn accepted(estimate: &JointEstimate) -> impl Iterator<Item = &Decision> {
 /// A line where segments end at the next step, since they held the reaction to it.
 fn cut_at_the_next_step(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let settings = &estimate.settings;
-    let cuts_segments = settings.method.spec().cuts_segments;
-    let mut trials = estimate.estimated().filter(|_| cuts_segments);
-    trials.any(|trial| end_at_the_next_step(&trial.decisions)).then(|| {
+    estimate.estimated().any(|trial| end_at_the_next_step(&trial.decisions)).then(|| {
         format!(
             "joint `{}`: it reacts within α = {} samples, so that segments hold the reaction to the \
              next step, too: they end at that step",

@@ -3,30 +3,22 @@
 use std::sync::Arc;
 
 use crate::delay::decision::Decision;
-use crate::delay::lag::Lag;
 use crate::delay::onset_model::OnsetModel;
 use crate::delay::prepared::Prepared;
 use crate::delay::settings::Settings;
 use crate::delay::spec::Method;
 
-/// What the trials of a joint share.
-#[derive(Clone, Debug, Default)]
-pub(in crate::delay) struct Shared {
-    /// How the joint follows behind its dead times, where the method looks for it.
-    pub(in crate::delay) lag: Option<Lag>,
-    /// The response behind the dead times, where the method looks for it.
-    pub(in crate::delay) onset_model: Option<Arc<OnsetModel>>,
-}
+/// What the trials of a joint share: the response behind the dead times, where the method looks for it.
+pub(in crate::delay) type Shared = Option<Arc<OnsetModel>>;
 
 /// A way to find the delays of a trial.
 pub(in crate::delay) trait DelayMethod: Sync {
     /// Its handle, by which settings name it and which says what it is.
     fn method(&self) -> Method;
 
-    /// What the `trials` of a joint share. Only methods of
-    /// [`Scope::Joint`](crate::delay::Scope::Joint) or wider are asked.
+    /// What the `trials` of a joint share. Only methods with intervals are asked.
     fn shared(&self, _trials: &[Prepared<'_>], _settings: &Settings) -> Shared {
-        Shared::default()
+        None
     }
 
     /// The decisions on all steps of a trial, one each and in order, with what its joint shares.

@@ -4,19 +4,14 @@
 //! its [`DelayMethod`], and a line in `registry.rs`: help, defaults, sweeps, reports and
 //! recordings follow from what it says of itself.
 
-mod auto;
-mod hinge;
+mod by_onset;
 mod interface;
-mod lag_aware;
 mod next_reaction;
 mod noise_test;
 mod registry;
-mod settling;
 mod step_context;
 mod two_line;
 
-pub(super) use hinge::decide_by_broken_lines;
 pub(super) use interface::{DelayMethod, Shared};
 pub(crate) use next_reaction::end_at_the_next_step;
 pub(super) use registry::implementation;
-pub(super) use settling::decide_settling;

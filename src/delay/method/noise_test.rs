@@ -1,15 +1,14 @@
 //! Has anything happened? The change of slope against the noise.
 //!
 //! The output before the next step of the input, as it was measured, is fitted by one line
-//! and by the best broken line; how often noise alone gains as much is the p-value of
-//! [`Window`]. The noise, with its memory, is taken from the residuals of the broken lines.
+//! and by the best bend; how often noise alone gains as much is the p-value of [`Bends`]. The
+//! noise, with its memory, is taken from the residuals of the bends.
 
 use std::borrow::Cow;
 
-use crate::delay::broken_line::{BrokenLine, PARAMETERS, Window};
 use crate::delay::decision::Decision;
+use crate::delay::onset_model::{Bend, Bends, memory};
 use crate::delay::prepared::Prepared;
-use crate::numerics::NoiseModel;
 
 /// Steps from which the noise is known well enough to say that there is nothing else; chosen: one
 /// reaction alone passes for the memory of a noise.
@@ -23,16 +22,12 @@ const LATEST: usize = 20;
 
 /// Puts the verdict on each decision of a method that has none of its own.
 pub(super) fn judge(decisions: &mut [Decision], trial: &Prepared<'_>, confidence: f64) {
-    let white = NoiseModel::white();
-    let residuals = |decision: &Decision| {
-        let values = window(decision, trial);
-        Some(best(&values, &white)?.residuals(&values))
-    };
-    // About the broken lines: about one line each reaction would pass for noise with a long memory.
-    let noise = NoiseModel::of(decisions.iter().filter_map(residuals), PARAMETERS);
-    for decision in decisions {
-        let line = best(&window(decision, trial), &noise);
-        decision.test_reaction(line.map(|line| line.p_value), confidence);
+    let bends = Bends::within(longest(decisions));
+    let best = |decision: &Decision| bends.best(&window(decision, trial));
+    let found: Vec<Option<Bend>> = decisions.iter().map(best).collect();
+    let memory = memory(found.iter().flatten());
+    for (decision, bend) in decisions.iter_mut().zip(found) {
+        decision.test_reaction(bend.map(|bend| bend.p_value(memory)), confidence);
     }
 }
 
@@ -48,25 +43,28 @@ pub(super) fn judge_until_one_reacts(
     departs: impl Fn(usize) -> bool,
     confidence: f64,
 ) {
-    let white = NoiseModel::white();
-    let mut residuals: Vec<Vec<f64>> = Vec::new();
+    let mut found: Vec<Bend> = Vec::new();
     for (index, decision) in decisions.iter_mut().enumerate() {
         if departs(index) {
             break;
         }
         let values = window(decision, trial);
-        let Some(line) = best(&values, &white) else { continue };
-        residuals.push(line.residuals(&values));
-        let latest = residuals.len().saturating_sub(LATEST);
-        let noise = NoiseModel::of(&residuals[latest..], PARAMETERS);
-        let p_value = best(&values, &noise).map(|line| line.p_value);
+        let Some(bend) = Bends::within(values.len() + 1).best(&values) else { continue };
+        found.push(bend);
+        let latest = &found[found.len().saturating_sub(LATEST)..];
+        let p_value = latest.last().map(|bend| bend.p_value(memory(latest.iter())));
         if p_value.is_some_and(|p_value| p_value < PLAIN) {
             break;
         }
-        if residuals.len() >= FEWEST {
+        if found.len() >= FEWEST {
             decision.test_reaction(p_value, confidence);
         }
     }
+}
+
+/// More samples than any window has.
+fn longest(decisions: &[Decision]) -> usize {
+    decisions.iter().map(|decision| decision.segment.len()).max().unwrap_or(0) + 1
 }
 
 /// The samples of a decision's segment that its own step alone can have moved.
@@ -74,10 +72,4 @@ fn window<'a>(decision: &Decision, trial: &'a Prepared<'_>) -> Cow<'a, [f64]> {
     let indices = decision.segment.indices();
     let end = indices.end.min(decision.next_sample() - 1);
     trial.measured(indices.start..end)
-}
-
-/// The best broken line through `values`, if they are enough.
-fn best(values: &[f64], noise: &NoiseModel) -> Option<BrokenLine> {
-    let window = Window::of(values, noise)?;
-    window.best(window.positions())
 }

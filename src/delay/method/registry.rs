@@ -1,14 +1,13 @@
 //! The registry of methods.
 
-use super::auto::Auto;
-use super::hinge::Hinge;
+use super::by_onset::ByOnset;
 use super::interface::DelayMethod;
-use super::lag_aware::LagAware;
 use super::two_line::TwoLine;
 use crate::delay::spec::Method;
 
 /// Every method, in the order the documentation lists them.
-const REGISTRY: [&dyn DelayMethod; 4] = [&Auto, &TwoLine, &Hinge, &LagAware];
+const REGISTRY: [&dyn DelayMethod; 4] =
+    [&ByOnset::AUTO, &TwoLine, &ByOnset::HINGE, &ByOnset::LAG_AWARE];
 
 impl Method {
     /// Every method, in the order the documentation lists them.
@@ -33,7 +32,7 @@ pub(in crate::delay) fn implementation(method: Method) -> &'static dyn DelayMeth
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delay::{FirstLast, Scope, Settings, TrialEstimate, estimate};
+    use crate::delay::{FirstLast, Settings, TrialEstimate, estimate};
     use crate::experiment::Trial;
     use crate::units::SamplePeriod;
 
@@ -75,18 +74,15 @@ mod tests {
     }
 
     #[test]
-    fn each_has_intervals_rows_and_a_lag_where_it_says_so() {
+    fn each_has_intervals_and_a_response_where_it_says_so() {
         for method in Method::all() {
             let spec = method.spec();
-            let [close, apart] = [1, 4].map(|beta| found(method, beta));
-            let fine = close.decisions[0].fine;
+            let found = found(method, 1);
+            let fine = found.decisions[0].fine;
             assert_eq!(fine.is_some(), spec.has_intervals, "{method}");
             let holds = |low: f64, high: f64| low - 1e-9 <= DELAY && DELAY <= high + 1e-9;
             assert!(fine.is_none_or(|fine| holds(fine.low, fine.high)), "{method}: {fine:?}");
-            let moved = close.decisions[0].candidates != apart.decisions[0].candidates;
-            assert_eq!(moved, spec.has_rows, "{method}");
-            let is_shared = close.lag.is_some() || close.onset_model.is_some();
-            assert_eq!(is_shared, spec.scope >= Scope::Joint, "{method}");
+            assert_eq!(found.onset_model.is_some(), spec.has_intervals, "{method}");
             assert_eq!(Settings::of(method).check(), Ok(()), "{method}");
         }
     }

@@ -5,7 +5,7 @@ use crate::delay::condition::Facts;
 use crate::delay::decision::Decision;
 use crate::delay::interval::FineDelay;
 use crate::delay::motion::{DEPARTED, StepMotion};
-use crate::delay::onsets::{FromRest, GradualOnset};
+use crate::delay::onset_model::{FromRest, gradual_onset};
 use crate::delay::prepared::Prepared;
 use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
@@ -45,8 +45,8 @@ impl StepContext<'_> {
         self.motion().filter(StepMotion::departs).map(|_| DEPARTED)
     }
 
-    /// The onset of a joint that rested and departed, and the sample at which its window starts.
-    pub(super) fn gradual(&self) -> Option<(GradualOnset, usize)> {
+    /// The delay of a joint that rested and departed, by the speed that it gathers.
+    pub(super) fn gradual(&self) -> Option<FineDelay> {
         let motion = self.motion().filter(StepMotion::departs)?;
         let step = self.step().sample - 1;
         let before = self.index.checked_sub(1).and_then(|before| self.trial.steps.get(before));
@@ -60,7 +60,7 @@ impl StepContext<'_> {
             departed: motion.latest - start,
         };
         let values = self.output().get(start..self.next_sample() - 1)?;
-        Some((GradualOnset::of(values, &from, self.settings.interval)?, start))
+        gradual_onset(values, &from, self.settings.interval)
     }
 
     /// `p_(i+1)`: the sample of the next step, or the one behind the trial's last.
@@ -68,33 +68,12 @@ impl StepContext<'_> {
         self.trial.steps.get(self.index + 1).map_or(self.output().len() + 1, |next| next.sample)
     }
 
-    /// The decision that follows from what was found in a segment, in rows of so many samples.
+    /// The decision that follows from what was found in a segment.
     pub(super) fn decision(
         &self,
         segment: Segment,
-        row_length: usize,
         candidates: Candidates,
         fine: Option<FineDelay>,
-    ) -> Decision {
-        self.decision_with(self.motion(), segment, row_length, (candidates, fine))
-    }
-
-    /// That on an output that settles: its rest at a level bounds no reaction, nor does a stop.
-    pub(super) fn settling_decision(
-        &self,
-        segment: Segment,
-        candidates: Candidates,
-        fine: Option<FineDelay>,
-    ) -> Decision {
-        self.decision_with(None, segment, 1, (candidates, fine))
-    }
-
-    fn decision_with(
-        &self,
-        motion: Option<StepMotion>,
-        segment: Segment,
-        row_length: usize,
-        (candidates, fine): (Candidates, Option<FineDelay>),
     ) -> Decision {
         let (number, input_step) = (self.index + 1, self.step());
         let hold = self.next_sample() - input_step.sample;
@@ -105,8 +84,8 @@ impl StepContext<'_> {
             hold,
             output: &self.output()[segment.indices()],
             first: segment.first,
-            motion,
-            rows: segment.len() / row_length,
+            motion: self.motion(),
+            rows: segment.len() / self.settings.beta,
             best: candidates.best(),
             fine,
         };
@@ -119,7 +98,6 @@ impl StepContext<'_> {
             candidates,
             checks,
             fine,
-            response: None,
             onset: None,
             reviewer_verdict: None,
         }

@@ -20,7 +20,7 @@ use crate::delay::prepared::Prepared;
 use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
 use crate::delay::settings::{CONFIDENCE, CandidateLines, FirstLast, Settings};
-use crate::delay::spec::{Method, MethodSpec, Scope};
+use crate::delay::spec::{Method, MethodSpec};
 use crate::numerics::LowPass;
 
 static SPEC: MethodSpec = MethodSpec {
@@ -28,10 +28,7 @@ static SPEC: MethodSpec = MethodSpec {
     fits: "two-line regression",
     source: Some("Albrecht and Taylor, Algorithm 1"),
     summary: "Two regression lines (Albrecht and Taylor)",
-    has_rows: true,
-    cuts_segments: true,
     has_intervals: false,
-    scope: Scope::Segment,
     low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),
     confidence: None,
 };
@@ -136,5 +133,5 @@ fn decide(context: &StepContext<'_>, before: Option<&Decision>, beyond: usize) -
         CandidateLines::All => candidates,
         CandidateLines::Best => candidates.with_best_alone(),
     };
-    context.decision(segment, settings.beta, candidates, None)
+    context.decision(segment, candidates, None)
 }

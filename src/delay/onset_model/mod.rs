@@ -11,6 +11,8 @@
 //! - [`windows`]: the windows of a joint's steps, and one pass over them
 //! - [`alignment`]: about which delay all onsets have
 //! - [`search`]: the shape and its parameters, by evidence over all steps
+//! - [`reaction`]: whether anything happened in one window
+//! - [`from_rest`]: the onset of a joint that gathers speed from rest
 //! - [`follows`]: whether the output follows this input at all
 //! - [`uncertainty`]: what an interval is made of
 //! - [`model`]: all of it
@@ -18,11 +20,17 @@
 mod alignment;
 mod dynamics;
 mod follows;
+mod from_rest;
 mod model;
+mod reaction;
 mod response;
 mod search;
 mod shape;
 mod uncertainty;
 mod windows;
+
+pub(super) use from_rest::{FromRest, gradual_onset};
+pub(super) use reaction::{Bend, Bends, memory};
+pub(super) use shape::Family;
 
 pub use model::{Obstacle, OnsetModel, StepOnset};

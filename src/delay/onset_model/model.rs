@@ -6,11 +6,11 @@
 //! among those whose onsets answer the input as well.
 
 use super::follows::Follows;
+use super::reaction::p_value;
 use super::search::{Candidate, FEW, Search};
-use super::shape::Shape;
+use super::shape::{Family, Shape};
 use super::uncertainty::{Residual, choice, sensor_noise};
-use super::windows::{Fit, MARGIN, Onset, Pass, Run, Step};
-use crate::delay::broken_line::p_value;
+use super::windows::{Fit, Onset, Pass, Run, Step};
 use crate::delay::interval::FineDelay;
 use crate::delay::motion::StepMotion;
 use crate::delay::prepared::Prepared;
@@ -54,6 +54,8 @@ const PASSES: usize = 3;
 pub struct OnsetModel {
     /// The period of the trials that it was found in.
     period: SamplePeriod,
+    /// The responses among which it was chosen.
+    families: &'static [Family],
     /// In samples of that period.
     shape: Shape,
     /// Samples to each side of an onset.
@@ -101,24 +103,46 @@ pub struct StepOnset {
 }
 
 impl OnsetModel {
-    /// The model of a joint's trials, those of the first one's period; `None` where there is nothing
-    /// to fit.
-    pub(in crate::delay) fn of(trials: &[Prepared<'_>], settings: &Settings) -> Option<Self> {
+    /// The model of a joint's trials, those of the first one's period, with one of some responses;
+    /// `None` where there is nothing to fit.
+    pub(in crate::delay) fn of(
+        trials: &[Prepared<'_>],
+        settings: &Settings,
+        families: &'static [Family],
+    ) -> Option<Self> {
+        let found = Self::among(trials, settings, families)?;
+        // Strokes from rest gather speed each in a way of its own.
+        let is_stroke = |trial: &Prepared<'_>| FirstLast::Auto.are_judged(trial.steps.len());
+        let settles = !found.shape.family.may_be_curved();
+        let strokes = trials.iter().all(is_stroke) && found.is_misfit() && !settles;
+        if !(rests(trials) && (strokes || found.is_unrelated())) {
+            return Some(found);
+        }
+        let bend = Self::among(trials, settings, &[Family::Bend])?;
+        Some(Self { comes_to_rest: true, ..bend })
+    }
+
+    /// The best model with one of some responses.
+    fn among(
+        trials: &[Prepared<'_>],
+        settings: &Settings,
+        families: &'static [Family],
+    ) -> Option<Self> {
         let period = trials.first()?.period;
         let alike = trials.iter().filter(|trial| trial.period == period);
         let longest = settings.max_delay;
-        let runs = alike.map(|trial| run_of(trial, longest));
+        let runs = alike.map(|trial| run_of(trial, longest, families));
         let mut runs: Vec<Run> = runs.filter(|run| !run.steps.is_empty()).collect();
         // What is found hangs on no order of the trials.
         runs.sort_by(|a, b| {
             let [one, other] = [a, b].map(|run| run.output.iter().map(|y| y.to_bits()));
             b.output.len().cmp(&a.output.len()).then_with(|| one.cmp(other))
         });
-        let mut all = vec![Self::within(&runs, period, 1.0)?];
+        let mut all = vec![Self::within(&runs, (period, families), 1.0)?];
         // Of a bump test the whole is looked at.
         let few = runs.iter().map(|run| run.steps.len()).sum::<usize>() <= FEW;
         let parts = if few || all[0].0.misfit() < MISFIT { &[][..] } else { &PARTS };
-        all.extend(parts.iter().filter_map(|part| Self::within(&runs, period, *part)));
+        all.extend(parts.iter().filter_map(|part| Self::within(&runs, (period, families), *part)));
         let as_well = |a: &Self, b: &Self| {
             let [a, b] = [a, b].map(|model| model.follows.r2.min(PLAIN));
             a > b - WORSE
@@ -139,22 +163,22 @@ impl OnsetModel {
         if is_as_good && other != best {
             model.shared = model.shared.hypot(apart);
         }
-        // Each stroke gathers speed in a way of its own.
-        let is_stroke = |trial: &Prepared<'_>| FirstLast::Auto.are_judged(trial.steps.len());
-        let settles = !model.shape.family.may_be_curved();
-        let strokes = trials.iter().all(is_stroke) && model.is_misfit() && !settles;
         // An output that comes to rest where its input says, or at stops, follows it, whatever its speed.
         model.comes_to_rest = trials.iter().any(|trial| trial.is_tested);
-        let is_shown = !(rests(trials) && (strokes || model.is_unrelated()));
-        is_shown.then_some(model)
+        Some(model)
     }
 
     /// The model that looks at a part of the reach, and its clear onsets.
-    fn within(runs: &[Run], period: SamplePeriod, part: f64) -> Option<(Self, Vec<Option<f64>>)> {
+    fn within(
+        runs: &[Run],
+        (period, families): (SamplePeriod, &'static [Family]),
+        part: f64,
+    ) -> Option<(Self, Vec<Option<f64>>)> {
         let holds: Vec<f64> = runs.iter().flat_map(holds).collect();
         let hold = median(&holds)?;
         let every = ceil_to_index(hold / SAMPLES_OF_HOLD).max(1);
-        let search = Search::of(beginning(runs, ENOUGH_FOR_SHAPE * every), every, part)?;
+        let search =
+            Search::of(beginning(runs, ENOUGH_FOR_SHAPE * every), (every, part), families)?;
         let mut candidates = search.select();
         for candidate in &mut candidates {
             candidate.typical *= every as f64;
@@ -164,17 +188,17 @@ impl OnsetModel {
         let shared = search.shared_variance(chosen).sqrt() * factor;
         let (shape, typical) = (chosen.shape.scaled(factor), chosen.typical);
         // At the rate of the record, what is left over and how the sizes go with the input.
-        let mut search = Search::of(beginning(runs, ENOUGH_FOR_MISFIT), 1, part)?;
+        let mut search = Search::of(beginning(runs, ENOUGH_FOR_MISFIT), (1, part), families)?;
         search.reach = reach_of(hold, every, part, search.longest_reach());
         let found = search.evaluate(shape, search.starting(typical), typical, PASSES);
         let residual = Residual::of(&search, &found);
         let follows = Follows::of(&search.runs, &found.onsets.found);
-        let misfit = misfit(residual.deviation, search.noise);
-        let choice = choice(&candidates, residual.memory * misfit.powi(2).max(1.0));
+        let choice = choice(&candidates, residual.memory);
         let shared = (shared * shared * residual.memory + choice * choice).sqrt();
         let (reach, noise) = (search.reach, search.noise);
         let mut model = Self {
             period,
+            families,
             shape,
             reach,
             typical: found.typical,
@@ -263,8 +287,8 @@ impl OnsetModel {
         let factor = self.period.seconds() / trial.period.seconds();
         let scaled =
             Self { shape: self.shape.scaled(factor), shared: self.shared * factor, ..self.clone() };
-        let run = run_of(trial, settings.max_delay);
-        let Some(mut search) = Search::of(vec![run], 1, 1.0) else {
+        let run = run_of(trial, settings.max_delay, self.families);
+        let Some(mut search) = Search::of(vec![run], (1, 1.0), &[]) else {
             return vec![None; trial.steps.len()];
         };
         search.reach = ceil_to_index(self.reach as f64 * factor);
@@ -292,12 +316,7 @@ impl OnsetModel {
         let explained = 1.0 - onset.sse / onset.sse_without.max(f64::MIN_POSITIVE);
         let samples = onset.samples() as f64;
         let others = fit.parameters() as f64 - 2.0;
-        let p_value = p_value(
-            explained,
-            (samples - others) / self.residual.memory,
-            samples,
-            (MARGIN as f64, samples - 1.0 - MARGIN as f64),
-        );
+        let p_value = p_value(explained, (samples - others) / self.residual.memory, samples);
         StepOnset {
             fine: FineDelay { delay, low: delay - low, high: delay + high, confidence },
             explained,
@@ -318,6 +337,13 @@ impl OnsetModel {
     /// The parameters of the shape, with the names that they have in files; times in seconds.
     pub fn parameters(&self) -> Vec<(&'static str, f64)> {
         self.shape.parameters(self.period.seconds())
+    }
+
+    /// How late a steady motion is behind its onset, seconds; none where the speed changes at once or the
+    /// output comes to rest.
+    pub fn lag_s(&self) -> Option<f64> {
+        let lag = self.shape.mean() * self.period.seconds();
+        (lag > 0.0).then_some(lag)
     }
 
     /// Root mean square of what the shape leaves over, in that of the sensor's noise; none of a sensor
@@ -364,7 +390,11 @@ impl Search {
     }
 
     /// Every so many samples of runs, about a part of the reach.
-    fn of(mut runs: Vec<Run>, every: usize, part: f64) -> Option<Self> {
+    fn of(
+        mut runs: Vec<Run>,
+        (every, part): (usize, f64),
+        families: &'static [Family],
+    ) -> Option<Self> {
         if every > 1 {
             runs = runs.iter().map(|run| thinned(run, every)).collect();
         }
@@ -376,7 +406,7 @@ impl Search {
         let noise = sensor_noise(&outputs).max(ROUNDING * range);
         let changes = runs.iter().flat_map(|run| &run.steps).map(|step| step.change().abs());
         let change = median(&changes.collect::<Vec<f64>>())?;
-        let mut search = Self { runs, reach: 0, noise, hold, change };
+        let mut search = Self { runs, reach: 0, noise, hold, change, families };
         search.reach = reach_of(hold, 1, part, search.longest_reach());
         Some(search)
     }
@@ -442,19 +472,30 @@ fn beginning(runs: &[Run], enough: usize) -> Vec<Run> {
 
 /// A trial as it is fitted: its output as it was measured, and its steps with what bounds the reaction to
 /// each.
-fn run_of(trial: &Prepared<'_>, longest: Option<usize>) -> Run {
+fn run_of(trial: &Prepared<'_>, longest: Option<usize>, families: &[Family]) -> Run {
     let samples = trial.raw.len();
     let output = trial.measured(0..samples).into_owned();
     let motions = trial.motions.iter().map(|motion| motion.as_deref());
     let motions = motions.chain(std::iter::repeat(None));
-    // A bump test is its way to a level.
-    let bounds = |motion: Option<&StepMotion>| motion.copied().filter(|_| trial.steps.len() > FEW);
+    // A bump test of an output that settles is its way to a level.
+    let is_bounded = trial.steps.len() > FEW || !families.contains(&Family::Settling);
+    let bounds = |motion: Option<&StepMotion>| motion.copied().filter(|_| is_bounded);
+    // What was filled in while nothing was logged says nothing.
+    let logged = |at: usize| {
+        let before = trial.unlogged.iter().rev().find(|gap| gap.end <= at);
+        let behind = trial.unlogged.iter().find(|gap| gap.start > at);
+        (before.map_or(0, |gap| gap.end), behind.map_or(samples, |gap| gap.start))
+    };
+    let extent = |at: usize, motion: Option<&StepMotion>| {
+        let (first, end) = logged(at);
+        bounds(motion).map_or((first, end), |it| (it.first.max(first), it.end.min(end)))
+    };
     let steps = trial.steps.iter().zip(motions).map(|(step, motion)| Step {
         at: step.sample as f64 - 1.0,
         before: step.before,
         after: step.after,
-        first: bounds(motion).map_or(0.0, |motion| motion.first as f64),
-        end: bounds(motion).map_or(samples as f64, |motion| motion.end as f64),
+        first: extent(step.sample - 1, motion).0 as f64,
+        end: extent(step.sample - 1, motion).1 as f64,
         latest: {
             let plainly = motion.map_or(samples, |motion| motion.latest);
             let asked = longest.map(|longest| (step.sample - 1).saturating_add(longest));

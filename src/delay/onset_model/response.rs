@@ -12,27 +12,31 @@ pub(super) fn fit_of(shape: &Shape, unit: f64, longest: usize) -> Box<dyn Fit> {
     let h = unit.recip();
     let [t, zeta] = shape.logs.map(f64::exp);
     match (shape.family, shape.curved) {
-        (Family::Bend, false) | (Family::Slew, _) => {
-            boxed(Square::<2>::new(0.0, h, 0.0, 0.0), 1..1, longest)
-        }
+        (Family::Bend, false) | (Family::Slew, _) => Box::new(bend(unit, longest)),
         (Family::Settling, _) => {
-            boxed(Square::<2>::new(-1.0 / t, 1.0 / t, 0.0, 0.0), 0..1, longest)
+            let generator = Square::<2>::new(-1.0 / t, 1.0 / t, 0.0, 0.0);
+            Box::new(dynamics(generator, 0..1, longest))
         }
-        (Family::Bend, true) => boxed(chain::<3>(h, &[]), 1..1, longest),
-        (Family::Lag, false) => boxed(chain::<3>(h, &[t]), 1..2, longest),
-        (Family::Lag, true) => boxed(chain::<4>(h, &[t]), 1..2, longest),
-        (Family::Pair, false) => boxed(pair::<4>(h, t, zeta), 1..3, longest),
-        (Family::Pair, true) => boxed(pair::<5>(h, t, zeta), 1..3, longest),
+        (Family::Bend, true) => Box::new(dynamics(chain::<3>(h, &[]), 1..1, longest)),
+        (Family::Lag, false) => Box::new(dynamics(chain::<3>(h, &[t]), 1..2, longest)),
+        (Family::Lag, true) => Box::new(dynamics(chain::<4>(h, &[t]), 1..2, longest)),
+        (Family::Pair, false) => Box::new(dynamics(pair::<4>(h, t, zeta), 1..3, longest)),
+        (Family::Pair, true) => Box::new(dynamics(pair::<5>(h, t, zeta), 1..3, longest)),
     }
+}
+
+/// Two lines that meet; `unit` samples are the unit of the time within.
+pub(super) fn bend(unit: f64, longest: usize) -> Dynamics<2> {
+    dynamics(Square::<2>::new(0.0, unit.recip(), 0.0, 0.0), 1..1, longest)
 }
 
 /// Dynamics whose speed `s` is the state behind those that follow it; where there is a state more, holds
 /// are curved, and it is the rate of the speed.
-fn boxed<const N: usize>(
+fn dynamics<const N: usize>(
     generator: Square<N>,
     followers: Range<usize>,
     longest: usize,
-) -> Box<dyn Fit> {
+) -> Dynamics<N> {
     let speed = followers.end;
     let unit = |index: usize| State::<N>::from_fn(|i, _| f64::from(u8::from(i == index)));
     let nuisance = (N > speed + 1).then(|| unit(speed + 1));
@@ -45,7 +49,7 @@ fn boxed<const N: usize>(
     if let Some(first) = followers.clone().next() {
         steady[(first, speed)] = 1.0;
     }
-    Box::new(Dynamics::new(generator, unit(speed), nuisance, Steady(steady), longest))
+    Dynamics::new(generator, unit(speed), nuisance, Steady(steady), longest)
 }
 
 /// An integrator behind lags of one pole each.

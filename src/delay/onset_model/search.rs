@@ -44,6 +44,8 @@ pub(super) struct Search {
     pub(super) hold: f64,
     /// Median size of the steps of the input.
     pub(super) change: f64,
+    /// The responses that it may have.
+    pub(super) families: &'static [Family],
 }
 
 /// A shape with the onsets behind it.
@@ -74,7 +76,7 @@ impl Search {
 
     /// Whether a family is tried: of one step the time that a motion lasts is that of its record.
     fn may_be(&self, family: Family) -> bool {
-        family != Family::Slew || !self.has_few_steps()
+        self.families.contains(&family) && (family != Family::Slew || !self.has_few_steps())
     }
 
     /// What fits a shape in windows of this search.
@@ -223,7 +225,8 @@ impl Search {
     pub(super) fn select(&self) -> Vec<Candidate> {
         let bend = self.first();
         let mut all = vec![bend.clone()];
-        for family in Family::WITH_PARAMETERS.into_iter().filter(|it| self.may_be(*it)) {
+        let others = Family::ALL.into_iter().skip(1).filter(|it| self.may_be(*it));
+        for family in others {
             let grid = Shape::grid(family, self.hold, self.change).into_iter();
             let found =
                 grid.filter(|shape| shape.is_allowed(self.hold, self.change)).flat_map(|shape| {

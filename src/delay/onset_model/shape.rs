@@ -17,7 +17,7 @@
 
 /// Which of the responses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Family {
+pub(in crate::delay) enum Family {
     Bend,
     Lag,
     Pair,
@@ -26,9 +26,8 @@ pub(super) enum Family {
 }
 
 impl Family {
-    /// Those that have parameters.
-    pub(super) const WITH_PARAMETERS: [Self; 4] =
-        [Self::Lag, Self::Pair, Self::Settling, Self::Slew];
+    pub(in crate::delay) const ALL: [Self; 5] =
+        [Self::Bend, Self::Lag, Self::Pair, Self::Settling, Self::Slew];
 
     /// Whether holds may be curved: the others come to rest.
     pub(super) fn may_be_curved(self) -> bool {

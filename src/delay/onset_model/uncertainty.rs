@@ -7,8 +7,7 @@
 //!   shape leaves over widens the interval as a slow noise does.
 //! - *The shared parameters*, by the delta method.
 //! - *The choice of the shape.* Other shapes count by `e^(−ΔS/θ)`, with `ΔS` the difference of
-//!   their criteria and a temperature `θ` of the memory times the square of the misfit: where none
-//!   fits, none is much better than others.
+//!   their criteria and `θ` the memory, by which the samples are fewer than they look.
 //!
 //! The last two move all onsets of a joint together.
 //!
@@ -22,7 +21,7 @@ use crate::numerics::{median, quantile};
 /// What the residuals of all windows of a joint say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Residual {
-    /// Standard deviation of what the shape leaves over.
+    /// Standard deviation of what the shape leaves over in a window, at the median.
     pub(super) deviation: f64,
     /// By how much its memory enlarges variances.
     pub(super) memory: f64,
@@ -73,10 +72,11 @@ impl Residual {
                 })
             })
             .collect();
-        let samples: f64 = windows.iter().map(|(_, left)| left.len() as f64).sum();
-        let sse: f64 = windows.iter().map(|(onset, _)| onset.sse).sum();
-        let freedom = (samples - per_window * windows.len() as f64).max(1.0);
-        let deviation = (sse / freedom).sqrt();
+        // A window that something else disturbed is no measure of the others.
+        let variances = windows
+            .iter()
+            .map(|(onset, left)| onset.sse / (left.len() as f64 - per_window).max(1.0));
+        let deviation = median(&variances.collect::<Vec<f64>>()).unwrap_or(0.0).sqrt();
         Self {
             deviation,
             memory: memory(windows.iter().map(|(_, left)| left.as_slice())),
@@ -86,7 +86,7 @@ impl Residual {
 }
 
 /// By how much the memory of residuals enlarges variances.
-fn memory<'a>(windows: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
+pub(super) fn memory<'a>(windows: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
     /// Samples over which residuals may go together, and the part of a window that these may be.
     const REACHES: [usize; 6] = [2, 5, 10, 20, 40, 100];
     const PART: usize = 3;

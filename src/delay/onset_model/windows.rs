@@ -183,7 +183,7 @@ impl<const N: usize> Dynamics<N> {
     }
 
     /// The best onset between two positions of a window.
-    fn best(&self, window: &Window<N>, first: f64, last: f64) -> (f64, Jump) {
+    pub(super) fn best(&self, window: &Window<N>, first: f64, last: f64) -> (f64, Jump) {
         let stride = (window.len() / COARSE).max(1) as f64;
         let mut best = (first, self.at(window, first));
         let try_at = |position: f64, best: &mut (f64, Jump)| {
@@ -219,6 +219,10 @@ impl<const N: usize> Dynamics<N> {
         /// Times the noise that three parameters gain, from which an onset is clear (chosen).
         const CLEAR: f64 = 12.0;
         let (number, index) = at;
+        // A joint that goes on resting has no onset.
+        if run.steps[index].rests {
+            return None;
+        }
         let (start, end) = match pass.windows {
             Some(windows) => *windows.get(number)?.get(index)?,
             None => window(run, positions, index, pass),

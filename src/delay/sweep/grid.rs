@@ -62,8 +62,8 @@ pub struct Base {
 
 /// Every combination of some methods, passbands, α and β.
 ///
-/// Each combination counts once when votes are counted, so that a method without rows
-/// counts as much as one with them; what is the same is run once.
+/// Each combination counts once when votes are counted, so that a method whose delays do not
+/// come in steps of β counts as much as another; what is the same is run once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     bases: Vec<Base>,
@@ -142,7 +142,7 @@ impl Grid {
         for b in 0..self.betas.len() {
             let settings = settings.clone();
             let levels = [m, p, a, b];
-            if !known && (b == 0 || settings.method.spec().has_rows) {
+            if !known && (b == 0 || !settings.method.spec().has_intervals) {
                 let beta = self.betas.get(b).copied().unwrap_or(settings.beta_length());
                 // Two runs that differ by a low-pass that is left out would be one.
                 let varied = Settings { low_pass, low_pass_required: true, ..settings };
@@ -227,7 +227,7 @@ impl Grid {
         let applies = |base: &Base| match factor {
             Factor::Method | Factor::Alpha => true,
             Factor::Passband => !base.keeps_low_pass,
-            Factor::Beta => base.settings.method.spec().has_rows,
+            Factor::Beta => !base.settings.method.spec().has_intervals,
         };
         self.bases.get(method).is_some_and(applies)
     }

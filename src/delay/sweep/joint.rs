@@ -43,7 +43,7 @@ impl JointSweep {
         };
         let steps: Vec<SweptStep> = steps.enumerate().map(judged).collect();
         let summary = |(index, run): (usize, &Option<RunDelays>)| {
-            Some(RunSummary::of(&steps, index, run.as_ref()?.lag.clone()))
+            Some(RunSummary::of(&steps, index, run.as_ref()?.lag_s))
         };
         let summaries = runs.iter().enumerate().map(summary).collect();
         let levels = levels_of(grid, &steps.iter().collect::<Vec<_>>(), &ran);
@@ -104,7 +104,7 @@ mod tests {
         let trial = Trial::new("1", 0.0, period, vec![0.0, 1.0], vec![0.0; 2]).unwrap();
         let reported = |delay: f64| ReportedDelay { delay, low: delay - 0.5, high: delay + 0.5 };
         let run = |delay: Option<f64>| {
-            Some(RunDelays { steps: vec![delay.map(reported)], lag: None, kinds_differ: false })
+            Some(RunDelays { steps: vec![delay.map(reported)], lag_s: None, kinds_differ: false })
         };
         let sweep = JointSweep::of(&grid(), &Record::from([trial]), &delays.map(run), 2.0);
         sweep.steps[0].clone()
@@ -150,7 +150,7 @@ mod tests {
         let trial = Trial::new("1", 0.0, period, vec![0.0, 1.0], vec![0.0; 2]).unwrap();
         let reported = ReportedDelay { delay: 3.0, low: 3.0, high: 3.0 };
         let runs = [true, false, true, false, true, true].map(|ran| {
-            ran.then(|| RunDelays { steps: vec![Some(reported)], lag: None, kinds_differ: false })
+            ran.then(|| RunDelays { steps: vec![Some(reported)], lag_s: None, kinds_differ: false })
         });
         let sweep = JointSweep::of(&grid(), &Record::from([trial]), &runs, 0.0);
         assert_eq!((sweep.steps[0].tried, sweep.steps[0].accepted), (4, 4));

@@ -3,7 +3,7 @@
 use super::agreement::ReportedDelay;
 use super::grid::Combination;
 use super::step::{SweptStep, mean};
-use crate::delay::{DelayTable, KindDelay, Lag, Settings, TrialEstimate, joint_steps};
+use crate::delay::{DelayTable, KindDelay, Settings, TrialEstimate, joint_steps};
 use crate::experiment::Joint;
 use crate::numerics::median;
 
@@ -12,8 +12,8 @@ use crate::numerics::median;
 pub struct RunDelays {
     /// A place for each step of all trials, in order.
     pub steps: Vec<Option<ReportedDelay>>,
-    /// The lag that it found.
-    pub lag: Option<Lag>,
+    /// The lag behind the dead time that it found, seconds.
+    pub lag_s: Option<f64>,
     /// Whether the medians of its kinds of steps differ by more than is uncertain.
     pub kinds_differ: bool,
 }
@@ -28,7 +28,7 @@ impl RunDelays {
         let trials = &joint.trials;
         let kinds = DelayTable::of(joint, estimates.clone()).kinds;
         let kinds_differ = KindDelay::differ(&kinds);
-        let mut found = Self { steps: Vec::new(), lag: None, kinds_differ };
+        let mut found = Self { steps: Vec::new(), lag_s: None, kinds_differ };
         let steps = joint_steps(trials, settings);
         for ((trial, steps), estimate) in trials.iter().zip(&steps).zip(estimates) {
             if let Some(estimate) = estimate {
@@ -36,7 +36,8 @@ impl RunDelays {
                     (estimate.decisions.iter(), settings.at(trial.period()));
                 let reported = decisions.map(|decision| ReportedDelay::of(decision, &settings));
                 found.steps.extend(reported);
-                found.lag = found.lag.or_else(|| estimate.lag.clone());
+                let model = estimate.onset_model.as_deref();
+                found.lag_s = found.lag_s.or_else(|| model?.lag_s());
             } else {
                 found.steps.resize(found.steps.len() + steps.len(), None);
             }
@@ -56,8 +57,8 @@ pub struct RunSummary {
     pub disagreements: usize,
     /// Of the steps that most agree on, the part where it agrees with them.
     pub agrees: Option<f64>,
-    /// The lag that it found.
-    pub lag: Option<Lag>,
+    /// The lag behind the dead time that it found, seconds.
+    pub lag_s: Option<f64>,
 }
 
 /// All combinations with one value of a setting, over all steps of a joint.
@@ -74,7 +75,7 @@ pub struct LevelSummary {
 }
 
 impl RunSummary {
-    pub(super) fn of(steps: &[SweptStep], run: usize, lag: Option<Lag>) -> Self {
+    pub(super) fn of(steps: &[SweptStep], run: usize, lag_s: Option<f64>) -> Self {
         let reported = |step: &SweptStep| step.delays.get(run).copied().flatten();
         let delays = steps.iter().filter_map(|step| Some(reported(step)?.delay * step.period_s));
         let delays: Vec<f64> = delays.collect();
@@ -93,7 +94,7 @@ impl RunSummary {
             median_s: median(&delays),
             disagreements: steps.iter().filter(disagrees).count(),
             agrees: mean(agrees),
-            lag,
+            lag_s,
         }
     }
 }

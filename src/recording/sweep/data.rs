@@ -29,7 +29,7 @@ fn samples(length: Length) -> Option<usize> {
 }
 
 fn has_rows(run: &Settings) -> bool {
-    run.method.spec().has_rows
+    !run.method.spec().has_intervals
 }
 
 fn add_settings(
@@ -54,7 +54,6 @@ fn add_settings(
         let steps = swept.reported.sweep.steps.iter();
         steps.map(|step| Swept::delay(step, run)).collect::<Vec<_>>()
     };
-    let lag = |run: &RunSummary| Some(run.lag.as_ref().filter(|l| l.order() > 0)?.mean_s().value);
     let columns = [
         texts("method", &runs.iter().map(|run| Some(run.method.to_string())).collect::<Vec<_>>()),
         numbers("passband_hz", &passbands.collect::<Vec<_>>()),
@@ -65,7 +64,7 @@ fn add_settings(
         integers("disagreements", &count(|run| run.disagreements)),
         numbers("median_delay_s", &number(|run| run.median_s)),
         numbers("agrees", &number(|run| run.agrees)),
-        numbers("lag_mean_s", &number(lag)),
+        numbers("lag_mean_s", &number(|run| run.lag_s)),
         optional_lists("delays", &(0..runs.len()).map(delays).collect::<Vec<_>>()),
     ];
     chunks.push(entity, swept.settings(), columns)

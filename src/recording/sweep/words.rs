@@ -84,8 +84,8 @@ fn setting(swept: &Swept<'_>, run: usize) -> Written {
     let median = summary.median_s.map_or("-".to_owned(), |s| format!("{} s", number(s)));
     writeln!(page, "| median delay | {median} |")?;
     writeln!(page, "| delays that differ from most | {} |", summary.disagreements)?;
-    if let Some(lag) = summary.lag.as_ref().filter(|lag| lag.order() > 0) {
-        writeln!(page, "| lag, apart from the delays | {} s |", number(lag.mean_s().value))?;
+    if let Some(lag_s) = summary.lag_s {
+        writeln!(page, "| lag, apart from the delays | {} s |", number(lag_s))?;
     }
     let differs: Vec<String> =
         swept.steps.iter().filter_map(|(step, _)| differing(step, run)).collect();

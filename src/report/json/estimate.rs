@@ -8,12 +8,8 @@ use super::dead_time::{DeadTimeJson, InputJson};
 use super::difference::OtherJson;
 use super::header::Header;
 use super::settings::SettingsJson;
-use crate::delay::{
-    AgainstOfKind, AgainstState, Chosen, Condition, Correlation, Direction, Lag, LagPart,
-};
-use crate::delay::{
-    DelayRow, DelayTable, KindDelay, Neutral, OnsetModel, Settings, Settling, StepState,
-};
+use crate::delay::{AgainstOfKind, AgainstState, Chosen, Condition, Correlation, Direction};
+use crate::delay::{DelayRow, DelayTable, KindDelay, Neutral, OnsetModel, Settings, StepState};
 use crate::experiment::{Experiment, ReadOptions, Source};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::DelayTableRow;
@@ -75,11 +71,7 @@ struct JointJson<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     chosen: Option<ChosenJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    lag: Option<LagJson>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     onset_model: Option<OnsetModelJson>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    settling: Option<SettlingJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
     tracking: Option<TrackingJson>,
     warnings: Vec<Warning>,
@@ -161,35 +153,11 @@ struct StatisticsJson {
     motion_ends_hz: Option<f64>,
 }
 
-/// The lag that a method found, in seconds.
-#[derive(Debug, Serialize)]
-struct LagJson {
-    mean_s: LagPartJson,
-    time_constant_s: Option<LagPartJson>,
-    period_s: Option<LagPartJson>,
-    damping: Option<LagPartJson>,
-}
-
-/// How an output settles, in seconds.
-#[derive(Debug, Serialize)]
-#[expect(clippy::struct_field_names, reason = "each name says its unit, as in the schema")]
-struct SettlingJson {
-    time_constant_s: LagPartJson,
-    falling_time_constant_s: Option<LagPartJson>,
-    further_lag_s: Option<LagPartJson>,
-}
-
 /// Where an output comes to rest: at `offset + gain · input`.
 #[derive(Debug, Serialize)]
 struct TrackingJson {
     offset: f64,
     gain: f64,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct LagPartJson {
-    value: f64,
-    std_error: f64,
 }
 
 /// The delay against the state of the joint.
@@ -340,9 +308,7 @@ impl<'a> JointJson<'a> {
             dead_time: DeadTimeJson::of(joint),
             settings: is_own.then(|| (&joint.estimate.settings).into()),
             chosen: chosen.map(Into::into),
-            lag: joint.lag().map(LagJson::new),
             onset_model: joint.onset_model().map(OnsetModelJson::new),
-            settling: joint.settling().map(SettlingJson::new),
             tracking: joint
                 .tracking()
                 .map(|found| TrackingJson { offset: found.offset(), gain: found.gain() }),
@@ -393,33 +359,6 @@ impl From<Chosen> for ChosenJson {
                 motion_ends_hz: statistics.motion_ends_hz,
             },
         }
-    }
-}
-
-impl LagJson {
-    fn new(lag: &Lag) -> Self {
-        Self {
-            mean_s: lag.mean_s().into(),
-            time_constant_s: lag.time_constant_s().map(Into::into),
-            period_s: lag.period_s().map(Into::into),
-            damping: lag.damping().map(Into::into),
-        }
-    }
-}
-
-impl SettlingJson {
-    fn new(settling: &Settling) -> Self {
-        Self {
-            time_constant_s: settling.rising_s().into(),
-            falling_time_constant_s: settling.falling_s().map(Into::into),
-            further_lag_s: settling.further_s().map(Into::into),
-        }
-    }
-}
-
-impl From<LagPart> for LagPartJson {
-    fn from(LagPart { value, std_error }: LagPart) -> Self {
-        Self { value, std_error }
     }
 }
 

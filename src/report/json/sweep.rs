@@ -3,7 +3,6 @@
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::estimate::LagPartJson;
 use super::header::Header;
 use super::settings::SettingsJson;
 use crate::delay::Settings;
@@ -56,7 +55,7 @@ struct SettingJson {
     median_delay_s: Option<f64>,
     disagreements: usize,
     agrees: Option<f64>,
-    lag_mean_s: Option<LagPartJson>,
+    lag_mean_s: Option<f64>,
 }
 
 /// A step over all runs; delays in samples.
@@ -163,13 +162,12 @@ fn levels_json(grid: &Grid, factor: Factor, levels: &[LevelSummary]) -> Value {
 
 impl SettingJson {
     fn new(run: &RunSummary) -> Self {
-        let lag = run.lag.as_ref().filter(|lag| lag.order() > 0);
         Self {
             accepted: run.accepted,
             median_delay_s: run.median_s,
             disagreements: run.disagreements,
             agrees: run.agrees,
-            lag_mean_s: lag.map(|lag| lag.mean_s().into()),
+            lag_mean_s: run.lag_s,
         }
     }
 }

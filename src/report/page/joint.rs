@@ -9,7 +9,7 @@ use crate::report::against::{AGAINST_HEADER, CORRECTED, against_rows, confounded
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::{LEVEL_HEADER, kind_sentence, level_cells, neutral_sentence};
 use crate::report::difference::difference_table;
-use crate::report::text::{lag_line, onset_line, tracking_line};
+use crate::report::text::{onset_line, tracking_line};
 use crate::report::text_table::TextTable;
 use crate::report::{
     DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, Headline, JointSummary,
@@ -113,7 +113,6 @@ fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<Block>,
     blocks.push(Block::part("Delay"));
     blocks.extend(onset_line(&estimated).map(|line| Block::text(line.trim_end())));
     blocks.extend(tracking_line(&estimated).map(|line| Block::text(line.trim_end())));
-    blocks.extend(lag_line(&estimated).map(|line| Block::text(line.trim_end())));
     blocks.push(Block::Figures(vec![figure]));
     let note = format!("{CORRECTED}: the delay depends on a quantity where p is at most 0.05.");
     blocks.push(Block::text(note));

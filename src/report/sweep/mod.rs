@@ -40,7 +40,7 @@ pub(crate) fn run_text(settings: &Settings) -> String {
     let low_pass = low_pass.map_or("no low-pass".to_owned(), |l| format!("{} Hz", l.cutoff_hz));
     let mut words =
         vec![settings.method.to_string(), low_pass, format!("α {}", settings.alpha_length())];
-    let has_rows = settings.method.spec().has_rows;
+    let has_rows = !settings.method.spec().has_intervals;
     words.extend(has_rows.then(|| format!("β {}", settings.beta_length())));
     words.join(", ")
 }

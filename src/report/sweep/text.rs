@@ -149,11 +149,10 @@ fn lag_sentence(grid: &Grid, reported: &ReportedSweep<'_>) -> Option<String> {
     let periods = reported.joint.trials.iter().map(|trial| trial.period().seconds());
     let longest = periods.fold(0.0, f64::max);
     let of_run = |(index, run): (usize, &Option<crate::delay::sweep::RunSummary>)| {
-        let lag = run.as_ref()?.lag.as_ref().filter(|lag| lag.order() > 0)?.mean_s();
+        let lag_s = run.as_ref()?.lag_s?;
         let settings = grid.runs().get(index)?;
         // Less than a sample is no lag that another method could take for delay.
-        let is_known = lag.value >= longest && lag.value > 1.96 * lag.std_error;
-        is_known.then_some((settings, lag.value))
+        (lag_s >= longest).then_some((settings, lag_s))
     };
     let mut lags: Vec<_> = reported.sweep.runs.iter().enumerate().filter_map(of_run).collect();
     // A low-pass looks like a lag; what was found without it comes first.

@@ -41,10 +41,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LIST", default_value = "5,10,20", value_parser = lengths, allow_hyphen_values = true, help_heading = "Settings that are varied")]
     alpha: Values<Length>,
 
-    #[arg(long, help = format!("Samples, or seconds, between two candidate breakpoints; for `{}` alone", ids_with(|spec| spec.has_rows)), value_name = "LIST", default_value = "1,2,5,10", value_parser = lengths, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    #[arg(long, help = format!("Samples, or seconds, between two candidate breakpoints; for `{}` alone", ids_with(|spec| !spec.has_intervals)), value_name = "LIST", default_value = "1,2,5,10", value_parser = lengths, allow_hyphen_values = true, help_heading = "Settings that are varied")]
     beta: Values<Length>,
 
-    #[arg(long, help = format!("Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none for {}, else none]", ids_with(|spec| spec.low_pass.is_some())), value_name = "LIST", value_parser = passbands, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    #[arg(long, help = format!("Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none]; for `{}` alone", ids_with(|spec| !spec.has_intervals)), value_name = "LIST", value_parser = passbands, allow_hyphen_values = true, help_heading = "Settings that are varied")]
     passband: Option<Values<Passband>>,
 
     /// Delays that differ by so many samples more than β or their intervals allow still agree
@@ -197,8 +197,8 @@ impl Args {
         let passbands = self.passband.as_ref().map_or(usual.as_slice(), |given| &given.0);
         let base = |method: &Method| {
             let settings = self.conditions.settings(*method);
-            // Who looks at the output as it was measured is not smoothed unasked.
-            let keeps_low_pass = self.passband.is_none() && settings.low_pass.is_none();
+            // Onsets are found in the output as it was measured.
+            let keeps_low_pass = settings.method.spec().has_intervals;
             Base { settings, keeps_low_pass }
         };
         let bases: Vec<Base> = self.method.0.iter().map(base).collect();

@@ -19,8 +19,8 @@ pub(crate) struct Values<T>(pub(crate) Vec<T>);
 impl Values<Method> {
     /// Every method.
     pub(super) fn all() -> Self {
-        // An onset model takes nothing from the settings that are varied.
-        Self(Method::all().filter(|method| !method.spec().models_response()).collect())
+        // `auto` is one of the others.
+        Self(Method::all().filter(|method| *method != Method::AUTO).collect())
     }
 }
 

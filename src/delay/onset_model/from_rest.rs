@@ -22,7 +22,7 @@
 use std::ops::Range;
 
 use crate::delay::interval::FineDelay;
-use crate::numerics::{Line, autocovariances, student_quantile};
+use crate::numerics::{autocovariances, student_quantile};
 use crate::units::ceil_to_index;
 
 /// The order of the lag, at most. Chosen on simulated cylinders: with 4 intervals hold too little where
@@ -54,76 +54,53 @@ const LACKING: f64 = 1.3;
 
 /// What is known of a window before an onset is looked for; positions are its indices.
 #[derive(Clone, Debug)]
-pub(crate) struct FromRest {
+pub(in crate::delay) struct FromRest {
     /// Samples before the step, at which the joint rested.
-    pub(crate) rest: usize,
+    pub(in crate::delay) rest: usize,
     /// Where the onset may be.
-    pub(crate) positions: Range<usize>,
+    pub(in crate::delay) positions: Range<usize>,
     /// The first sample that is plainly off the rest.
-    pub(crate) departed: usize,
+    pub(in crate::delay) departed: usize,
 }
 
-/// The onset in a window; positions are indices of the window.
-#[derive(Clone, Debug)]
-pub(crate) struct GradualOnset {
-    /// Where it is most likely, with its interval.
-    pub(crate) position: f64,
-    pub(crate) low: f64,
-    pub(crate) high: f64,
-    /// The line before it, over the indices of the window.
-    pub(crate) before: Line,
-    /// Samples of the window that were looked at.
-    pub(crate) len: usize,
-    /// The first sample at which it was tried, and the least squared error there and at the
-    /// samples behind it.
-    pub(crate) first: usize,
-    pub(crate) sse: Vec<f64>,
-}
-
-impl GradualOnset {
-    /// The best onset of `values`, with an interval that holds the true one as often as
-    /// `confidence` says. `None` for less than eight samples of rest, three behind the departure,
-    /// or no position.
-    pub(crate) fn of(values: &[f64], start: &FromRest, confidence: f64) -> Option<Self> {
-        let FromRest { rest, departed, .. } = *start;
-        let shortest = departed + BEHIND;
-        if rest < FEWEST || start.positions.is_empty() || values.len() < shortest {
-            return None;
-        }
-        let at_rest = Window::of(values.get(..rest)?);
-        let variance = at_rest.sse / (rest as f64 - 2.0);
-        // No window reaches farther behind the departure than that is behind the first position.
-        let farthest = departed + BEHIND.max(departed.saturating_sub(start.positions.start) + 1);
-        let longest = farthest.min(values.len());
-        let shapes = Shapes::of(longest, values.len());
-        let tried = |end: usize| Some(Profile::of(Window::of(values.get(..end)?), start, &shapes));
-        let first = tried(shortest)?;
-        let mut behind = departed as f64 - first.best()?.position;
-        loop {
-            let end = (departed + ceil_to_index(behind)).clamp(shortest, longest);
-            let profile = if end == shortest { first.clone() } else { tried(end)? };
-            let sse = profile.best()?.sse;
-            let freedom = ((end - rest) as f64 - (PARAMETERS - 2) as f64).max(1.0);
-            let lack = (sse - at_rest.sse).max(0.0) / freedom;
-            if lack <= LACKING * variance || end == shortest {
-                return profile.onset(variance.max(lack), confidence);
-            }
-            behind *= SHORTER;
-        }
+/// The delay of a step behind `start.rest` of `values`, with an interval that holds the true one as
+/// often as `confidence` says. `None` for less than eight samples of rest, three behind the departure,
+/// or no position.
+pub(in crate::delay) fn gradual_onset(
+    values: &[f64],
+    start: &FromRest,
+    confidence: f64,
+) -> Option<FineDelay> {
+    let FromRest { rest, departed, .. } = *start;
+    let shortest = departed + BEHIND;
+    if rest < FEWEST || start.positions.is_empty() || values.len() < shortest {
+        return None;
     }
-
-    /// As a delay of a step at the index `origin` of the window.
-    pub(crate) fn delay(&self, origin: f64, confidence: f64) -> FineDelay {
-        let [delay, low, high] = [self.position, self.low, self.high].map(|at| at - origin);
-        FineDelay::causal(delay, low, high, confidence)
+    let at_rest = Window::of(values.get(..rest)?);
+    let variance = at_rest.sse / (rest as f64 - 2.0);
+    // No window reaches farther behind the departure than that is behind the first position.
+    let farthest = departed + BEHIND.max(departed.saturating_sub(start.positions.start) + 1);
+    let longest = farthest.min(values.len());
+    let shapes = Shapes::of(longest, values.len());
+    let tried = |end: usize| Some(Profile::of(Window::of(values.get(..end)?), start, &shapes));
+    let first = tried(shortest)?;
+    let mut behind = departed as f64 - first.best()?.position;
+    loop {
+        let end = (departed + ceil_to_index(behind)).clamp(shortest, longest);
+        let profile = if end == shortest { first.clone() } else { tried(end)? };
+        let sse = profile.best()?.sse;
+        let freedom = ((end - rest) as f64 - (PARAMETERS - 2) as f64).max(1.0);
+        let lack = (sse - at_rest.sse).max(0.0) / freedom;
+        if lack <= LACKING * variance || end == shortest {
+            return profile.onset(variance.max(lack), (rest as f64, confidence));
+        }
+        behind *= SHORTER;
     }
 }
 
-/// Values, and the line through them over their indices.
+/// What is left of values beside the line through them.
 #[derive(Clone, Debug)]
 struct Window {
-    line: Line,
-    /// Of the values, about the line.
     residuals: Vec<f64>,
     sse: f64,
 }
@@ -137,7 +114,7 @@ impl Window {
         let slope = with / times().map(|x| x * x).sum::<f64>();
         let residuals: Vec<f64> = times().zip(values).map(|(x, y)| y - mean - slope * x).collect();
         let sse = residuals.iter().map(|r| r * r).sum();
-        Self { line: Line { slope, intercept: mean - slope * middle }, residuals, sse }
+        Self { residuals, sse }
     }
 
     /// The size of `shape`, which is zero before `first`, beside the line, and the squared error.
@@ -231,7 +208,6 @@ struct Tried {
 #[derive(Clone)]
 struct Profile<'a> {
     window: Window,
-    first: usize,
     tried: Vec<Tried>,
     shapes: &'a Shapes,
 }
@@ -249,49 +225,37 @@ impl<'a> Profile<'a> {
             tried.min_by(|a, b| a.sse.total_cmp(&b.sse))
         };
         let tried = (0..start.positions.len() * FINENESS).filter_map(best).collect();
-        Self { window, first, tried, shapes }
+        Self { window, tried, shapes }
     }
 
     fn best(&self) -> Option<Tried> {
         self.tried.iter().copied().min_by(|a, b| a.sse.total_cmp(&b.sse))
     }
 
-    /// The best with its interval, where noise has at least this `variance`.
-    fn onset(&self, variance: f64, confidence: f64) -> Option<GradualOnset> {
+    /// The delay behind the sample `origin` with its interval, where noise has at least this `variance`.
+    fn onset(&self, variance: f64, (origin, confidence): (f64, f64)) -> Option<FineDelay> {
         let best = self.best()?;
         let samples = self.window.residuals.len();
         let freedom = (samples as f64 - PARAMETERS as f64).max(1.0);
         let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
         let variance = variance.max(best.sse / freedom);
-        let shape = self.shape(&best);
-        let residuals =
-            self.window.residuals.iter().zip(&shape.residuals).map(|(y, h)| y - best.size * h);
-        let residuals: Vec<f64> = residuals.collect();
-        let before = Line {
-            slope: self.window.line.slope - best.size * shape.line.slope,
-            intercept: self.window.line.intercept - best.size * shape.line.intercept,
-        };
+        let pairs = self.window.residuals.iter().zip(self.shape(&best));
+        let residuals: Vec<f64> = pairs.map(|(y, h)| y - best.size * h).collect();
         // SSE(τ) ≤ SSE + t²·s²·g.
         let limit = best.sse + t * t * variance * memory(residuals);
         let good = |tried: &&Tried| tried.sse <= limit;
         // The ends lie between positions that were tried.
         let between = 1.0 / FINENESS as f64;
-        Some(GradualOnset {
-            position: best.position,
-            low: self.tried.iter().find(good)?.position - between,
-            high: self.tried.iter().rev().find(good)?.position + between,
-            before,
-            len: samples,
-            first: self.first,
-            sse: self.tried.iter().step_by(FINENESS).map(|tried| tried.sse).collect(),
-        })
+        let low = self.tried.iter().find(good)?.position - between;
+        let high = self.tried.iter().rev().find(good)?.position + between;
+        Some(FineDelay::causal(best.position - origin, low - origin, high - origin, confidence))
     }
 
-    /// The shape of `tried` over the window.
-    fn shape(&self, tried: &Tried) -> Window {
+    /// The shape of `tried` over the window, beside a line.
+    fn shape(&self, tried: &Tried) -> Vec<f64> {
         let (first, behind) = self.shapes.behind(tried.shape, tried.position);
         let values = std::iter::repeat_n(0.0, first).chain(behind);
-        Window::of(&values.take(self.window.residuals.len()).collect::<Vec<_>>())
+        Window::of(&values.take(self.window.residuals.len()).collect::<Vec<_>>()).residuals
     }
 }
 
@@ -319,9 +283,9 @@ mod tests {
         (0..110).map(value).collect()
     }
 
-    fn found(values: &[f64], departed: usize) -> GradualOnset {
+    fn found(values: &[f64], departed: usize) -> FineDelay {
         let start = FromRest { rest: 40, positions: 35..departed + 1, departed };
-        GradualOnset::of(values, &start, 0.95).unwrap()
+        gradual_onset(values, &start, 0.95).unwrap()
     }
 
     fn departure(values: &[f64], plain: f64) -> usize {
@@ -355,8 +319,7 @@ mod tests {
         for (number, start) in starts.into_iter().enumerate() {
             let values = motion(61.3, start);
             let found = found(&values, departure(&values, 0.05));
-            assert!((found.position - 61.3).abs() < 0.6, "{number}: {found:?}");
-            assert!((found.before.at(20.0) - 39.98).abs() < 0.01, "{number}: {found:?}");
+            assert!((found.delay - 21.3).abs() < 0.6, "{number}: {found:?}");
         }
     }
 
@@ -373,7 +336,7 @@ mod tests {
                 let noise = white.iter().skip(run * clean.len());
                 let values: Vec<f64> = clean.iter().zip(noise).map(|(y, e)| y + 0.02 * e).collect();
                 let found = found(&values, departure(&clean, 0.12));
-                found.low <= 62.4 && 62.4 <= found.high
+                found.low <= 22.4 && 22.4 <= found.high
             });
             let held = held.count();
             assert!((180..=200).contains(&held), "{number}: {held} of 200");
@@ -384,7 +347,7 @@ mod tests {
     fn what_is_too_short_has_none() {
         let of = |rest, positions: Range<usize>, departed| {
             let start = FromRest { rest, positions, departed };
-            GradualOnset::of(&[1.0; 50], &start, 0.95)
+            gradual_onset(&[1.0; 50], &start, 0.95)
         };
         assert!(of(7, 8..12, 12).is_none());
         assert!(of(20, 22..22, 30).is_none());

@@ -129,22 +129,6 @@ impl FirstOrder {
         self.dead_time_s + CONSTANTS * self.time_constant_s
     }
 
-    /// A first-order output whose time constant is as long as holds of the input.
-    ///
-    /// The correlation with the input alone does not show it: the output is compared with the
-    /// input behind a lag.
-    pub(super) fn within_holds(trials: &[Trial], hold_s: f64) -> Option<Self> {
-        /// Squared correlation (chosen).
-        const FOLLOWS: f64 = 0.8;
-        let (found, squared) = Self::likely_within_holds(trials, hold_s)?;
-        let Self { time_constant_s, dead_time_s, .. } = found;
-        let dead = |trial: &Trial| floor_to_index(dead_time_s / trial.period().seconds());
-        let dead = trials.iter().map(dead).min().unwrap_or(0);
-        // A joint that runs into its stops follows the sign of the input as well.
-        let of_sign = lagging(trials, time_constant_s, dead, sign).r_squared();
-        (squared >= FOLLOWS && squared > of_sign).then_some(found)
-    }
-
     /// Where a fit of a first order may start, though the input alone does not show one: its time
     /// constant may be as long as a quarter of the record, if the input moves about enough.
     pub(crate) fn likely(trials: &[Trial]) -> Option<Self> {
@@ -167,16 +151,6 @@ impl FirstOrder {
         let dead = floor_to_index(found.dead_time_s / longest.period().seconds());
         let of_sign = lagging(&trials, found.time_constant_s, dead, sign).r_squared();
         (squared >= LIKELY && squared > of_sign).then_some(found)
-    }
-
-    /// The best of what is said to settle, with the squared correlation.
-    pub(super) fn likely_within_holds(trials: &[Trial], hold_s: f64) -> Option<(Self, f64)> {
-        const COUNT: usize = 40;
-        /// Holds that a time constant lasts at most: a longer one is an integrator's.
-        const HOLDS: f64 = 2.0;
-        let shortest = trials.iter().map(|trial| trial.period().seconds()).fold(0.0, f64::max);
-        let longest = floor_to_index(hold_s / shortest);
-        best(trials, longest, HOLDS * hold_s, COUNT)
     }
 }
 
