@@ -69,9 +69,9 @@ fn behind_a_lag_the_delays_hang_on_the_method() {
     assert!(10 * method >= 9 * sweep.judged().count(), "{method} {others:?}");
     let lag_s = sweep.runs.iter().flatten().find_map(|run| run.lag_s).unwrap();
     assert!((lag_s - 0.06).abs() < 0.01);
-    // Two methods of three are wrong, and agree.
+    // Two methods of three are wrong, and mostly agree.
     let levels = &sweep.levels[0];
-    assert!(levels[1].disagrees.unwrap() < 0.2 && levels[2].disagrees.unwrap() > 0.9);
+    assert!(levels[1].disagrees.unwrap() < 0.2 && levels[2].disagrees.unwrap() > 0.8);
 }
 
 #[test]
@@ -112,8 +112,8 @@ fn each_setting_gives_what_estimate_gives() {
     let sweep = json(&run(folder.path(), &format!("{options} --method two-line,hinge")));
     assert_eq!(sweep["schema"], "tauscope/sweep/1");
     let settings = sweep["settings"].as_array().unwrap();
-    // The broken line knows no β.
-    assert_eq!((settings.len(), &sweep["combinations"]), (2 * 2 * 3 + 2 * 2, &24.into()));
+    // Onsets hang on neither β nor the low-pass.
+    assert_eq!((settings.len(), &sweep["combinations"]), (2 * 2 * 3 + 2, &24.into()));
     for (index, settings) in settings.iter().enumerate() {
         let option = |key: &str| settings[key].to_string().replace('"', "");
         let low_pass = settings["low_pass"]["cutoff_hz"].as_f64();

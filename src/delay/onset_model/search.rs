@@ -128,8 +128,11 @@ impl Search {
         let mut onsets = Onsets { positions, found };
         let mut typical = typical;
         for _ in 0..passes {
-            fit.pass(&self.runs, &mut onsets, &self.pass(shape, typical));
+            onsets.pass(fit.as_ref(), &self.runs, &self.pass(shape, typical));
             typical = self.typical(&onsets).unwrap_or(typical);
+        }
+        if passes > 1 {
+            onsets.reassign(fit.as_ref(), &self.runs, &self.pass(shape, typical));
         }
         let mut candidate = Candidate { shape, onsets, typical, score: f64::INFINITY };
         candidate.score = self.score(&candidate, fit.parameters());
@@ -192,7 +195,7 @@ impl Search {
         let value = |shape: Shape| {
             let mut moved = onsets.clone();
             let pass = Pass { shape, windows: Some(&windows), ..pass };
-            self.fit(&shape).pass(&self.runs, &mut moved, &pass);
+            moved.pass(self.fit(&shape).as_ref(), &self.runs, &pass);
             let pairs = moved.found.iter().flatten().zip(onsets.found.iter().flatten());
             pairs.filter_map(|(now, was)| Some(now.as_ref()?.sse * weight(was.as_ref()?))).sum()
         };
@@ -357,7 +360,7 @@ impl Search {
             let shape = shape.moved(by);
             let mut moved = onsets.clone();
             let pass = Pass { shape, windows: Some(&windows), ..pass };
-            self.fit(&shape).pass(&self.runs, &mut moved, &pass);
+            moved.pass(self.fit(&shape).as_ref(), &self.runs, &pass);
             let pairs = moved.found.iter().flatten().zip(onsets.found.iter().flatten());
             let pairs = pairs.filter_map(|(now, was)| Some((now.as_ref()?, was.as_ref()?)));
             let (sse, moves): (Vec<f64>, Vec<f64>) =

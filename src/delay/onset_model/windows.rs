@@ -4,6 +4,8 @@
 //! onset, its own; each pass finds every onset between its neighbours, which the next pass takes
 //! for the ends of the windows.
 
+use std::ops::Range;
+
 use super::dynamics::{Before, Dynamics, Jump, Window};
 use super::shape::Shape;
 use crate::units::{ceil_to_index, floor_to_index};
@@ -107,8 +109,14 @@ pub(super) trait Fit: Sync {
     /// Parameters of each window.
     fn parameters(&self) -> usize;
 
-    /// Finds each onset between its neighbours.
-    fn pass(&self, runs: &[Run], onsets: &mut Onsets, pass: &Pass<'_>);
+    /// Finds the onset of a step, the `index` of a run of a `number`, between its neighbours.
+    fn find(
+        &self,
+        run: &Run,
+        positions: &[f64],
+        at: (usize, usize),
+        pass: &Pass<'_>,
+    ) -> Option<Onset>;
 
     /// The mean squared error with the onsets where they are taken to be.
     fn mean_square(&self, runs: &[Run], positions: &[Vec<f64>], pass: &Pass<'_>) -> f64;
@@ -165,6 +173,90 @@ pub(super) fn windows(
     runs.iter().zip(positions).map(of_run).collect()
 }
 
+/// The onsets of one run.
+struct OfRun<'a> {
+    run: &'a Run,
+    number: usize,
+    positions: &'a mut [f64],
+    found: &'a mut [Option<Onset>],
+}
+
+impl Onsets {
+    /// Finds each onset between its neighbours.
+    pub(super) fn pass(&mut self, fit: &dyn Fit, runs: &[Run], pass: &Pass<'_>) {
+        self.of_runs(runs).for_each(|mut of| of.sweep(fit, 0..of.run.steps.len(), pass));
+    }
+
+    /// Gives reactions back to the steps that made them, where one step has none since those before it
+    /// have each taken the next one's.
+    pub(super) fn reassign(&mut self, fit: &dyn Fit, runs: &[Run], pass: &Pass<'_>) {
+        for mut of in self.of_runs(runs) {
+            for last in 1..of.run.steps.len() {
+                if of.found[last].is_some_and(|onset| !onset.is_clear) {
+                    of.shift(fit, last, pass);
+                }
+            }
+        }
+    }
+
+    fn of_runs<'a>(&'a mut self, runs: &'a [Run]) -> impl Iterator<Item = OfRun<'a>> {
+        let all = runs.iter().zip(self.positions.iter_mut().zip(&mut self.found)).enumerate();
+        all.map(|(number, (run, (positions, found)))| OfRun { run, number, positions, found })
+    }
+}
+
+impl OfRun<'_> {
+    fn sweep(&mut self, fit: &dyn Fit, range: Range<usize>, pass: &Pass<'_>) {
+        for index in range {
+            let onset = fit.find(self.run, self.positions, (self.number, index), pass);
+            self.found[index] = onset;
+            let Some(onset) = onset else { continue };
+            let before = index.checked_sub(1).map_or(f64::MIN, |before| self.positions[before]);
+            let next = self.positions.get(index + 1).copied().unwrap_or(f64::MAX);
+            // One that says nothing of where it is does not bound its neighbours.
+            self.positions[index] = if onset.is_clear {
+                onset.position
+            } else {
+                (self.run.steps[index].at + pass.typical).max(before).min(next.max(before))
+            };
+        }
+    }
+
+    /// Moves the onsets up to the step `last` to the next step each, as far as they lie behind it, and
+    /// finds another for the first of these steps, if less is left over then.
+    fn shift(&mut self, fit: &dyn Fit, last: usize, pass: &Pass<'_>) {
+        /// Steps of a chain at most (chosen).
+        const LONGEST: usize = 12;
+        let taken = |index: &usize| self.positions[index - 1] > self.run.steps[*index].at;
+        let links = (1..=last).rev().take_while(taken).take(LONGEST).count();
+        let first = last - links;
+        if links == 0 {
+            return;
+        }
+        let affected = first.saturating_sub(1)..(last + 2).min(self.found.len());
+        let before =
+            (self.positions[affected.clone()].to_vec(), self.found[affected.clone()].to_vec());
+        let lacking = self.lack(affected.clone());
+        self.positions.copy_within(first..last, first + 1);
+        let earliest = first.checked_sub(1).map_or(0.0, |before| self.positions[before]);
+        self.positions[first] =
+            (self.run.steps[first].at + pass.typical).max(earliest).min(self.positions[first + 1]);
+        (0..2).for_each(|_| self.sweep(fit, affected.clone(), pass));
+        if self.lack(affected.clone()) >= lacking {
+            self.positions[affected.clone()].copy_from_slice(&before.0);
+            self.found[affected].copy_from_slice(&before.1);
+        }
+    }
+
+    /// What is left over in windows: the negative logarithm of their likelihood.
+    fn lack(&self, range: Range<usize>) -> f64 {
+        let found = self.found[range].iter().flatten();
+        found
+            .map(|onset| onset.samples() as f64 * onset.mean_square().max(f64::MIN_POSITIVE).ln())
+            .sum()
+    }
+}
+
 impl<const N: usize> Dynamics<N> {
     /// The window of an onset, as sums.
     fn window_of(
@@ -208,6 +300,12 @@ impl<const N: usize> Dynamics<N> {
         }
         best
     }
+}
+
+impl<const N: usize> Fit for Dynamics<N> {
+    fn parameters(&self) -> usize {
+        self.parameters()
+    }
 
     fn find(
         &self,
@@ -246,31 +344,6 @@ impl<const N: usize> Dynamics<N> {
             end,
             is_clear: inside && window.sse_without - jump.sse > CLEAR * noise,
         })
-    }
-}
-
-impl<const N: usize> Fit for Dynamics<N> {
-    fn parameters(&self) -> usize {
-        self.parameters()
-    }
-
-    fn pass(&self, runs: &[Run], onsets: &mut Onsets, pass: &Pass<'_>) {
-        let all = onsets.positions.iter_mut().zip(&mut onsets.found);
-        for (number, (run, (positions, found))) in runs.iter().zip(all).enumerate() {
-            for (index, step) in run.steps.iter().enumerate() {
-                let onset = self.find(run, positions, (number, index), pass);
-                found[index] = onset;
-                let Some(onset) = onset else { continue };
-                let before = index.checked_sub(1).map_or(f64::MIN, |before| positions[before]);
-                let next = positions.get(index + 1).copied().unwrap_or(f64::MAX);
-                // One that says nothing of where it is does not bound its neighbours.
-                positions[index] = if onset.is_clear {
-                    onset.position
-                } else {
-                    (step.at + pass.typical).max(before).min(next.max(before))
-                };
-            }
-        }
     }
 
     fn mean_square(&self, runs: &[Run], positions: &[Vec<f64>], pass: &Pass<'_>) -> f64 {

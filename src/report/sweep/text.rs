@@ -154,17 +154,15 @@ fn lag_sentence(grid: &Grid, reported: &ReportedSweep<'_>) -> Option<String> {
         // Less than a sample is no lag that another method could take for delay.
         (lag_s >= longest).then_some((settings, lag_s))
     };
-    let mut lags: Vec<_> = reported.sweep.runs.iter().enumerate().filter_map(of_run).collect();
-    // A low-pass looks like a lag; what was found without it comes first.
-    lags.sort_by_key(|(settings, _)| settings.low_pass.is_some());
-    let (settings, seconds) = lags.first()?;
-    let others = grid.bases().len() > 1 && settings.low_pass.is_none();
+    let mut lags = reported.sweep.runs.iter().enumerate().filter_map(of_run);
+    let (settings, seconds) = lags.next()?;
+    let others = grid.bases().len() > 1;
     others.then(|| {
         format!(
             "`{}` finds a lag of {} s, which the other methods take for delay: that they agree \
              does not make them right.",
             settings.method,
-            rounded(*seconds)
+            rounded(seconds)
         )
     })
 }
