@@ -30,11 +30,11 @@ struct Swept {
 fn grid() -> Grid {
     let base = |method| {
         let settings = Settings::of(method);
-        let keeps_low_pass = settings.low_pass.is_none();
+        let keeps_low_pass = settings.method.spec().has_intervals;
         Base { settings, keeps_low_pass }
     };
     let slow = Some(LowPass { cutoff_hz: 5.0, order: 4 });
-    let methods = Method::all().filter(|method| !method.spec().models_response());
+    let methods = Method::all().filter(|method| *method != Method::AUTO);
     Grid::new(methods.map(base).collect(), vec![slow, None], vec![10], vec![1, 5])
 }
 
