@@ -334,9 +334,8 @@ fn a_library_out_of_its_place_is_seen() {
 
 /// Where equations may be solved by a decomposition of `nalgebra` outside `numerics`: there,
 /// rank and projection have their one tolerance, and a caller asks them.
-const DECOMPOSED: [(&str, &str); 3] = [
+const DECOMPOSED: [(&str, &str); 2] = [
     ("delay/onset_model/dynamics", "a few states, whose size is known when the program is built"),
-    ("delay/lag/information", "three by three, and the inverse is the covariance, too"),
     ("fit/descent", "a damped step: its matrix is positive definite by the damping"),
 ];
 

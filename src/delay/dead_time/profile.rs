@@ -103,6 +103,7 @@ impl<'a> Profile<'a> {
             }
             if self.error_at(middle) > limit { outside = middle } else { inside = middle }
         }
-        Some(f64::midpoint(inside, outside))
+        // The nearest one that is known to be too far.
+        Some(outside)
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::curve::Curve;
-use super::response::{Lags, NUMERATORS, Numerators};
+use super::response::{AHEAD, Lags, NUMERATORS, Numerators};
 use crate::experiment::Trial;
 
 /// Shortest period that is worked at: faster logs are averaged over as many samples. A dead
@@ -17,7 +17,7 @@ pub(super) struct Samples {
     pub(super) averaged: usize,
     pub(super) period_s: f64,
     pub(super) output: Vec<f64>,
-    /// A column per part of the curve.
+    /// The coefficients of a spline per part of the curve, each a little [ahead](AHEAD).
     pub(super) columns: Vec<Vec<f64>>,
 }
 
@@ -30,10 +30,33 @@ impl Samples {
         let output = output.map(|chunk| mean(&mut chunk.iter().copied())).collect();
         let column = |index: usize| {
             let chunks = trial.input().chunks_exact(averaged);
-            chunks.map(|chunk| mean(&mut chunk.iter().map(|u| curve.at(index, *u)))).collect()
+            let mut values: Vec<f64> =
+                chunks.map(|chunk| mean(&mut chunk.iter().map(|u| curve.at(index, *u)))).collect();
+            spline(&mut values);
+            // The last one is held.
+            let last = values.last().copied().unwrap_or(0.0);
+            values.extend(std::iter::repeat_n(last, AHEAD));
+            values.split_off(AHEAD)
         };
         let columns = (0..curve.columns()).map(column).collect();
         Self { averaged, period_s: period_s * averaged as f64, output, columns }
+    }
+}
+
+/// Turns samples into the coefficients of the cubic spline through them, `(c_(k−1) + 4 c_k + c_(k+1))/6`
+/// being the samples, which are held before the first and behind the last.
+fn spline(values: &mut [f64]) {
+    // The root of 1 + 4 z + z² within the unit circle.
+    let z = 3.0_f64.sqrt() - 2.0;
+    let mut before = values.first().map_or(0.0, |first| first / (1.0 - z));
+    for value in &mut *values {
+        before = *value + z * before;
+        *value = before;
+    }
+    let mut behind = values.last().map_or(0.0, |last| -z / (1.0 - z) * last);
+    for value in values.iter_mut().rev() {
+        behind = z * (behind - *value);
+        *value = 6.0 * behind;
     }
 }
 

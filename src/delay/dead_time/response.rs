@@ -7,38 +7,48 @@
 //! output = e^(−ds) / ((1 + as)(1 + bs)s) · f(input)         its speed does
 //! ```
 //!
-//! The input is held between its samples, as a controller's is, or goes in a line from one to
-//! the next, as what was measured does. Either way the change of the output is an exact
-//! recursion,
+//! The input is held between its samples, as a controller's is, or moves smoothly from one to the
+//! next, as what was measured does: it is a cubic spline through them, `f(u)(t) = Σ c_k β(t − k)` with
+//! B-splines `β`. Either way the change of the output is an exact recursion,
 //!
 //! ```text
-//! (1 − e^(−1/a) q)(1 − e^(−1/b) q) Δy_k = Σ_m n_m f(u_(k−m))      q y_k = y_(k−1)
+//! (1 − e^(−1/a) q)(1 − e^(−1/b) q) Δy_k = Σ_m n_m c_(k−m+2)      q y_k = y_(k−1)
+//! f(u_k) = (c_(k−1) + 4 c_k + c_(k+1))/6
 //! ```
 //!
 //! with a few numerators `n_m` from `⌊d⌋` on, which vary smoothly with `d`. With `R` the
-//! response of the output to a step, a ramp where the input goes in lines, they are the
+//! response of the output to a step, or to the cube `t³/6` of which B-splines are made, they are
 //! differences of `R(m − d)`, one for the step, and one for each integral.
+//!
+//! # References
+//! M. Unser, A. Aldroubi and M. Eden, "B-spline signal processing: part I, theory", IEEE Transactions
+//! on Signal Processing 41 (1993).
 
 /// What follows an input, and what the input does between samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Structure {
     /// The speed follows the input, else the output does.
     pub(super) integrates: bool,
-    /// The input goes in lines between its samples, else it is held.
-    pub(super) is_linear: bool,
+    /// The input moves smoothly between its samples, else it is held.
+    pub(super) is_smooth: bool,
 }
 
 impl Structure {
     pub(super) const ALL: [Self; 4] = [
-        Self { integrates: true, is_linear: false },
-        Self { integrates: true, is_linear: true },
-        Self { integrates: false, is_linear: false },
-        Self { integrates: false, is_linear: true },
+        Self { integrates: true, is_smooth: false },
+        Self { integrates: true, is_smooth: true },
+        Self { integrates: false, is_smooth: false },
+        Self { integrates: false, is_smooth: true },
     ];
+
+    /// The degree of the polynomials between samples.
+    fn degree(self) -> i32 {
+        if self.is_smooth { 3 } else { 0 }
+    }
 
     /// How often a step is integrated on its way to the sample that is compared.
     fn integrals(self) -> i32 {
-        i32::from(self.integrates) + i32::from(self.is_linear)
+        i32::from(self.integrates) + self.degree()
     }
 }
 
@@ -50,7 +60,7 @@ pub(super) struct Lags {
 }
 
 /// The shortest time constant, samples: no lag, as far as samples show.
-pub(super) const NO_LAG: f64 = 0.02;
+pub(super) const NO_LAG: f64 = 1e-3;
 
 impl Lags {
     /// The two constants, in order and apart: equal ones would divide by nothing.
@@ -72,9 +82,13 @@ impl Lags {
     }
 }
 
-/// Numerators that can be other than 0: three of two poles, one for a part of a sample, and
-/// one for each difference.
-pub(super) const NUMERATORS: usize = 7;
+/// Samples by which the coefficients that numerators multiply are ahead: a spline depends on those of two
+/// samples behind.
+pub(super) const AHEAD: usize = 2;
+
+/// Numerators that can be other than 0: three of two poles, one for a part of a sample, and one for each
+/// difference.
+pub(super) const NUMERATORS: usize = 9;
 
 /// The numerators of a delay.
 #[derive(Clone, Copy, Debug)]
@@ -89,13 +103,11 @@ impl Numerators {
     pub(super) fn of(structure: Structure, delay: f64, lags: Lags) -> Self {
         let integrals = structure.integrals();
         let first = delay.floor().max(0.0);
-        // A line to a sample begins at the sample before.
-        let ahead = if structure.is_linear { 1.0 } else { 0.0 };
         // Differences: of the step, of each integral, and from the output to its change.
-        let differences = 2 + i32::from(structure.is_linear);
-        let from = -f64::from(differences);
-        let mut response: Vec<f64> = (0..NUMERATORS + 3)
-            .map(|m| step_response(from + m as f64 + first - delay + ahead, integrals, lags))
+        let differences = (structure.degree() + 2).unsigned_abs() as usize;
+        let count = differences + 3;
+        let mut response: Vec<f64> = (0..count + differences)
+            .map(|m| step_response(m as f64 - differences as f64 + first - delay, integrals, lags))
             .collect();
         for _ in 0..differences {
             for index in (1..response.len()).rev() {
@@ -103,46 +115,62 @@ impl Numerators {
             }
         }
         let [a, b] = lags.poles();
-        let start = differences.unsigned_abs() as usize;
-        let at = |index: usize, back: usize| {
-            (start + index).checked_sub(back).and_then(|i| response.get(i)).copied().unwrap_or(0.0)
-        };
-        let numerator = |m: usize| {
-            let before = |back: usize| if m < back { 0.0 } else { at(m, back) };
-            // (1 − a q)(1 − b q) R, differenced: what remains is finitely long.
-            at(m, 0) - (a + b) * before(1) + a * b * before(2)
-        };
+        let before =
+            |m: usize, back: usize| if m < back { 0.0 } else { response[differences + m - back] };
+        // (1 − a q)(1 − b q) R, differenced: what remains is finitely long.
+        let numerator = |m: usize| before(m, 0) - (a + b) * before(m, 1) + a * b * before(m, 2);
         let mut values = [0.0; NUMERATORS];
-        for (m, value) in values.iter_mut().enumerate() {
-            *value = numerator(m);
+        for m in 0..count {
+            if structure.is_smooth {
+                values[m] = numerator(m);
+            } else {
+                // A sample of the input in coefficients of the spline.
+                let shares = [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0];
+                shares
+                    .iter()
+                    .zip(m + 1..)
+                    .for_each(|(share, at)| values[at] += share * numerator(m));
+            }
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative")]
         Self { first: first as usize, values }
     }
 }
 
-/// The response of `1/((1 + as)(1 + bs))` to a step, integrated so often, after `time` samples.
-///
-/// By partial fractions of `1/(s^(n+1)(1 + as)(1 + bs))`: a polynomial whose coefficients are
-/// those of the series of `1/((1 + as)(1 + bs))`, and an exponential for each pole.
+/// The response of `1/((1 + as)(1 + bs))` to a step, integrated so often, after `time` samples: by
+/// partial fractions, `a/(1 + as)` less `b/(1 + bs)` over `a − b`.
 fn step_response(time: f64, integrals: i32, lags: Lags) -> f64 {
     if time <= 0.0 {
         return 0.0;
     }
     let Lags { slow: a, fast: b } = lags;
-    // 1/((1 + as)(1 + bs)) = 1 − (a + b)·s + (a² + ab + b²)·s² − …
-    let series = [1.0, -(a + b), a * a + a * b + b * b];
-    let mut power = 1.0;
-    let mut sum = 0.0;
-    for degree in 0..=integrals {
-        let coefficient = series.get((integrals - degree).unsigned_abs() as usize);
-        sum += coefficient.copied().unwrap_or(0.0) * power;
-        power *= time / f64::from(degree + 1);
+    let of = |constant: f64| constant * response_of_one(time, integrals, constant);
+    (of(a) - of(b)) / (a - b)
+}
+
+/// The response of `1/(1 + as)` to a step, integrated `n` times: `t^(n+1)/a · φ_(n+1)(−t/a)`, with
+/// `φ_0(z) = e^z` and `φ_(k+1)(z) = (φ_k(z) − 1/k!)/z`, by its series where that would cancel.
+fn response_of_one(time: f64, integrals: i32, a: f64) -> f64 {
+    /// Terms of the series for `z` up to 1, to the last digit.
+    const TERMS: i32 = 18;
+    let z = time / a;
+    // t^(n+1)/(n+1)!.
+    let power: f64 = (1..=integrals + 1).map(|k| time / f64::from(k)).product();
+    if z < 1.0 {
+        let mut term = power / a;
+        let mut sum = term;
+        for j in 1..TERMS {
+            term *= -z / f64::from(integrals + 1 + j);
+            sum += term;
+        }
+        return sum;
     }
-    let sign = if integrals % 2 == 0 { -1.0 } else { 1.0 };
-    // The residue at s = −1/own.
-    let pole = |own: f64, other: f64| own.powi(integrals + 1) / (own - other) * (-time / own).exp();
-    sum + sign * (pole(a, b) + pole(b, a))
+    let (mut phi, mut factorial) = ((-z).exp(), 1.0);
+    for k in 0..=integrals {
+        phi = (factorial - phi) / z;
+        factorial /= f64::from(k + 1);
+    }
+    time.powi(integrals + 1) / a * phi
 }
 
 #[cfg(test)]
@@ -156,7 +184,10 @@ mod tests {
         let [a, b] = lags.poles();
         let mut out: Vec<f64> = Vec::new();
         for k in 0..input.len() {
-            let at = |back: usize| k.checked_sub(back).map_or(0.0, |i| input[i]);
+            let at = |back: usize| {
+                let index = (k + AHEAD).checked_sub(back);
+                index.map_or(0.0, |i| input[i.min(input.len() - 1)])
+            };
             let driven: f64 =
                 taps.values.iter().zip(taps.first..).map(|(n, back)| n * at(back)).sum();
             let past = |back: usize| k.checked_sub(back).map_or(0.0, |i| out[i]);
@@ -169,12 +200,21 @@ mod tests {
     fn by_steps(structure: Structure, delay: f64, lags: Lags, input: &[f64]) -> Vec<f64> {
         const FINE: usize = 4000;
         let level = |time: f64| {
-            if time < -1.0 {
+            if time < -3.0 {
                 return 0.0;
             }
             let (k, part) = (time.floor(), time - time.floor());
-            let at = |k: f64| if k < 0.0 { 0.0 } else { input[floor_to_index(k)] };
-            if structure.is_linear { at(k) + part * (at(k + 1.0) - at(k)) } else { at(k) }
+            let at = |k: f64| if k < 0.0 { 0.0 } else { input[floor_to_index(k).min(39)] };
+            if !structure.is_smooth {
+                return (at(k - 1.0) + 4.0 * at(k) + at(k + 1.0)) / 6.0;
+            }
+            // The four B-splines that are not 0 there.
+            let cubes = [(1.0 - part).powi(3), part.powi(3)].map(|cube| cube / 6.0);
+            let inner = |x: f64| 2.0 / 3.0 - x * x * (1.0 - x / 2.0);
+            cubes[0] * at(k - 1.0)
+                + inner(part) * at(k)
+                + inner(1.0 - part) * at(k + 1.0)
+                + cubes[1] * at(k + 2.0)
         };
         let (mut x, mut speed, mut angle) = (0.0, 0.0, 0.0);
         let mut out = vec![0.0];

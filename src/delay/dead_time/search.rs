@@ -39,12 +39,13 @@ pub(super) fn profiles(trials: &[Whitened], longest: usize, lags: &[Lags]) -> Ve
     found.to_vec()
 }
 
+/// Shortest lag that shows in samples.
+const SEEN: f64 = 0.2;
+
 /// Pairs of lags from none to `longest` samples, neighbours having this `ratio`.
 pub(super) fn grid(ratio: f64, longest: f64) -> Vec<Lags> {
     /// Longest of the faster lag, samples: two slow lags are an integrator and a slow one.
     const FAST: f64 = 30.0;
-    /// Shortest lag that shows in samples.
-    const SEEN: f64 = 0.2;
     let seen = move || std::iter::successors(Some(SEEN), move |t| Some(t * ratio));
     let constants = move || std::iter::once(NO_LAG).chain(seen());
     let slow = constants().take_while(|t| *t <= longest.max(NO_LAG));
@@ -76,8 +77,8 @@ pub(super) fn with_best_lags(
     longest: f64,
     start: Start,
 ) -> Fitted {
-    /// Distances of neighbours, in logarithms of the sum of both lags: lags that are off by a
-    /// twentieth move the dead time by as much of them, which good records show.
+    /// Distances of neighbours, in logarithms of the sum of both lags where that shows: lags that are off
+    /// by a twentieth move the dead time by as much of them, which good records show.
     const STEPS: [f64; 3] = [0.24, 0.06, 0.015];
     /// Most parabolas of a distance.
     const MOST: usize = 8;
@@ -85,8 +86,8 @@ pub(super) fn with_best_lags(
     const COARSER: f64 = 4.0;
     // A record determines the sum of the lags far better than how it is shared.
     let near = |best: Fitted, sum: f64, fast: f64| {
-        let sum = best.lags.mean() * sum.exp();
-        let fast = (best.lags.fast * (COARSER * fast).exp()).min(0.5 * sum).max(NO_LAG);
+        let sum = moved(best.lags.mean(), sum);
+        let fast = moved(best.lags.fast, COARSER * fast).min(0.5 * sum).max(NO_LAG);
         let lags = Lags::new((sum - fast).clamp(NO_LAG, longest), fast);
         if lags == best.lags { best } else { at_lags(trials, best, lags) }
     };
@@ -110,6 +111,12 @@ pub(super) fn with_best_lags(
         }
     }
     best
+}
+
+/// A lag that is longer by so much of its logarithm where it shows in samples, by as much of [`SEEN`]
+/// where it does not.
+fn moved(lag: f64, by: f64) -> f64 {
+    (SEEN * ((lag / SEEN).asinh() + by).sinh()).max(NO_LAG)
 }
 
 /// The best fit with one lag, near `start`, which may have two.
