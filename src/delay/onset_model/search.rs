@@ -254,6 +254,24 @@ impl Search {
             self.keep_those_that_follow(&mut all);
         }
         all.sort_by(|a, b| a.score.total_cmp(&b.score));
+        self.from_the_best(all)
+    }
+
+    /// Each candidate also from where the best has its onsets: which reaction is whose does not hang on
+    /// the shape.
+    fn from_the_best(&self, mut all: Vec<Candidate>) -> Vec<Candidate> {
+        let Some(best) = all.first().cloned() else { return all };
+        for other in &mut all[1..] {
+            let later = best.shape.mean() - other.shape.mean();
+            let positions = best.onsets.positions.iter();
+            let positions =
+                positions.map(|of| of.iter().map(|position| position + later).collect());
+            let again = self.evaluate(other.shape, positions.collect(), best.typical + later, 2);
+            if again.score < other.score {
+                *other = self.refined(again, ROUNDS);
+            }
+        }
+        all.sort_by(|a, b| a.score.total_cmp(&b.score));
         all
     }
 
