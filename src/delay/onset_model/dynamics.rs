@@ -106,6 +106,8 @@ pub(super) struct Jump {
     pub(super) sse: f64,
     /// `a`.
     pub(super) size: f64,
+    /// The inverse variance of `a`, for noise of variance 1.
+    pub(super) information: f64,
     /// The size in the second direction.
     other: f64,
 }
@@ -179,7 +181,7 @@ impl<const N: usize> Dynamics<N> {
 
     /// The onset at a `position` between the samples of the window.
     pub(super) fn at(&self, window: &Window<N>, position: f64) -> Jump {
-        let nothing = Jump { sse: window.sse_without, size: 0.0, other: 0.0 };
+        let nothing = Jump { sse: window.sse_without, size: 0.0, information: 0.0, other: 0.0 };
         let column = self.column(window, &self.jump, position);
         let Products { mut w, mut v, mut g } = self.products(window, &column);
         let mut square = column.beta.dot(&w);
@@ -200,6 +202,7 @@ impl<const N: usize> Dynamics<N> {
             return Jump {
                 sse: (window.sse_without - g * g / d).max(0.0),
                 size: g / d,
+                information: d,
                 other: 0.0,
             };
         };
@@ -214,7 +217,7 @@ impl<const N: usize> Dynamics<N> {
         let size = (g * own - its.g * cross) / det;
         let other = (its.g * d - g * cross) / det;
         let sse = (window.sse_without - g * size - its.g * other).max(0.0);
-        Jump { sse, size, other }
+        Jump { sse, size, information: det / own, other }
     }
 
     /// The output as it is fitted with an onset at `position`.

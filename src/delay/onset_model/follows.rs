@@ -7,14 +7,16 @@
 //! a_i = g₊ (max(u_i, 0) − max(u_(i−1), 0)) + g₋ (min(u_i, 0) − min(u_(i−1), 0)) + e_i
 //! ```
 //!
-//! Onsets are found one by one, whatever the sizes of their steps, so that the part of `Σ a²` that
+//! Onsets are found one by one, whatever the sizes of their steps, so that the part of `Σ w a²` that
 //! is explained says whether they answer the input. An output that answers nothing has as good
-//! onsets, of other sizes.
+//! onsets, of other sizes. The weight `w` of a size is as well as it is known, at most what is usual:
+//! of onsets that are near each other only the sum of their sizes is.
 
 use super::windows::{Onset, Run};
-use crate::numerics::fisher_tail;
+use crate::numerics::{fisher_tail, median};
 
-/// What a step of the input changes on each side of zero, and the size of its onset.
+/// What a step of the input changes on each side of zero, and the size of its onset, both times the root
+/// of the weight.
 type Row = ([f64; 2], f64);
 
 /// How far the sizes of onsets go with the steps of the input.
@@ -34,11 +36,15 @@ impl Follows {
 
     pub(super) fn of(runs: &[Run], found: &[Vec<Option<Onset>>]) -> Self {
         let onsets = runs.iter().zip(found).flat_map(|(run, found)| run.steps.iter().zip(found));
+        let known = found.iter().flatten().flatten().map(|onset| onset.information);
+        let usual = median(&known.collect::<Vec<f64>>()).unwrap_or(1.0).max(f64::MIN_POSITIVE);
         let rows: Vec<Row> = onsets
             .filter(|(step, _)| !step.rests)
             .filter_map(|(step, found)| {
-                let part = |of: fn(f64) -> f64| of(step.after) - of(step.before);
-                Some(([part(|u| u.max(0.0)), part(|u| u.min(0.0))], found.as_ref()?.size))
+                let onset = found.as_ref()?;
+                let root = (onset.information / usual).min(1.0).sqrt();
+                let part = |of: fn(f64) -> f64| root * (of(step.after) - of(step.before));
+                Some(([part(|u| u.max(0.0)), part(|u| u.min(0.0))], root * onset.size))
             })
             .collect();
         let sum = |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).sum::<f64>();

@@ -62,6 +62,8 @@ pub(super) struct Onset {
     pub(super) sse_without: f64,
     /// The change of the speed, or of the level to which the output settles.
     pub(super) size: f64,
+    /// The inverse variance of its size, for noise of variance 1.
+    pub(super) information: f64,
     /// Its window.
     pub(super) start: usize,
     pub(super) end: usize,
@@ -340,6 +342,7 @@ impl<const N: usize> Fit for Dynamics<N> {
             sse: jump.sse,
             sse_without: window.sse_without,
             size: jump.size,
+            information: jump.information,
             start,
             end,
             is_clear: inside && window.sse_without - jump.sse > CLEAR * noise,
