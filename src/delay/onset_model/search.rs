@@ -254,12 +254,12 @@ impl Search {
             self.keep_those_that_follow(&mut all);
         }
         all.sort_by(|a, b| a.score.total_cmp(&b.score));
-        self.from_the_best(all)
+        self.restarted_at_best(all)
     }
 
     /// Each candidate also from where the best has its onsets: which reaction is whose does not hang on
     /// the shape.
-    fn from_the_best(&self, mut all: Vec<Candidate>) -> Vec<Candidate> {
+    fn restarted_at_best(&self, mut all: Vec<Candidate>) -> Vec<Candidate> {
         let Some(best) = all.first().cloned() else { return all };
         for other in &mut all[1..] {
             let later = best.shape.mean() - other.shape.mean();
