@@ -45,7 +45,7 @@ LOGS = {
 # Neither a time nor a name for trials: what the sidecar says.
 FURTHER = {"rotary_hydraulic_strokes": ["--trial", "stroke", "--sample-period", "0.004"]}
 STROKES = ["excavator_full_arm_single", "excavator_full_bucket_single"]
-METHODS = ["two-line", "hinge", "lag-aware"]
+METHODS = ["auto", "two-line", "hinge", "lag-aware"]
 DEPARTED_DEG = 0.2
 
 
