@@ -19,7 +19,7 @@
 //!
 //! **α.** Behind the next input step the output goes on as before for as long as the next
 //! delay takes. These samples belong to the line, and the first ones of the next reaction do
-//! not: α is a delay that nine of ten exceed, of those that the broken line knows best.
+//! not: α is a delay that nine of ten exceed, of those that two lines that meet know best.
 //!
 //! **β.** Candidates a sample apart resolve the delay most finely. Only two lines that need not
 //! meet, through an output that is not smoothed, cannot use that: their squared error grows

@@ -120,17 +120,12 @@ impl Numerators {
         // (1 − a q)(1 − b q) R, differenced: what remains is finitely long.
         let numerator = |m: usize| before(m, 0) - (a + b) * before(m, 1) + a * b * before(m, 2);
         let mut values = [0.0; NUMERATORS];
+        // Coefficients of the spline, or a sample of the input in them, two behind.
+        let (shares, later): (&[f64], usize) =
+            if structure.is_smooth { (&[1.0], 0) } else { (&[1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0], 1) };
         for m in 0..count {
-            if structure.is_smooth {
-                values[m] = numerator(m);
-            } else {
-                // A sample of the input in coefficients of the spline.
-                let shares = [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0];
-                shares
-                    .iter()
-                    .zip(m + 1..)
-                    .for_each(|(share, at)| values[at] += share * numerator(m));
-            }
+            let value = numerator(m);
+            shares.iter().zip(m + later..).for_each(|(share, at)| values[at] += share * value);
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative")]
         Self { first: first as usize, values }
@@ -154,9 +149,9 @@ fn response_of_one(time: f64, integrals: i32, a: f64) -> f64 {
     /// Terms of the series for `z` up to 1, to the last digit.
     const TERMS: i32 = 18;
     let z = time / a;
-    // t^(n+1)/(n+1)!.
-    let power: f64 = (1..=integrals + 1).map(|k| time / f64::from(k)).product();
     if z < 1.0 {
+        // t^(n+1)/(n+1)!.
+        let power: f64 = (1..=integrals + 1).map(|k| time / f64::from(k)).product();
         let mut term = power / a;
         let mut sum = term;
         for j in 1..TERMS {

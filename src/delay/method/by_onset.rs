@@ -98,8 +98,7 @@ impl DelayMethod for ByOnset {
     }
 
     fn decide(&self, trial: &Prepared<'_>, shared: &Shared, settings: &Settings) -> Vec<Decision> {
-        let untested = Settings { confidence: None, ..settings.clone() };
-        let by_lines = two_line::decide_all(trial, &untested).into_iter().enumerate();
+        let by_lines = two_line::by_lines(trial, settings).into_iter().enumerate();
         let model = shared.as_deref();
         let onsets = model.map_or_else(Vec::new, |model| model.onsets(trial, settings));
         let obstacle = model.and_then(OnsetModel::obstacle).filter(|_| !settings.accept_anyway);

@@ -50,13 +50,19 @@ impl DelayMethod for TwoLine {
     }
 }
 
-/// The decisions on all steps.
-pub(super) fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
-    let mut decisions = in_turn(trial, settings, settings.alpha);
+/// The segments of all steps with their candidates, before it is asked whether anything happened.
+pub(super) fn by_lines(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
+    let decisions = in_turn(trial, settings, settings.alpha);
     // Not what a step is judged by that may come later, and nothing that is not the paper's.
     if !settings.paper && !settings.grows && answer_the_next_step(&decisions, settings.beta) {
-        decisions = in_turn(trial, settings, 0);
+        return in_turn(trial, settings, 0);
     }
+    decisions
+}
+
+/// The decisions on all steps.
+fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
+    let mut decisions = by_lines(trial, settings);
     if let Some(confidence) = confidence(trial, settings) {
         noise_test::judge(&mut decisions, trial, confidence);
         for (index, decision) in decisions.iter_mut().enumerate() {

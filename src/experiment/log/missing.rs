@@ -70,7 +70,7 @@ impl Log<'_> {
         let note = format!(
             "joint `{}`: {count} of {all} rows have an output, which is interpolated between them, so that \
              steps of the input keep their times; what follows from its noise, as intervals, takes all \
-             samples for measured, and `lag-aware` the lines between them for a lag; models are held \
+             samples for measured, and an onset model the lines between them for a lag; models are held \
              against those that are measured",
             layout.name,
         );
