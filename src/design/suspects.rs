@@ -6,7 +6,7 @@ use rand_distr::{Distribution as _, Normal};
 
 use super::predict::{TestRig, Uncertain};
 use super::random::{RandomSteps, random_steps};
-use crate::diagnosis::floor_of;
+use crate::diagnosis::sensor_noise;
 use crate::effect::Effect;
 use crate::explain::ALIKE;
 use crate::fit::{Fit, FitError, FitRecord, Horizon, Split, fit};
@@ -58,8 +58,8 @@ impl Suspects {
             fitted(record, &starts)
         });
         let (one, other) = (one?, other?);
-        let better = if one.cost <= other.cost { &one } else { &other };
-        let noise = noise.or_else(|| floor_of(record, better)).filter(|noise| *noise > 0.0);
+        let noise =
+            noise.or_else(|| sensor_noise(&record.measured().trials)).filter(|noise| *noise > 0.0);
         let noise = noise.ok_or(SuspectsError::NoNoise)?;
         let models = [&one, &other].map(|fit| Uncertain::of_fit(record, fit, noise, share));
         let ahead = behind(&other) - behind(&one);

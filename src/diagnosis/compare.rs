@@ -2,16 +2,18 @@
 
 use std::ops::Range;
 
+use super::curves::{Curve, curves};
 use super::failure::{self, Diagnosis, Region, Samples, diagnose, regions};
 use super::input_edges::without_edges;
 use super::local_misfit::local_misfit;
-use super::noise::share_not_followed;
 use super::residual_size::{ResidualSize, clipped};
 use super::shapes::shapes;
 use super::speed_error::speed_error;
 use super::step_error::{StepError, step_errors};
-use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals, Whiteness};
-use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
+use super::{
+    ErrorFigures, InputCorrelation, LackOfFit, RawErrors, TestColumns, TrialSignals, Whiteness,
+};
+use super::{input_correlation, lack_of_fit, sensor_noise, whiteness};
 use crate::experiment::Trial;
 use crate::fit::{
     Assessment, Evaluation, Excerpt, Fit, FitRecord, Horizon, Part, Termination, follows_input,
@@ -29,8 +31,17 @@ pub struct Comparison {
     pub training: Option<ErrorFigures>,
     /// The error on the part it was not fitted to.
     pub validation: Option<ErrorFigures>,
-    /// Standard deviation of the measurement noise, output units.
-    pub noise_floor: Option<f64>,
+    /// The error with the same restarts, each run from the smoothed measured output, and nothing
+    /// removed.
+    pub raw: RawErrors,
+    /// That of a free run from the start of each trial.
+    pub free: RawErrors,
+    /// How the measured speed depends on the delayed input, the angle and the time, beside what the
+    /// model makes of it.
+    pub curves: Vec<Curve>,
+    /// Standard deviation of the noise of the sensor, output units; none where the log does not
+    /// resolve it.
+    pub sensor_noise: Option<f64>,
     /// Whether the residual of the training part is more than noise; `None` where there
     /// are too few samples.
     pub lack_of_fit: Option<LackOfFit>,
@@ -104,7 +115,10 @@ fn figures(
     Comparison {
         training: error(Part::Training),
         validation: error(Part::Validation),
-        noise_floor: floor_of(record, &fit),
+        curves: curves(record, &fit.model, &fit.evaluation.simulated),
+        raw: RawErrors::restarted(record, &fit.model),
+        free: RawErrors::free(record, &fit.model),
+        sensor_noise: sensor_noise(&record.measured().trials),
         lack_of_fit,
         whiteness,
         input_correlation,
@@ -127,24 +141,13 @@ fn correlations(
     (whiteness(&signals, period_s), input_correlation(&signals, period_s))
 }
 
-/// The noise of the measurement, with the delay of `fit`, without what `fit` follows of it.
-pub(crate) fn floor_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<f64> {
-    let trials = &record.joint().trials;
-    let arriving = (0..trials.len()).map(|index| record.arrivals(&fit.model, index));
-    let arriving: Vec<_> = arriving.collect();
-    let arrived = || trials.iter().zip(&arriving);
-    let shown = noise_floor(arrived())?;
-    // A swing that the model follows is motion, not noise.
-    Some(shown * share_not_followed(arrived(), &fit.evaluation.simulated))
-}
-
 /// Whether the residual of `fit` is more than noise on the training part of `record`; none where it
 /// is no more than rounding.
 pub(crate) fn lack_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<LackOfFit> {
     if record.is_exact(&fit.evaluation) {
         return None;
     }
-    let floor = floor_of(record, fit);
+    let floor = sensor_noise(&record.measured().trials);
     let tested = record.excerpt();
     let own = sensitivities(record, fit, &tested);
     let (test, own) = lack_in(record, &fit.evaluation, own, floor, &tested);

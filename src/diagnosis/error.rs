@@ -1,11 +1,13 @@
 //! How large the error of a model is.
 
 use crate::fit::{Evaluation, FitRecord, Part, Window, is_rounding};
+use crate::model::JointModel;
 
 /// The error of a model on one part of a record, without isolated spikes of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorFigures {
-    /// Root of the mean squared residual, output units.
+    /// Root of the mean squared residual, output units: what a fit minimises, in which each run
+    /// between restarts starts where its own error is least.
     pub rmse: f64,
     /// `100 · (1 − ‖y − ŷ‖ / ‖y − mean(y)‖)`: 100 for a perfect model, 0 for one that is
     /// no better than the mean of each window; −∞ of an output that stands still.
@@ -22,23 +24,22 @@ impl ErrorFigures {
 
     /// The error of an evaluated model on `part`; `None` where it has no sample.
     pub fn of(record: &FitRecord<'_>, evaluation: &Evaluation, part: Part) -> Option<Self> {
-        Self::over(record, evaluation, record.part(part))
+        Self::over(record, &evaluation.residuals, record.part(part))
     }
 
     /// The error of an evaluated model on both parts together.
     pub(crate) fn of_record(record: &FitRecord<'_>, evaluation: &Evaluation) -> Option<Self> {
-        Self::over(record, evaluation, record.windows().iter())
+        Self::over(record, &evaluation.residuals, record.windows().iter())
     }
 
     fn over<'w>(
         record: &FitRecord<'_>,
-        evaluation: &Evaluation,
+        all: &[Vec<f64>],
         windows: impl Iterator<Item = &'w Window>,
     ) -> Option<Self> {
         let (mut samples, mut squares, mut spread, mut max) = (0_usize, 0.0, 0.0, 0.0_f64);
         for window in windows {
-            let residuals =
-                evaluation.residuals.get(window.trial)?.get(window.start..window.end)?;
+            let residuals = all.get(window.trial)?.get(window.start..window.end)?;
             let measured = record.joint().trials.get(window.trial)?.output();
             let measured = measured.get(window.start..window.end)?;
             let weights = record.weights_of(window.trial);
@@ -54,12 +55,45 @@ impl ErrorFigures {
             spread += measured.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>();
         }
         // Of an output that stands still nothing but rounding is left behind its mean.
-        let stands_still = is_rounding(record.joint(), (spread / samples.max(1) as f64).sqrt());
+        let stands_still =
+            is_rounding(&record.joint().trials, (spread / samples.max(1) as f64).sqrt());
         let fit_percent = if stands_still {
             f64::NEG_INFINITY
         } else {
             100.0 * (1.0 - (squares / spread).sqrt())
         };
         (samples > 0).then(|| Self { rmse: (squares / samples as f64).sqrt(), fit_percent, max })
+    }
+}
+
+/// Root-mean-square errors of simulations from which nothing is removed, output units; none for a
+/// part without samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RawErrors {
+    /// On the part that was fitted.
+    pub training: Option<f64>,
+    /// On the part that was not.
+    pub validation: Option<f64>,
+}
+
+impl RawErrors {
+    /// Of `model` with the restarts of `record`, each run from the smoothed measured output.
+    pub(super) fn restarted(record: &FitRecord<'_>, model: &JointModel) -> Self {
+        Self::of(record, &record.raw_residuals(model))
+    }
+
+    /// Of `model` in a free run from the start of each trial, judged on the parts of `record`.
+    pub(super) fn free(record: &FitRecord<'_>, model: &JointModel) -> Self {
+        Self::of(record, &record.free_residuals(model))
+    }
+
+    fn of(record: &FitRecord<'_>, residuals: &[Vec<f64>]) -> Self {
+        let on = |part| Some(ErrorFigures::over(record, residuals, record.part(part))?.rmse);
+        Self { training: on(Part::Training), validation: on(Part::Validation) }
+    }
+
+    /// That by which a model is judged: on the part that was not fitted, where there is one.
+    pub fn judged(self) -> Option<f64> {
+        self.validation.or(self.training)
     }
 }

@@ -29,6 +29,9 @@ pub struct Parameter {
     /// How far from neutral a fit starts, in parts of
     /// [`RecordRange::size`] of its dimension.
     pub typical: f64,
+    /// Lowest and highest value that physics allows, in parts of [`RecordRange::size`] of its
+    /// dimension: a fit may go beyond, and is then not believed.
+    pub plausible: (f64, f64),
     /// Whether a fit may change it. If not it is a choice, such as a reference angle,
     /// and stays where the start put it.
     pub fitted: bool,
@@ -38,7 +41,9 @@ impl Parameter {
     /// A parameter that is neutral at zero, without limits.
     pub const fn new(name: &'static str, meaning: &'static str, dimension: Dimension) -> Self {
         let (min, max) = (-UNLIMITED, UNLIMITED);
-        Self { name, meaning, dimension, neutral: 0.0, min, max, typical: 0.1, fitted: true }
+        let plausible = (f64::NEG_INFINITY, f64::INFINITY);
+        let (neutral, typical, fitted) = (0.0, 0.1, true);
+        Self { name, meaning, dimension, neutral, min, max, typical, plausible, fitted }
     }
 
     /// This parameter with values from `min` to `max`.
@@ -57,6 +62,19 @@ impl Parameter {
     #[must_use]
     pub const fn typical(self, typical: f64) -> Self {
         Self { typical, ..self }
+    }
+
+    /// This parameter with values from `low` to `high` alone [plausible](Self::plausible).
+    #[must_use]
+    pub const fn plausible(self, low: f64, high: f64) -> Self {
+        Self { plausible: (low, high), ..self }
+    }
+
+    /// Whether `value` is plausible on a record of this size.
+    pub fn allows(&self, value: f64, record: &RecordRange<'_>) -> bool {
+        let (low, high) = self.plausible;
+        let part = value / record.size(self.dimension);
+        is_unlimited(value) || (low..=high).contains(&part)
     }
 
     /// This parameter as a choice, which a fit leaves alone.

@@ -26,6 +26,9 @@ pub struct RecordRange<'a> {
     pub sample_period_s: f64,
     /// The angle in radians of one output unit.
     pub radians_per_output_unit: f64,
+    /// The period, in output units, at which the speed ripples most with the angle while the input
+    /// is held, where any was found.
+    pub ripple_period: Option<f64>,
     /// The further signals that were measured.
     pub signals: &'a [SignalRange<'a>],
 }
@@ -67,6 +70,7 @@ impl Default for RecordRange<'_> {
             duration_s: 60.0,
             sample_period_s: 0.01,
             radians_per_output_unit: 1_f64.to_radians(),
+            ripple_period: None,
             signals: &[],
         }
     }

@@ -48,6 +48,9 @@ pub struct Spec {
     /// What it is, exactly, where one of its parameters is 0: a record that does not show that parameter
     /// shows no more than this.
     pub limiting_case: Option<LimitingCase>,
+    /// Whether it follows a curve of any form, so that a search names it only where no effect with a
+    /// law explains the record.
+    pub is_free_form: bool,
     /// Whether an effect on the output changes where the joint is, and not only what
     /// is measured of it.
     pub acts_on_state: bool,
@@ -80,6 +83,7 @@ impl Spec {
             upstream_of: &[],
             refines: None,
             limiting_case: None,
+            is_free_form: false,
             acts_on_state: false,
         }
     }
@@ -152,6 +156,12 @@ impl Spec {
         effects: &'static [&'static str],
     ) -> Self {
         Self { limiting_case: Some(LimitingCase { parameter, effects }), ..self }
+    }
+
+    /// It has a [free form](Self::is_free_form).
+    #[must_use]
+    pub const fn free_form(self) -> Self {
+        Self { is_free_form: true, ..self }
     }
 
     /// It [acts on the state](Self::acts_on_state).

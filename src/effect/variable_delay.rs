@@ -227,6 +227,7 @@ mod tests {
             duration_s: 60.0,
             sample_period_s: 0.01,
             radians_per_output_unit: 1.0,
+            ripple_period: None,
             signals: &[],
         };
         for start in VariableDelay.starts(&record) {

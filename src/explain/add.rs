@@ -8,7 +8,7 @@ use super::options::Options;
 use super::outcome::FitOutcome;
 use super::revision::{AddError, Addition};
 use super::workers::Workers;
-use crate::diagnosis::{ErrorFigures, NEAR_NOISE, compare, floor_of};
+use crate::diagnosis::{ErrorFigures, NEAR_NOISE, compare, sensor_noise};
 use crate::effect::{Effect, RecordRange};
 use crate::fit::{Fit, FitRecord, Part, fit};
 use crate::model::{Component, JointModel};
@@ -79,7 +79,8 @@ fn of_measured_delays(
 ) -> Option<JointModel> {
     let model = base.model.with(Component::measured(effect)?);
     let error = ErrorFigures::of(record, &by_law.evaluation, Part::Training)?.rmse;
-    let is_near = floor_of(record, by_law).is_some_and(|floor| error <= NEAR_NOISE * floor);
+    let is_near =
+        sensor_noise(&record.measured().trials).is_some_and(|floor| error <= NEAR_NOISE * floor);
     (!is_near && record.measured_delays(&model) > 0).then_some(model)
 }
 

@@ -27,9 +27,10 @@ use super::limiting_case::limiting_case;
 use super::misfit::{CONSEQUENCE, Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
-use super::removal::{fitted_with, replacements};
+use super::removal::{changed, fitted_with, replacements};
 use super::revision::Change;
 use super::workers::Workers;
+use crate::effect::by_id;
 use crate::fit::{AssessedModel, Fit, FitRecord, fit_to_compare};
 
 /// A model, and the one to which its effects were added.
@@ -98,8 +99,17 @@ impl Grown<'_, '_> {
         let found = left_out.iter().filter(|one| one.has_consequence());
         let others =
             |one: &LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
-        let changes: Vec<Change> = found.flat_map(others).collect();
-        fitted_with(self.record, self.whole, &changes, workers)
+        let (free, lawful): (Vec<_>, Vec<_>) = found.partition(|one| is_free_form(one.effect));
+        let changes = |of: Vec<&LeftOut>| of.into_iter().flat_map(others).collect::<Vec<Change>>();
+        let mut exchanged = fitted_with(self.record, self.whole, &changes(lawful), workers);
+        // Which law a free form resembles is asked, though it leaves more.
+        let resembling = workers.map(&changes(free), |change| {
+            let model = changed(&self.whole.model, *change).into_iter().next()?;
+            let fit = fit_to_compare(self.record, &model, &self.record.range_for(&model)).ok()?;
+            Some((*change, FitOutcome::of(self.record, fit)))
+        });
+        exchanged.extend(resembling.into_iter().flatten());
+        exchanged
     }
 
     /// The exchange that leaves as little and is as likely with the fewest parameters, where it
@@ -144,10 +154,10 @@ impl Grown<'_, '_> {
     ) -> Attribution {
         let (found, small): (Vec<_>, Vec<_>) =
             left_out.iter().partition(|one| one.has_consequence());
-        let alternatives = |effect: &'static str| {
+        let alternatives = |one: &LeftOut| {
             let as_little = exchanged.iter().filter_map(|(change, fit)| match *change {
-                Change::Replaced { old, new } if old == effect => {
-                    self.leaves_as_little(fit).then_some(new)
+                Change::Replaced { old, new } if old == one.effect => {
+                    (self.share(fit) < self.hardly(one)).then_some(new)
                 }
                 _ => None,
             });
@@ -157,10 +167,25 @@ impl Grown<'_, '_> {
             effect: one.effect,
             error_share: one.share,
             error_without: one.fit.errors.judged(),
-            alternatives: alternatives(one.effect),
+            alternatives: alternatives(one),
         };
         refinements.extend(small.iter().map(|one| one.effect));
-        Attribution { found: found.into_iter().map(contribution).collect(), refinements }
+        let own = Errors::of(self.record, self.whole);
+        let is_credible = |one: &&LeftOut| self.misfit.is_credible(one.fit.errors, own);
+        let (credible, doubtful): (Vec<_>, Vec<_>) = found.into_iter().partition(is_credible);
+        Attribution {
+            found: credible.into_iter().map(contribution).collect(),
+            doubtful: doubtful.into_iter().map(contribution).collect(),
+            refinements,
+        }
+    }
+
+    /// The share by which the error may be larger with another effect in the place of one, for the two to
+    /// be alternatives. A curve of any form is resembled by the law that has most of its share.
+    fn hardly(&self, one: &LeftOut) -> f64 {
+        /// The part of its share that such a law may miss.
+        const RESEMBLES: f64 = 0.2;
+        if is_free_form(one.effect) { CONSEQUENCE.max(RESEMBLES * one.share) } else { CONSEQUENCE }
     }
 
     /// Whether what the error of `fit` is larger by has no consequence.
@@ -184,4 +209,8 @@ impl Grown<'_, '_> {
         let own = Errors::of(self.record, self.whole);
         self.misfit.share_of_either(fit.errors, own).min(1.0)
     }
+}
+
+fn is_free_form(id: &str) -> bool {
+    by_id(id).is_some_and(|effect| effect.spec().is_free_form)
 }

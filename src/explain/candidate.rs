@@ -1,7 +1,8 @@
 //! A model with one effect more, beside the measurement, and when it is worth a name.
 
 use super::determined::{DISTINCT, is_determined, is_distinct, is_reached};
-use super::extension::components_of;
+use super::extension::{Extension, components_of};
+use super::judgement::Judgement;
 use super::likeness::are_distinguished;
 use super::outcome::FitOutcome;
 use super::separation::Separation;
@@ -63,14 +64,17 @@ pub struct Candidate {
     /// Twice the difference in log-likelihood to the best candidate, both parts of the
     /// record, with Schwarz's penalty: 0 for the best.
     pub behind: f64,
+    /// Twice the difference in log-likelihood to the model without it, both parts of the record,
+    /// with Schwarz's penalty: above 0 where this one is more likely.
+    pub evidence: f64,
+    /// Whether it is worth adding, and why.
+    pub judgement: Judgement,
     /// Twice the negative log-likelihood, without a penalty.
     pub(super) deviance: f64,
     /// Other candidates that this record cannot distinguish from this one.
     pub indistinguishable_from: Vec<&'static str>,
     /// What would separate it from each of them, where it is significant.
     pub separated_by: Vec<Separation>,
-    /// Standard deviation of the measurement noise with its delay, output units.
-    pub noise_floor: Option<f64>,
 }
 
 impl Candidate {
@@ -84,6 +88,11 @@ impl Candidate {
         components_of(&self.fit.model, &self.effects)
     }
 
+    /// What it is, without what is thought of it.
+    pub(super) fn extension(&self) -> Extension {
+        Extension { effects: self.effects.clone(), fit: self.fit.clone() }
+    }
+
     /// Id of the effect that was added last.
     pub(super) fn newest(&self) -> &'static str {
         self.effects[self.effects.len() - 1]
@@ -92,11 +101,18 @@ impl Candidate {
     /// Whether it explains so much of the error that it is worth a name, and the record determines
     /// each effect of it.
     pub(crate) fn is_significant(&self) -> bool {
-        self.added().all(|effect| is_reached(&self.fit, effect) && is_determined(&self.fit, effect))
-            && match self.effects.as_slice() {
-                [_] => self.p_value < OF_A_CATALOGUE && self.explains(SINGLE_PERCENT),
-                _ => self.p_value < OF_ALL_PAIRS && self.explains(PAIR_PERCENT),
-            }
+        self.is_shown()
+            && self
+                .added()
+                .all(|effect| is_reached(&self.fit, effect) && is_determined(&self.fit, effect))
+    }
+
+    /// Whether it explains so much of the error that it is worth a name.
+    pub(super) fn is_shown(&self) -> bool {
+        match self.effects.as_slice() {
+            [_] => self.p_value < OF_A_CATALOGUE && self.explains(SINGLE_PERCENT),
+            _ => self.p_value < OF_ALL_PAIRS && self.explains(PAIR_PERCENT),
+        }
     }
 
     /// Whether at least as many parameters are determined with it as in `base`: an effect that

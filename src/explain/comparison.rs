@@ -4,7 +4,8 @@
 use super::candidate::{ALIKE, Candidate};
 use super::evidence::{Evidence, NoiseMemory};
 use super::extension::Extension;
-use crate::diagnosis::{ErrorFigures, floor_of};
+use super::judgement::Judgement;
+use crate::diagnosis::ErrorFigures;
 use crate::fit::{Fit, FitRecord, Part};
 
 /// What the error with measured delays must be, in parts of the error with a law of the delay,
@@ -72,6 +73,7 @@ impl Judged {
             _ => (base_square.sqrt(), square.sqrt()),
         };
         let (behind, deviance) = (own.evidence.criterion(), own.evidence.deviance());
+        let evidence = self.evidence.criterion() - behind;
         let tested = if extension.nests() { own.evidence } else { own.evidence.not_nested() };
         let p_value = tested.p_value_against(&self.evidence);
         let misfit = (base_square - noise_floor * noise_floor).max(f64::MIN_POSITIVE);
@@ -85,10 +87,11 @@ impl Judged {
             // Where the error is that of the noise there is hardly a misfit to share.
             share_of_misfit: ((base_square - square) / misfit).clamp(-1.0, 1.0),
             behind,
+            evidence,
+            judgement: Judgement::pending(evidence),
             deviance,
             indistinguishable_from: Vec::new(),
             separated_by: Vec::new(),
-            noise_floor: floor_of(record, &fit),
             fit: extension.fit,
         }
     }

@@ -19,6 +19,9 @@ pub struct Contribution {
 pub struct Attribution {
     /// Effects with consequence, the largest share first.
     pub found: Vec<Contribution>,
+    /// Effects of the model that lower the error, and take less of it than remains unexplained beside
+    /// them: each may be the nearest of the known effects to one that is not known.
+    pub doubtful: Vec<Contribution>,
     /// Effects that are significant, and that have no practical consequence.
     pub refinements: Vec<&'static str>,
 }

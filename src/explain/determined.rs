@@ -3,7 +3,7 @@
 //! An effect none of whose parameters is determined may lower the error all the same: at the bound of
 //! its exponent or level it is another shape than its name says. That is no reason to name it.
 
-use crate::effect::{Dimension, Effect, Parameter, Stage, by_id};
+use crate::effect::{Dimension, Effect, Parameter, RecordRange, Stage, by_id};
 use crate::fit::{self, AssessedModel, Status};
 use crate::model::Component;
 
@@ -54,12 +54,22 @@ pub(super) fn distance_from_neutral(parameter: &Parameter, fitted: &fit::Paramet
 }
 
 /// Whether an effect acts within what the record of `fit` reaches: not one of which all levels or
-/// limits lie beyond.
+/// limits lie beyond, unless another of its parameters is determined, as the soft knee of a limit.
 pub(super) fn is_reached(fit: &AssessedModel, component: &Component) -> bool {
-    let limits = free_parameters(fit, component)
-        .filter(|(parameter, _)| is_limit(component.effect(), parameter));
-    let mut limits = limits.peekable();
-    limits.peek().is_none() || limits.any(|(_, status)| status != Status::BeyondReach)
+    let of_limits = |(parameter, _): &(&Parameter, Status)| is_limit(component.effect(), parameter);
+    let (limits, others): (Vec<_>, Vec<_>) = free_parameters(fit, component).partition(of_limits);
+    limits.is_empty()
+        || limits.iter().any(|(_, status)| *status != Status::BeyondReach)
+        || others.iter().any(|(_, status)| *status == Status::Fitted)
+}
+
+/// The name of a fitted parameter of an effect whose value is not plausible; none where all are.
+pub(super) fn implausible(component: &Component, range: &RecordRange<'_>) -> Option<String> {
+    let spec = component.effect().spec();
+    let values = component.parameters().iter().zip(spec.parameters);
+    let fitted = values.filter(|(value, parameter)| !value.fixed && parameter.fitted);
+    let mut odd = fitted.filter(|(value, parameter)| !parameter.allows(value.value, range));
+    odd.next().map(|(_, parameter)| format!("{}.{}", spec.id, parameter.name))
 }
 
 /// Whether a parameter of `effect` is a level of the input or a limit of the output.

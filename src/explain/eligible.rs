@@ -14,9 +14,23 @@ pub(super) fn eligible(
     options: &Options,
 ) -> Vec<&'static dyn Effect> {
     let is_eligible = |effect: &&&'static dyn Effect| {
-        could_be_missing(record, model, **effect) && is_due(model, effect.spec(), options)
+        could_be_missing(record, model, **effect)
+            && is_due(model, effect.spec(), options)
+            && !effect.spec().is_free_form
     };
     options.effects.iter().filter(is_eligible).copied().collect()
+}
+
+/// The effects of `options` of a free form that could be missing from `model`.
+pub(super) fn free_forms(
+    record: &FitRecord<'_>,
+    model: &JointModel,
+    options: &Options,
+) -> Vec<&'static dyn Effect> {
+    let is_one = |effect: &&&'static dyn Effect| {
+        effect.spec().is_free_form && could_be_missing(record, model, **effect)
+    };
+    options.effects.iter().filter(is_one).copied().collect()
 }
 
 /// The effects of `options` that could be missing from `model`, are a steady law, and
@@ -29,6 +43,7 @@ pub(super) fn steady_refinements(
 ) -> Vec<&'static dyn Effect> {
     let refines = |effect: &&&'static dyn Effect| {
         effect.is_steady()
+            && effect.spec().memory == 0
             && could_be_missing(record, model, **effect)
             && !is_due(model, effect.spec(), options)
     };

@@ -35,7 +35,7 @@
 //! Biometrika 73 (1986), 13-22. R. M. Bell and D. F. `McCaffrey`, "Bias reduction in standard
 //! errors for linear regression with multi-stage samples", Survey Methodology 28 (2002), 169-181.
 
-use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, floor_of};
+use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, sensor_noise};
 use crate::fit::{Fit, FitRecord, Part, Status};
 use crate::numerics::NoiseModel;
 use crate::numerics::fisher_tail;
@@ -74,7 +74,7 @@ impl NoiseMemory {
         windows.extend(record.cut(&fit.evaluation.residuals, Part::Validation));
         let error = ErrorFigures::of(record, &fit.evaluation, Part::Training);
         let is_misfit = error
-            .zip(floor_of(record, fit))
+            .zip(sensor_noise(&record.measured().trials))
             .is_some_and(|(error, floor)| error.rmse > BEYOND_NOISE * floor);
         let white = NoiseModel::white;
         Self { model: if is_misfit { white() } else { NoiseModel::of_centred(&windows) } }

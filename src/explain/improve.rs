@@ -2,6 +2,7 @@
 
 use super::attribution::{Grown, LeftOut};
 use super::contribution::Attribution;
+use super::decide::in_order;
 use super::extension::ids;
 use super::ladder::climbed;
 use super::misfit::{Errors, Misfit};
@@ -9,7 +10,8 @@ use super::options::Options;
 use super::outcome::FitOutcome;
 use super::revision::{Change, Improvement, Revision};
 use super::separate::separate;
-use super::stepwise::{Step, add_stepwise};
+use super::stepwise::{Ended, Step, add_stepwise};
+use super::structures::{is_more_likely, structured};
 use super::verdict::Verdict;
 use super::workers::Workers;
 use crate::delay::are_strokes;
@@ -17,6 +19,10 @@ use crate::diagnosis::compare_knowing;
 use crate::fit::{Fit, FitRecord};
 
 /// Adds what is missing from the model of `fit`, one effect after the other.
+///
+/// Where that ends far from the noise, the search starts anew from the [usual
+/// structures](super::structures), and the more likely end counts: `done` then sees the first
+/// revision once more.
 ///
 /// After each effect, those that were added before and have become useless are removed. At the
 /// end, unless [`Options::keeps_refinements`], those without practical consequence go, too: see
@@ -37,8 +43,11 @@ pub fn improve(
         let Step { change, fit, lack_of_fit, mut ranking } = step.clone();
         separate(record, &mut ranking, workers);
         let comparison = compare_knowing(record, fit, lack_of_fit);
-        let revision = Revision { change, comparison, ranking };
+        let revision = Revision { change, comparison, ranking: in_order(ranking) };
         let goes_on = done(&revision);
+        if step.change == Change::Start {
+            revisions.clear();
+        }
         if let Some(before) = revisions.last_mut().filter(|_| !options.keeps_series) {
             Revision::drop_series(before);
         }
@@ -56,7 +65,28 @@ pub fn improve(
         let attribution = Attribution::default();
         return Improvement { revisions, verdict: Verdict::MissingEffect, attribution };
     };
-    let ended = add_stepwise(record, first, &given, options, workers, misfit, &mut visit);
+    let begin = first.clone();
+    let mut ended = add_stepwise(record, first, &given, options, workers, misfit, &mut visit);
+    let is_far = misfit.is_far_from_noise(Errors::of(record, &ended.fit));
+    if !makes_strokes && is_far && ended.verdict == Verdict::Unexplained && !ended.was_stopped {
+        /// Effects that are added to a structure, at most: what it has is most of what there is.
+        const MORE: usize = 3;
+        let mut steps = structured(record, &begin, options, misfit, workers);
+        if let Some(start) = steps.pop() {
+            let mut later = Vec::new();
+            let mut keep = |step: &Step| {
+                later.push(step.clone());
+                true
+            };
+            let max_effects = options.max_effects.min(steps.len() + 1 + MORE);
+            let options = &Options { max_effects, ..options.clone() };
+            let other = add_stepwise(record, start, &given, options, workers, misfit, &mut keep);
+            if is_more_likely(record, &other.fit, &ended.fit) {
+                let mut all = std::iter::once(begin).chain(steps).chain(later);
+                ended = Ended { was_stopped: !all.all(|step| visit(&step)), ..other };
+            }
+        }
+    }
     let verdict = ended.verdict;
     let attribution = if ended.was_stopped {
         Attribution::default()

@@ -3,7 +3,9 @@
 use super::attribution::Grown;
 use super::candidate::Candidate;
 use super::contribution::Attribution;
+use super::decide::{Judge, in_order};
 use super::extension::ids;
+use super::judgement::Refusal;
 use super::ladder::{climbed, is_usual};
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
@@ -43,9 +45,11 @@ pub fn explain(
     let base = compare_knowing(record, fit.clone(), lack_of_fit);
     let attribution = Attribution::default();
     if !lacks {
+        let ranking = in_order(ranking);
         return Explanation { base, verdict: Verdict::Adequate, ranking, attribution };
     }
     let named = is_named(record, &fit, &mut ranking, options, workers);
+    judged(record, &fit, &mut ranking, named, options);
     separate(record, &mut ranking, workers);
     if let Some(best) = ranking.first_mut().filter(|_| named) {
         best.fit.keep_series(record);
@@ -58,7 +62,34 @@ pub fn explain(
             .attribution(workers)
     });
     let verdict = if named { Verdict::MissingEffect } else { Verdict::Unexplained };
-    Explanation { base, verdict, ranking, attribution }
+    Explanation { base, verdict, ranking: in_order(ranking), attribution }
+}
+
+/// Judges each candidate by itself; of those that nothing speaks against the first is added where one
+/// is `named`, and none else.
+fn judged(
+    record: &FitRecord<'_>,
+    fit: &Fit,
+    ranking: &mut [Candidate],
+    named: bool,
+    options: &Options,
+) {
+    let misfit = Misfit::of(record, Errors::of(record, fit));
+    let judge = Judge::new(record, fit, misfit, options, false);
+    for candidate in &mut *ranking {
+        candidate.judgement = judge.judge(candidate);
+    }
+    let Some((first, others)) = ranking.split_first_mut() else { return };
+    let why_not = if named {
+        first.judgement.refusal = None;
+        Refusal::Behind(first.name())
+    } else {
+        Refusal::NotTheWhole
+    };
+    let refused = others.iter_mut().chain(Some(first).filter(|_| !named));
+    for other in refused.filter(|other| other.judgement.is_added()) {
+        other.judgement.refusal = Some(why_not.clone());
+    }
 }
 
 /// The candidates for what the model of `fit` lacks, best first, where the first is to be

@@ -40,14 +40,14 @@ pub(super) fn limiting_case(
     (!is_shown && case.effects.iter().all(is_tried)).then_some(case)
 }
 
-/// Whether one of the effects `new` of a fitted model is no more than its limiting case.
-pub(super) fn is_one_its_limiting_case(
+/// The limiting case that one of the effects `new` of a fitted model is no more than.
+pub(super) fn limiting_case_of(
     record: &FitRecord<'_>,
     fit: &AssessedModel,
     new: &[&'static str],
     options: &Options,
-) -> bool {
-    components_of(&fit.model, new).any(|one| limiting_case(record, fit, one, options).is_some())
+) -> Option<LimitingCase> {
+    components_of(&fit.model, new).find_map(|one| limiting_case(record, fit, one, options))
 }
 
 /// Puts the limiting case of a candidate, where that is all that the record shows of it, in its place.

@@ -1,6 +1,6 @@
 //! How much of what a model lacked an effect explains, and when that is of consequence.
 
-use crate::diagnosis::{ErrorFigures, sensor_noise};
+use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, sensor_noise};
 use crate::fit::{Fit, FitRecord, Part};
 
 /// The share of the misfit from which an effect has a practical consequence.
@@ -55,7 +55,7 @@ impl Misfit {
     /// That of a model with the errors `first`.
     pub(super) fn of(record: &FitRecord<'_>, first: Errors) -> Self {
         let Errors { whole: first, unseen, .. } = first;
-        let noise = sensor_noise(&record.joint().trials).unwrap_or(0.0).min(first);
+        let noise = sensor_noise(&record.measured().trials).unwrap_or(0.0).min(first);
         Self { first, unseen, noise }
     }
 
@@ -88,9 +88,30 @@ impl Misfit {
         errors.is_none_or(|((before, after), first)| after <= before.max((1.0 + UNCHANGED) * first))
     }
 
-    /// Whether what a model leaves beside the noise is hardly a part of the misfit.
+    /// Whether an effect is credible without which the error is that of `without`, and with it that of
+    /// `with`: where no more than a few times the noise is left with it, or where it takes at least
+    /// half of the squared error that is there without it.
+    ///
+    /// Of a misfit that no known effect makes, the nearest of them takes a part by chance; of one
+    /// that it makes itself it takes nearly all.
+    pub(super) fn is_credible(self, without: Errors, with: Errors) -> bool {
+        /// The part of the squared error that it takes at least. Chosen: of misfits from outside the
+        /// catalogue the nearest effect takes less.
+        const HALF: f64 = 0.5;
+        let beyond = |errors: Errors| (errors.whole.powi(2) - self.noise.powi(2)).max(0.0);
+        !self.is_far_from_noise(with) || beyond(without) - beyond(with) >= HALF * beyond(without)
+    }
+
+    /// Whether a model leaves more than a few times the noise.
+    pub(super) fn is_far_from_noise(self, errors: Errors) -> bool {
+        errors.judged() > BEYOND_NOISE * self.noise
+    }
+
+    /// Whether what a model leaves beside the noise is hardly a part of the misfit, and no more than a
+    /// few times the noise.
     pub(super) fn is_explained(self, errors: Errors) -> bool {
         self.part_of(self.first, errors.whole - self.noise) < HARDLY
+            && !self.is_far_from_noise(errors)
     }
 
     /// `error` in parts of that of the first model beyond the noise.

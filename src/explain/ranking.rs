@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::comparison::{MUCH_LESS, compared};
-use super::eligible::{eligible, steady_refinements};
+use super::eligible::{eligible, free_forms, steady_refinements};
 use super::extension::Extension;
 use super::limiting_case::put_limiting_cases_first;
 use super::options::Options;
@@ -12,7 +12,7 @@ use super::screening::fit_best;
 use super::workers::Workers;
 use crate::diagnosis::NEAR_NOISE;
 use crate::effect::{Effect, RecordRange};
-use crate::fit::{Fit, FitRecord, fit_to_compare};
+use crate::fit::{Fit, FitRecord, Part, fit_to_compare};
 use crate::model::Component;
 
 /// What is tried.
@@ -62,8 +62,9 @@ pub(super) fn rank(
         range: &range,
     };
     let [thinned, training] = [record.thinned(), record.for_training()];
+    let fitted = record.part(Part::Training).count();
     let ranking = search.singles(&thinned, scope, workers);
-    let is_whole = thinned.windows().len() == training.windows().len();
+    let is_whole = thinned.windows().len() == fitted;
     let shows = |ranking: &[Candidate]| ranking.iter().any(Candidate::is_significant);
     let ranking = if is_whole || shows(&ranking) {
         ranking
@@ -74,7 +75,11 @@ pub(super) fn rank(
         return ranking;
     }
     let paired = search.beside_pairs(&ranking, workers);
-    if shows(&paired) { paired } else { ranking }
+    if shows(&paired) {
+        return paired;
+    }
+    // What no law explains may follow a curve of any form.
+    search.beside_free_forms(&ranking, workers)
 }
 
 /// A model, and what may be missing from it.
@@ -129,12 +134,22 @@ impl Search<'_, '_> {
 
     /// The candidates of `ranking` among the best pairs of effects.
     fn beside_pairs(&self, ranking: &[Candidate], workers: &impl Workers) -> Vec<Candidate> {
-        let single = |candidate: &Candidate| Extension {
-            effects: candidate.effects.clone(),
-            fit: candidate.fit.clone(),
-        };
         let mut extensions = pairs(self.record, self.base, self.effects, self.range, workers);
-        extensions.extend(ranking.iter().map(single));
+        extensions.extend(ranking.iter().map(Candidate::extension));
+        self.compared(extensions)
+    }
+
+    /// The candidates of `ranking` beside effects of a free form.
+    fn beside_free_forms(&self, ranking: &[Candidate], workers: &impl Workers) -> Vec<Candidate> {
+        let with = |effect: &&'static dyn Effect| {
+            let model = self.base.model.with(Component::neutral(*effect));
+            let fit = fit_to_compare(self.record, &model, self.range).ok()?;
+            let fit = FitOutcome::of(self.record, fit);
+            Some(Extension { effects: vec![effect.spec().id], fit })
+        };
+        let free = free_forms(self.record, &self.base.model, self.options);
+        let mut extensions: Vec<_> = workers.map(&free, with).into_iter().flatten().collect();
+        extensions.extend(ranking.iter().map(Candidate::extension));
         self.compared(extensions)
     }
 

@@ -6,7 +6,7 @@ use super::eligible::{could_be_missing, is_due};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
 use super::likeness::{are_distinguished, looks_like};
-use super::limiting_case::is_one_its_limiting_case;
+use super::limiting_case::limiting_case_of;
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
@@ -120,7 +120,7 @@ impl Removal<'_> {
             let new: Vec<&str> = change.new_effects().collect();
             let is_known = components_of(&fit.model, &new).all(|one| is_determined(&fit, one))
                 && are_distinguished(&fit, &new)
-                && !is_one_its_limiting_case(record, &fit, &new, self.options);
+                && limiting_case_of(record, &fit, &new, self.options).is_none();
             (behind < 0.0 && leaves_less && !does_harm && is_worth_it && is_known)
                 .then_some((behind, (change, fit)))
         });
@@ -179,6 +179,7 @@ pub(super) fn replacements(
     let able = alike.filter(|effect| {
         let spec = effect.spec();
         could_be_missing(record, &rest, **effect)
+            && !spec.is_free_form
             && (is_due(&rest, spec, options) || is_as_simple_a_form(spec, old))
     });
     let replaced = |effect: &&'static dyn Effect| Change::Replaced { old, new: effect.spec().id };
@@ -228,7 +229,7 @@ fn fitted_after<K: Copy + PartialEq + Send + Sync>(
 
 /// `model` after a change: with a new effect at its neutral values, and, in another's place, at those
 /// that do what the other does.
-fn changed(model: &JointModel, change: Change) -> Vec<JointModel> {
+pub(super) fn changed(model: &JointModel, change: Change) -> Vec<JointModel> {
     let neutral = |id| by_id(id).map(Component::neutral);
     let (rest, new) = match change {
         Change::Start => return vec![model.clone()],

@@ -9,8 +9,9 @@
 use std::ops::ControlFlow;
 
 use super::candidate::Candidate;
+use super::decide::Judge;
 use super::extension::ids;
-use super::limiting_case::is_one_its_limiting_case;
+use super::judgement::Refusal;
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::ranking::{Scope, rank};
@@ -19,7 +20,7 @@ use super::revision::Change;
 use super::verdict::Verdict;
 use super::workers::Workers;
 use crate::delay::are_strokes;
-use crate::diagnosis::{LackOfFit, floor_of, lack_of};
+use crate::diagnosis::{LackOfFit, lack_of, sensor_noise};
 use crate::fit::{Fit, FitRecord, fit_to_compare};
 
 /// A model on the way.
@@ -58,21 +59,32 @@ impl Step {
         options: &Options,
         workers: &impl Workers,
     ) -> bool {
-        if self.is_at_the_noise() {
+        if self.is_at_the_noise() && !options.always_tries {
             return false;
         }
         if self.ranking.is_empty() {
-            let floor = floor_of(record, &self.fit).unwrap_or(0.0);
+            let floor = sensor_noise(&record.measured().trials).unwrap_or(0.0);
             let scope = if self.is_adequate() { Scope::SingleEffects } else { Scope::Everything };
             self.ranking = rank(record, &self.fit, floor, options, scope, workers);
         }
-        let lacks = !self.is_adequate() || self.ranking.iter().any(Candidate::is_beyond_doubt);
+        let lacks = !self.is_at_the_noise()
+            && (!self.is_adequate() || self.ranking.iter().any(Candidate::is_beyond_doubt));
         match self.ranking.iter().position(Candidate::is_significant) {
+            _ if !lacks && options.always_tries => self.refuse_all(),
             _ if !lacks => self.ranking.clear(),
             Some(index) => self.ranking[..=index].rotate_right(1),
             None => {}
         }
         lacks
+    }
+}
+
+impl Step {
+    /// Refuses all candidates, as nothing is missing.
+    fn refuse_all(&mut self) {
+        for candidate in &mut self.ranking {
+            candidate.judgement.refusal = Some(Refusal::NothingMissing);
+        }
     }
 }
 
@@ -116,25 +128,12 @@ pub(super) fn add_stepwise(
             let was_stopped = !visit(&step);
             return ended(Verdict::Adequate, step.fit, was_stopped);
         }
-        let own = Errors::of(record, &step.fit);
-        let has_consequence = |candidate: &Candidate| {
-            options.keeps_refinements || misfit.has_consequence(own, candidate.fit.errors)
-        };
-        let is_sound = |candidate: &&Candidate| {
-            let is_known = !matched_by_many
-                || candidate.determines_as_much_as(&step.fit) && candidate.is_distinct();
-            candidate.is_significant()
-                && is_known
-                && candidate.is_distinguished_from_its_like()
-                && !is_one_its_limiting_case(record, &candidate.fit, &candidate.effects, options)
-                && misfit.generalizes(own, candidate.fit.errors)
-        };
-        let counts = |candidate: &Candidate| is_sound(&candidate) && has_consequence(candidate);
-        let found = step.ranking.iter().position(counts);
+        let judge = Judge::new(record, &step.fit, misfit, options, matched_by_many);
+        let found = judge.judge_all(&mut step.ranking);
         if found.is_none() && step.ranking.iter().any(Candidate::is_significant) {
-            let refused = step.ranking.iter().find(is_sound);
+            let refused = step.ranking.iter().find(|candidate| candidate.judgement.is_sound());
             let refinements = refused.map(|refused| refused.effects.clone()).unwrap_or_default();
-            let is_explained = misfit.is_explained(own);
+            let is_explained = misfit.is_explained(Errors::of(record, &step.fit));
             let verdict = if is_explained { Verdict::Adequate } else { Verdict::Unexplained };
             let was_stopped = !visit(&step);
             return Ended { refinements, ..ended(verdict, step.fit, was_stopped) };

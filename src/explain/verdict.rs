@@ -15,6 +15,14 @@ pub enum Verdict {
     Unexplained,
 }
 
+impl Explanation {
+    /// The candidate that is proposed or, where none is, the one that leaves least.
+    pub fn proposed(&self) -> Option<&Candidate> {
+        let mut added = self.ranking.iter().filter(|candidate| candidate.judgement.is_added());
+        added.next().or(self.ranking.first())
+    }
+}
+
 /// What is missing from a model.
 #[derive(Clone, Debug)]
 pub struct Explanation {

@@ -19,6 +19,7 @@ mod mended;
 mod problem;
 mod record;
 mod result;
+mod ripple;
 mod run;
 mod score;
 mod search;

@@ -109,8 +109,8 @@ impl Problem<'_, '_> {
     /// that stops at a higher level than it starts at stops where it starts, whatever the one
     /// that is lower.
     pub(super) fn cross_two_flats(&mut self, flats: &[usize]) -> bool {
-        let pairs = flats.iter().enumerate();
-        let pairs = pairs.flat_map(|(n, one)| flats.iter().skip(n + 1).map(|two| [*one, *two]));
+        // Levels that belong together are neighbours.
+        let pairs = flats.windows(2).filter_map(|pair| <[usize; 2]>::try_from(pair).ok());
         let (cost, start) = (self.cost(), self.free.clone());
         let best = pairs.filter_map(|pair| self.best_of_two(pair)).collect::<Vec<_>>();
         let best = best.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));

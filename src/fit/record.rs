@@ -9,7 +9,8 @@ use super::excerpt::Excerpt;
 use super::extent::Extent;
 use super::first_order::Follower;
 use super::mended::Mended;
-use super::run::{Run, best_starts, residuals_from, simulated_from};
+use super::ripple::RipplePeriod;
+use super::run::{Run, best_starts, raw_residuals, residuals_from, simulated_from};
 use super::speed;
 use super::thin::thinned;
 use super::unlogged::commands;
@@ -49,11 +50,11 @@ pub struct FitRecord<'a> {
 /// Delay of each change of the input in seconds, per trial, where it is known.
 type Delays = Vec<Vec<Option<f64>>>;
 
-/// Whether a residual of `size` is no more than what the outputs of `joint` are rounded by.
-pub(crate) fn is_rounding(joint: &Joint, size: f64) -> bool {
+/// Whether a residual of `size` is no more than what the outputs of `trials` are rounded by.
+pub(crate) fn is_rounding(trials: &[Trial], size: f64) -> bool {
     /// Part of the largest output, some thousand times what a double is rounded by (chosen).
     const ROUNDING: f64 = 1e-12;
-    let outputs = joint.trials.iter().flat_map(|trial| trial.output().iter());
+    let outputs = trials.iter().flat_map(|trial| trial.output().iter());
     let largest = outputs.fold(0.0_f64, |largest, output| largest.max(output.abs()));
     size <= ROUNDING * largest
 }
@@ -172,6 +173,11 @@ impl<'a> FitRecord<'a> {
         shows(Part::Training) && shows(Part::Validation)
     }
 
+    /// The joint as it was measured.
+    pub(crate) fn measured(&self) -> &Joint {
+        self.measured
+    }
+
     /// The joint, with lines in the place of spikes of its output, and the levels that its input holds where
     /// that was measured with noise.
     pub fn joint(&self) -> &Joint {
@@ -221,6 +227,26 @@ impl<'a> FitRecord<'a> {
         Evaluation { horizon: self.horizon, simulated: Vec::new(), residuals, starts }
     }
 
+    /// Measured minus simulated, per trial and sample: each run starts at the smoothed measured
+    /// output, and nothing is removed.
+    pub(crate) fn raw_residuals(&self, model: &JointModel) -> Vec<Vec<f64>> {
+        raw_residuals(&self.runs(model))
+    }
+
+    /// What [`raw_residuals`](Self::raw_residuals) are in a free run: each trial is simulated from its
+    /// start to its end, at first steady.
+    pub(crate) fn free_residuals(&self, model: &JointModel) -> Vec<Vec<f64>> {
+        let trials = self.joint().trials.iter().enumerate();
+        let whole = trials.filter(|(_, trial)| trial.len() > 0).map(|(index, trial)| Window {
+            trial: index,
+            start: 0,
+            end: trial.len(),
+            part: Part::Training,
+        });
+        let free = Self { windows: whole.collect(), speeds_measured: false, ..self.clone() };
+        raw_residuals(&free.runs(model))
+    }
+
     /// The residuals of the training windows, as [`training`](Self::training) has them, of each of
     /// `models`, which are near to the one of `near`, whose starts are taken.
     pub(super) fn training_near(
@@ -243,14 +269,13 @@ impl<'a> FitRecord<'a> {
     /// This record with a part of the training windows, where they are many: enough to see which
     /// models are worth a fit.
     pub(crate) fn thinned(&self) -> Self {
-        let training = self.for_training();
         // In the order of the labels: that of the rows says nothing of a joint.
         let places = places(&self.joint().trials);
-        let mut windows = training.windows.clone();
+        let mut windows: Vec<Window> = self.part(Part::Training).copied().collect();
         windows.sort_by_key(|window| places[window.trial]);
         let mut windows = thinned(&windows);
         windows.sort_by_key(|window| (window.trial, window.start));
-        Self { windows, ..training }
+        Self { windows, ..self.clone() }
     }
 
     /// This record with training windows of no more than a few steps of the input.
@@ -263,10 +288,15 @@ impl<'a> FitRecord<'a> {
         Self { windows: windows.collect(), ..self.clone() }
     }
 
-    /// This record with the training windows only: what lies behind the last of a trial is not
+    /// This record without what lies behind the last training window of a trial, which is not
     /// simulated.
     pub(crate) fn for_training(&self) -> Self {
-        Self { windows: self.part(Part::Training).copied().collect(), ..self.clone() }
+        let is_followed = |window: &&Window| {
+            let later = self.windows_of(window.trial).iter().rev();
+            let mut later = later.take_while(|other| other.start >= window.start);
+            later.any(|other| other.part == Part::Training)
+        };
+        Self { windows: self.windows.iter().filter(is_followed).copied().collect(), ..self.clone() }
     }
 
     /// The training windows, or parts of them where they are very long.
@@ -370,6 +400,7 @@ impl<'a> FitRecord<'a> {
             duration_s: extent.duration_s,
             sample_period_s: extent.sample_period_s,
             radians_per_output_unit: self.radians_per_output_unit,
+            ripple_period: self.joint().trials.property::<RipplePeriod>().0,
             signals: &self.signals,
         }
     }
@@ -384,7 +415,7 @@ impl<'a> FitRecord<'a> {
     pub(crate) fn is_exact(&self, evaluation: &Evaluation) -> bool {
         let residuals = evaluation.residuals.iter().flatten();
         let most = residuals.fold(0.0_f64, |most, residual| most.max(residual.abs()));
-        is_rounding(self.joint(), most)
+        is_rounding(&self.joint().trials, most)
     }
 
     /// How the output follows the input, where it does or is likely to follow the input itself.
@@ -401,6 +432,6 @@ impl<'a> FitRecord<'a> {
 /// All windows of a joint.
 fn windows(joint: &Joint, split: Split, horizon: Horizon) -> Vec<Window> {
     let trials = joint.trials.iter().enumerate().zip(places(&joint.trials));
-    let split = |place| split.of_trial(place);
-    trials.flat_map(|((index, trial), place)| cut(trial, index, split(place), horizon)).collect()
+    let cut = |((index, trial), place)| cut(trial, index, (split, place), horizon);
+    trials.flat_map(cut).collect()
 }

@@ -37,6 +37,21 @@ impl Run<'_> {
         self.windows.iter().map(start).collect()
     }
 
+    /// The measured outputs where the windows start, each the mean of the samples around it, of as
+    /// many on either side, four at most.
+    fn smoothed_starts(&self) -> Vec<f64> {
+        /// Samples on either side: a third of the noise is left, and of a straight motion nothing
+        /// is changed.
+        const SIDE: usize = 4;
+        let measured = self.trial.output();
+        let start = |window: &Window| {
+            let side = SIDE.min(window.start).min(measured.len() - 1 - window.start);
+            let around = &measured[window.start - side..=window.start + side];
+            around.iter().sum::<f64>() / around.len() as f64
+        };
+        self.windows.iter().map(start).collect()
+    }
+
     /// What is `simulated`, less what its starts are wrong by.
     fn shifted(&self, mut simulated: Simulated, slope: Option<&[f64]>) -> Simulated {
         let shifts = self.shifts(&simulated.output, slope);
@@ -211,6 +226,15 @@ pub(super) fn residuals_from<'r>(
     found.collect()
 }
 
+/// The residuals of each run whose windows start at the smoothed measured output: nothing is
+/// removed.
+pub(super) fn raw_residuals(runs: &[Run<'_>]) -> Vec<Vec<f64>> {
+    let starts: Vec<Vec<f64>> = runs.iter().map(Run::smoothed_starts).collect();
+    let begun: Vec<_> = runs.iter().zip(&starts).map(|(run, from)| (run, &from[..])).collect();
+    let all = simulated(&begun, outputs_together).into_iter().zip(runs);
+    all.map(|(simulated, run)| run.residual_in_place(simulated)).collect()
+}
+
 /// The simulations of the windows of each run, from their starts; not a number where there is none.
 fn simulated(begun: &[(&Run<'_>, &[f64])], simulate: Simulate) -> Vec<Simulated> {
     let pieces = begun.iter().enumerate();
@@ -245,12 +269,18 @@ const LEAD_IN: usize = 150;
 
 /// Samples that are simulated: windows without a gap are one range, and the first of them
 /// has a lead-in.
+///
+/// Between windows that make up most of the record the simulation goes on, so that what remembers
+/// (play, friction, slow states) comes to the next one as it was driven.
 fn simulated_ranges(windows: &[Window]) -> Vec<Range<usize>> {
+    let seen: usize = windows.iter().map(|window| window.end - window.start).sum();
     let mut ranges: Vec<Range<usize>> = Vec::new();
+    let Some((first, last)) = windows.first().zip(windows.last()) else { return ranges };
+    let is_most = 2 * seen >= last.end - first.start;
+    let skipped = if is_most { usize::MAX } else { LEAD_IN };
     for window in windows {
-        let before = ranges.last_mut().map(|last| (last.end, last));
-        match before {
-            Some((end, last)) if window.start <= end + LEAD_IN => last.end = window.end,
+        match ranges.last_mut() {
+            Some(range) if window.start - range.end <= skipped => range.end = window.end,
             _ => ranges.push(window.start.saturating_sub(LEAD_IN)..window.end),
         }
     }

@@ -127,7 +127,10 @@ fn reach(model: &JointModel, index: usize, range: &RecordRange<'_>) -> Bounds {
 
 /// Whether a parameter of `model` is a level of the input.
 fn is_level(model: &JointModel, index: usize) -> bool {
-    place(model, index).is_some_and(|(_, parameter)| parameter.dimension == Dimension::Input)
+    place(model, index).is_some_and(|(component, parameter)| {
+        let stage = component.effect().spec().stage;
+        parameter.dimension == Dimension::Input && stage != Stage::Spool
+    })
 }
 
 /// The effect of which a value of `model` is a parameter, and this.

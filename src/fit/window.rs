@@ -53,24 +53,53 @@ pub enum Split {
     /// Every third trial in the order of their labels is for validation: which are does not depend
     /// on the order of the rows.
     Trials,
+    /// Every third block of each trial is for validation, a block being four runs from restart to
+    /// restart: both parts then visit the same levels, angles and temperatures, and a model is not
+    /// judged by what it was never shown. Of a trial of fewer than three blocks the first 70 % are
+    /// for training.
+    Blocks,
 }
 
 impl Split {
-    /// By trial where there are enough of them, else 70 % of the time of each.
+    /// By trial where there are enough of them, else by blocks of each.
     pub fn of(joint: &Joint) -> Self {
         /// Trials from which a third of them is a fair sample.
         const ENOUGH: usize = 6;
-        if joint.trials.len() >= ENOUGH { Self::Trials } else { Self::Time(0.7) }
+        if joint.trials.len() >= ENOUGH { Self::Trials } else { Self::Blocks }
     }
 
-    /// The share of a trial that is for training, which has this place among the labels.
-    pub(super) fn of_trial(self, place: usize) -> f64 {
+    /// The stretches of `trial`, which has this place among the labels: the index behind the last
+    /// sample of each, and what it is for.
+    fn stretches(self, trial: &Trial, place: usize) -> Vec<(usize, Part)> {
+        /// The share for training of a trial too short for blocks.
+        const UNBLOCKED: f64 = 0.7;
+        let samples = trial.len();
+        let first = |share: f64| {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1")]
+            let border = (samples as f64 * share.clamp(0.0, 1.0)) as usize;
+            vec![(border, Part::Training), (samples, Part::Validation)]
+        };
         match self {
-            Self::Time(share) => share.clamp(0.0, 1.0),
-            Self::Trials if place % 3 == 2 => 0.0,
-            Self::Trials => 1.0,
+            Self::Time(share) => first(share),
+            Self::Trials if place % 3 == 2 => vec![(samples, Part::Validation)],
+            Self::Trials => vec![(samples, Part::Training)],
+            Self::Blocks => blocks(trial).unwrap_or_else(|| first(UNBLOCKED)),
         }
     }
+}
+
+/// Blocks of runs, the second of every three for validation; none of a trial with fewer than three.
+fn blocks(trial: &Trial) -> Option<Vec<(usize, Part)>> {
+    /// Runs of a block: some steps of the input together, so that what a restart leaves unknown is
+    /// a small part of it.
+    const RUNS: usize = 4;
+    let ends = window_ends(run_borders(trial), &[trial.len()]);
+    if ends.len() < 3 * RUNS {
+        return None;
+    }
+    let part = |block: usize| if block % 3 == 1 { Part::Validation } else { Part::Training };
+    let blocks = ends.chunks(RUNS).enumerate();
+    Some(blocks.filter_map(|(block, ends)| Some((*ends.last()?, part(block)))).collect())
 }
 
 /// The place of each of `trials` in the order of their labels, which is that of numbers where all
@@ -115,39 +144,75 @@ pub struct Window {
 /// Fewest samples of a window: its offset is taken from them.
 const SHORTEST_WINDOW: usize = 10;
 
-/// The windows of one trial, the first `share` of which, 0 to 1, is for training.
-pub(super) fn cut(trial: &Trial, index: usize, share: f64, horizon: Horizon) -> Vec<Window> {
-    let samples = trial.len();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1")]
-    let border = (samples as f64 * share) as usize;
-    let mut borders = vec![0, border, samples];
+/// The windows of one trial, which has this place among the labels.
+pub(super) fn cut(
+    trial: &Trial,
+    index: usize,
+    (split, place): (Split, usize),
+    horizon: Horizon,
+) -> Vec<Window> {
+    let stretches = merged(split.stretches(trial, place));
+    let must: Vec<usize> = stretches.iter().map(|(end, _)| *end).collect();
+    let part = |start: usize| stretches.iter().find(|(end, _)| start < *end).map(|(_, part)| *part);
+    let ends = window_ends(borders(trial, horizon), &must);
+    let starts = std::iter::once(0).chain(ends.iter().copied());
+    let window = |(start, end)| Some(Window { trial: index, start, end, part: part(start)? });
+    starts.zip(ends.iter().copied()).filter_map(window).collect()
+}
+
+/// Stretches of which no two neighbours are for the same, without empty ones.
+fn merged(stretches: Vec<(usize, Part)>) -> Vec<(usize, Part)> {
+    let mut merged: Vec<(usize, Part)> = Vec::new();
+    for (end, part) in stretches {
+        match merged.last_mut() {
+            Some((last, _)) if *last == end => {}
+            Some((last, of)) if *of == part => *last = end,
+            None if end == 0 => {}
+            _ => merged.push((end, part)),
+        }
+    }
+    merged
+}
+
+/// Where a simulation of `trial` with this horizon restarts, in any order.
+fn borders(trial: &Trial, horizon: Horizon) -> Vec<usize> {
     match horizon {
-        Horizon::FreeRun => {}
-        Horizon::Auto | Horizon::Steps if is_held(trial.input()) => {
-            borders.extend(changes(trial.input()));
-            borders = divided(borders, longest_run(trial.period()));
-        }
-        Horizon::Auto | Horizon::Steps => {
-            borders.extend((0..samples).step_by(longest_run(trial.period())));
-        }
+        Horizon::FreeRun => Vec::new(),
+        Horizon::Auto | Horizon::Steps => run_borders(trial),
         Horizon::Seconds(seconds) => {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
             let every = (seconds / trial.period().seconds()).round().max(1.0) as usize;
-            borders.extend((0..samples).step_by(every));
+            (0..trial.len()).step_by(every).collect()
         }
     }
+}
+
+/// The steps of a held input and borders in long holds; of one that moves all the time borders at
+/// even distances.
+fn run_borders(trial: &Trial) -> Vec<usize> {
+    let (samples, longest) = (trial.len(), longest_run(trial.period()));
+    if is_held(trial.input()) {
+        let steps = std::iter::once(0).chain(changes(trial.input())).chain([samples]);
+        divided(steps.collect(), longest)
+    } else {
+        (0..samples).step_by(longest).collect()
+    }
+}
+
+/// Where windows end that lie between `borders`: at each that `must` be one, and at others where the
+/// window has enough samples.
+fn window_ends(mut borders: Vec<usize>, must: &[usize]) -> Vec<usize> {
+    borders.extend(must);
     borders.sort_unstable();
-    let mut windows: Vec<Window> = Vec::new();
-    let mut start = 0;
+    let (mut ends, mut start) = (Vec::new(), 0);
     for end in borders {
-        let must_end = end == border || end == samples;
-        if end - start >= SHORTEST_WINDOW || must_end && end > start {
-            let part = if start < border { Part::Training } else { Part::Validation };
-            windows.push(Window { trial: index, start, end, part });
+        let is_long = end - start >= SHORTEST_WINDOW;
+        if is_long || must.contains(&end) && end > start {
+            ends.push(end);
             start = end;
         }
     }
-    windows
+    ends
 }
 
 /// Samples of a window between steps of the input, at most: a small error of the speed would
@@ -218,7 +283,7 @@ mod tests {
         let input: Vec<f64> = (0..1000).map(f64::from).collect();
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("a", 0.0, period, input, vec![0.0; 1000]).unwrap();
-        let windows = cut(&trial, 0, 0.5, Horizon::Steps);
+        let windows = cut(&trial, 0, (Split::Time(0.5), 0), Horizon::Steps);
         let borders: Vec<_> = windows.iter().map(|window| window.start).collect();
         assert_eq!(borders, [0, 200, 400, 500, 600, 800]);
     }
@@ -230,7 +295,28 @@ mod tests {
         let of = |labels: &[&str]| places(&labels.iter().map(trial).collect::<Vec<_>>());
         assert_eq!(of(&["b-20", "a-100", "b-3", "a-100"]), [2, 0, 3, 1]);
         assert_eq!(of(&["10", "9", "1"]), [2, 1, 0]);
-        assert!((Split::Trials.of_trial(2)).abs() < 1e-15 && Split::Trials.of_trial(3) > 0.5);
+        let trial = Trial::new("a", 0.0, period, vec![0.0; 9], vec![0.0; 9]).unwrap();
+        assert_eq!(Split::Trials.stretches(&trial, 2), [(9, Part::Validation)]);
+        assert_eq!(Split::Trials.stretches(&trial, 3), [(9, Part::Training)]);
+    }
+
+    #[test]
+    fn every_third_block_of_four_runs_is_for_validation() {
+        let input: Vec<f64> = (0..1800).map(|k| f64::from(k / 100 % 2)).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("a", 0.0, period, input, vec![0.0; 1800]).unwrap();
+        let unseen = |horizon| {
+            let windows = cut(&trial, 0, (Split::Blocks, 0), horizon).into_iter();
+            let unseen = windows.filter(|window| window.part == Part::Validation);
+            unseen.map(|window| window.start..window.end).collect::<Vec<_>>()
+        };
+        assert_eq!(unseen(Horizon::FreeRun), [400..800, 1600..1800]);
+        assert_eq!(unseen(Horizon::Steps)[..4], [400..500, 500..600, 600..700, 700..800]);
+        assert_eq!(unseen(Horizon::Seconds(3.0)), [400..600, 600..800, 1600..1800]);
+        // Eleven runs are no three blocks.
+        let short = trial.part(0, 1100).unwrap();
+        let windows = cut(&short, 0, (Split::Blocks, 0), Horizon::FreeRun);
+        assert_eq!(windows.iter().map(|window| window.end).collect::<Vec<_>>(), [770, 1100]);
     }
 
     #[test]
@@ -245,7 +331,7 @@ mod tests {
         let input: Vec<f64> = (0..1000).map(|k| if k < 450 { 1.0 } else { 2.0 }).collect();
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("a", 0.0, period, input, vec![0.0; 1000]).unwrap();
-        let windows = cut(&trial, 0, 1.0, Horizon::Steps);
+        let windows = cut(&trial, 0, (Split::Time(1.0), 0), Horizon::Steps);
         let borders: Vec<_> = windows.iter().map(|window| window.start).collect();
         assert_eq!(borders, [0, 150, 300, 450, 633, 816]);
     }

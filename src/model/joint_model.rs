@@ -173,8 +173,10 @@ impl JointModel {
 
     /// Whether it takes time until the speed is what the input says.
     pub(crate) fn has_dynamics(&self) -> bool {
-        let is_dynamic = |stage| matches!(stage, Stage::Spool | Stage::Dynamics);
-        self.components.iter().any(|component| is_dynamic(component.effect.spec().stage))
+        let is_dynamic = |effect: &dyn Effect| {
+            matches!(effect.spec().stage, Stage::Spool | Stage::Dynamics) && !effect.is_steady()
+        };
+        self.components.iter().any(|component| is_dynamic(component.effect))
     }
 
     /// Whether any effect can make the speed depend on the angle.

@@ -171,7 +171,7 @@ impl<'a> Joint<'a> {
 
     /// Puts all memory into the state of an input that has long been held.
     pub(super) fn settle(&mut self, input: f64, period_s: f64) {
-        self.settled_drive(input, period_s);
+        self.settled_drive(0, input, period_s);
         let mut at = self.moment(self.angle, 0.0, period_s);
         for running in &mut self.limits {
             running.settle(&at);
@@ -186,11 +186,12 @@ impl<'a> Joint<'a> {
         self.measured = at.signal;
     }
 
-    /// The effective input after `input` has long been held, and the memory that it left.
-    fn settled_drive(&mut self, input: f64, period_s: f64) -> f64 {
+    /// The effective input after `signal` has long been held before the effect at `from` of the drive,
+    /// and the memory that it left in this and those behind it.
+    fn settled_drive(&mut self, from: usize, signal: f64, period_s: f64) -> f64 {
         self.held = None;
-        let mut at = self.moment(input, 0.0, period_s);
-        for running in &mut self.drive {
+        let mut at = self.moment(signal, 0.0, period_s);
+        for running in self.drive.iter_mut().skip(from) {
             running.settle(&at);
             at.signal = running.step(&at);
         }
@@ -215,17 +216,18 @@ impl<'a> Joint<'a> {
         }
     }
 
-    /// Puts the drive into the state of a held input that makes `speed` here; the input is
-    /// found by bisection.
+    /// Puts the dynamics into the state of a held signal that makes `speed` here; the signal is
+    /// found by bisection. What is before them and remembers the turns of the input, as a play,
+    /// stays as it is.
     ///
-    /// The speed rises with the input, or falls if the gain is negative; where it can not be
+    /// The speed rises with the signal, or falls if the gain is negative; where it can not be
     /// reached the nearest one is taken.
     fn settle_at_speed(&mut self, speed: f64, time_s: f64, period_s: f64) {
         /// Doublings and halvings: from and to a part of 1e-15.
         const HALVINGS: usize = 50;
         let sign = self.gain.signum();
         let mut is_below =
-            |input: f64| sign * self.steady_speed(input, time_s, period_s) < sign * speed;
+            |signal: f64| sign * self.steady_speed(signal, time_s, period_s) < sign * speed;
         let mut reach = 1.0;
         for _ in 0..HALVINGS {
             if !is_below(reach) && is_below(-reach) {
@@ -245,10 +247,10 @@ impl<'a> Joint<'a> {
         self.velocity = speed;
     }
 
-    /// The speed after `input` has long been held; the memory of the drive is as after it.
-    fn steady_speed(&mut self, input: f64, time_s: f64, period_s: f64) -> f64 {
-        let mut at = self.moment(input, time_s, period_s);
-        at.signal = self.gain * self.settled_drive(input, period_s);
+    /// The speed after `signal` has long been held before the dynamics, whose memory is as after it.
+    fn steady_speed(&mut self, signal: f64, time_s: f64, period_s: f64) -> f64 {
+        let mut at = self.moment(signal, time_s, period_s);
+        at.signal = self.gain * self.settled_drive(self.steady, signal, period_s);
         if self.load_remembers { at.signal } else { through(&mut self.load, at) }
     }
 

@@ -183,7 +183,8 @@ fn page(
     writeln!(
         page,
         "\nErrors are root mean squares of simulations, {horizon}, each run of which starts where its \
-         error is least; *fit* is the part of the motion that is followed, 100 % less the validation \
+         error is least; *raw*: from the smoothed measured output, nothing removed; *free run*: from \
+         the start of each trial; *fit* is the part of the motion that is followed, 100 % less the validation \
          error over the standard deviation of the output."
     )?;
     if let Some(noise) = sensor_noise(&joint.trials) {
@@ -235,16 +236,25 @@ fn reconciled(page: &mut String, models: &[&ComparedJoint<'_>]) -> std::fmt::Res
 
 /// The error figures of each model, and whether a lack of fit is shown.
 fn errors(page: &mut String, unit: &str, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
-    writeln!(page, "| model | training | validation | fit | lack of fit |\n|---|---|---|---|---|")?;
+    writeln!(
+        page,
+        "| model | training | validation | raw | free run | fit | lack of fit |\n|---|---|---|---|---|---|---|"
+    )?;
     for compared in models {
-        let Comparison { training, validation, lack_of_fit, .. } = compared.comparison;
-        let rmse = |error: &Option<ErrorFigures>| {
-            error.map_or_else(|| "–".to_owned(), |e| format!("{} {unit}", number(e.rmse)))
+        let Comparison { training, validation, raw, free, lack_of_fit, .. } = compared.comparison;
+        let shown = |error: Option<f64>| {
+            error.map_or_else(|| "–".to_owned(), |error| format!("{} {unit}", number(error)))
         };
+        let rmse = |error: &Option<ErrorFigures>| shown(error.map(|error| error.rmse));
         let percent = validation.and_then(|e| e.fit_text()).unwrap_or_else(|| "–".to_owned());
         let is = lack_of_fit.map_or("unknown", |t| if t.adequate { "not shown" } else { "shown" });
         let (train, valid) = (rmse(training), rmse(validation));
-        writeln!(page, "| {} | {train} | {valid} | {percent} | {is} |", compared.model)?;
+        let (raw, free) = (shown(raw.judged()), shown(free.judged()));
+        writeln!(
+            page,
+            "| {} | {train} | {valid} | {raw} | {free} | {percent} | {is} |",
+            compared.model
+        )?;
     }
     Ok(())
 }

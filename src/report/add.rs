@@ -1,8 +1,8 @@
 //! `add` as text: the error before and after.
 
 use super::compare::{ComparedJoint, compare_table};
-use super::consequence::{Consequence, noise_of};
-use crate::diagnosis::Comparison;
+use super::consequence::Consequence;
+use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
 use crate::explain::Addition;
 use crate::model::JointModel;
@@ -53,7 +53,7 @@ impl<'a> AddedJoint<'a> {
             attribution: Some(attribution),
             before: before.judged(),
             after: after.judged(),
-            sensor_noise: noise_of(self.joint),
+            sensor_noise: sensor_noise(&self.joint.trials),
         }
     }
 

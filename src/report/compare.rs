@@ -1,9 +1,8 @@
 //! `compare` as text.
 
-use super::consequence::noise_of;
 use super::parameters::model_text;
 use super::text_table::TextTable;
-use crate::diagnosis::{Comparison, ErrorFigures, ModelDifference};
+use crate::diagnosis::{Comparison, ErrorFigures, ModelDifference, RawErrors, sensor_noise};
 use crate::experiment::Joint;
 use crate::fit::Horizon;
 use crate::wording::{
@@ -36,8 +35,18 @@ pub(crate) fn compare_text(joints: &[ComparedJoint<'_>]) -> String {
 
 /// A table of errors, one row per joint and model, and the parameters below it.
 pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
-    let header = ["joint", "model", "training", "validation", "fit", "noise", "lack of fit"];
-    let mut table = TextTable::new(header, &[2, 3, 4, 5]);
+    let header = [
+        "joint",
+        "model",
+        "training",
+        "validation",
+        "raw",
+        "free run",
+        "fit",
+        "noise",
+        "lack of fit",
+    ];
+    let mut table = TextTable::new(header, &[2, 3, 4, 5, 6, 7]);
     for compared in joints {
         table.row(row(compared));
     }
@@ -58,7 +67,7 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     };
     let models = models.join("\n");
     let horizon = horizons(joints.iter().copied());
-    format!("{table}\nroot-mean-square errors, {horizon}\n\n{models}\n{residuals}{failures}")
+    format!("{table}\n{}\n\n{models}\n{residuals}{failures}", errors_note(&horizon))
 }
 
 /// The first model of a joint beside another one.
@@ -144,20 +153,32 @@ fn failure_sentences(compared: &ComparedJoint<'_>) -> Vec<String> {
         .collect()
 }
 
-fn row(compared: &ComparedJoint<'_>) -> [String; 7] {
+fn row(compared: &ComparedJoint<'_>) -> [String; 9] {
     let effects = effects_text(&compared.comparison.fit.model);
-    let [training, validation, fit, noise, lack] = figures(compared.joint, compared.comparison);
-    [compared.joint.name.clone(), effects, training, validation, fit, noise, lack]
+    let [training, validation, raw, free, fit, noise, lack] =
+        figures(compared.joint, compared.comparison);
+    [compared.joint.name.clone(), effects, training, validation, raw, free, fit, noise, lack]
 }
 
-/// Error on both parts, fit in percent, noise of the sensor and lack of fit, for a table.
-pub(super) fn figures(joint: &Joint, comparison: &Comparison) -> [String; 5] {
+/// What the errors of a table are.
+pub(super) fn errors_note(horizon: &str) -> String {
+    format!(
+        "root-mean-square errors, {horizon}; training and validation without the mean of each run, \
+         raw with it (validation, from the measured output), free run from the start of each trial"
+    )
+}
+
+/// Error on both parts, raw and of a free run, fit in percent, noise of the sensor and lack of fit,
+/// for a table.
+pub(super) fn figures(joint: &Joint, comparison: &Comparison) -> [String; 7] {
     let Comparison { training, validation, lack_of_fit, .. } = comparison;
     let dash = || "-".to_owned();
     let output = |value: f64| with_unit(value, joint.output_unit.as_deref());
     let rmse = |error: &Option<ErrorFigures>| error.map_or_else(dash, |error| output(error.rmse));
     let percent = validation.and_then(|error| error.fit_text()).unwrap_or_else(dash);
     let verdict = lack_of_fit.map_or_else(dash, wording::lack_of_fit);
-    let noise = noise_of(joint).map_or_else(dash, output);
-    [rmse(training), rmse(validation), percent, noise, verdict]
+    let noise = sensor_noise(&joint.trials).map_or_else(dash, output);
+    let raw = |errors: RawErrors| errors.judged().map_or_else(dash, output);
+    let (restarted, free) = (raw(comparison.raw), raw(comparison.free));
+    [rmse(training), rmse(validation), restarted, free, percent, noise, verdict]
 }

@@ -1,6 +1,6 @@
 //! What the effects of a model explain of the error, and what remains.
 
-use crate::diagnosis::{ErrorFigures, sensor_noise};
+use crate::diagnosis::ErrorFigures;
 use crate::experiment::Joint;
 use crate::explain::{Attribution, Contribution};
 use crate::fit::AssessedModel;
@@ -20,11 +20,6 @@ pub(crate) struct Consequence<'a> {
     pub(crate) after: Option<ErrorFigures>,
     /// The noise of the sensor, from the record alone.
     pub(crate) sensor_noise: Option<f64>,
-}
-
-/// The noise of the sensor of a joint, where it has any.
-pub(super) fn noise_of(joint: &Joint) -> Option<f64> {
-    sensor_noise(&joint.trials).filter(|noise| *noise > 0.0)
 }
 
 /// Times the noise that say nothing to a person any more.
@@ -79,7 +74,7 @@ impl Consequence<'_> {
     /// What each of several effects carries, and what could stand in its place.
     pub(super) fn sentences(&self) -> Vec<String> {
         let sentences = self.shares().into_iter().chain(self.alternatives());
-        sentences.chain(self.refinements()).collect()
+        sentences.chain(self.doubtful()).chain(self.refinements()).collect()
     }
 
     /// What each of several effects carries.
@@ -102,6 +97,21 @@ impl Consequence<'_> {
         found.filter(|one| !one.alternatives.is_empty()).map(|one| {
             let others = one.alternatives.join(" or ");
             format!("In the place of {}, {others} leaves as little.", one.effect)
+        })
+    }
+
+    /// What may stand for something else.
+    fn doubtful(&self) -> Option<String> {
+        let doubtful = &self.attribution?.doubtful;
+        let share = |one: &Contribution| format!("{} {}", one.effect, percent(one.error_share));
+        let shares: Vec<String> = doubtful.iter().map(share).collect();
+        (!shares.is_empty()).then(|| {
+            format!(
+                "In the model, but not to be believed as a name: {}. Each takes less than half of the \
+                 squared error that is there without it, so that it may stand for an effect that is \
+                 not known.",
+                shares.join(", ")
+            )
         })
     }
 

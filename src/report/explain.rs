@@ -18,5 +18,8 @@ pub(crate) fn explain_text(findings: &[Finding<'_>]) -> String {
     };
     let joints: Vec<String> = findings.iter().map(joint).collect();
     let horizon = horizons(findings.iter().map(|finding| finding.compared));
-    format!("{}\nroot-mean-square errors, {horizon}\n", joints.join("\n\n"))
+    format!(
+        "{}\nroot-mean-square errors without the mean of each run, {horizon}\n",
+        joints.join("\n\n")
+    )
 }

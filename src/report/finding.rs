@@ -1,12 +1,12 @@
 //! What `explain` and `improve` have found of a joint, as a table.
 
 use super::ComparedJoint;
-use super::consequence::{Consequence, noise_of};
+use super::consequence::Consequence;
 use super::text_table::TextTable;
-use crate::diagnosis::Comparison;
+use crate::diagnosis::{Comparison, sensor_noise};
 use crate::effect::Spec;
 use crate::experiment::Joint;
-use crate::explain::{Attribution, Candidate, Verdict};
+use crate::explain::{Attribution, Candidate, Judgement, Verdict};
 use crate::model::Component;
 use crate::study::JointEstimate;
 use crate::wording::{p_text, with_unit};
@@ -33,7 +33,8 @@ pub struct Finding<'a> {
 impl<'a> Finding<'a> {
     /// The candidate that is proposed.
     pub(super) fn proposed(&self) -> Option<&'a Candidate> {
-        self.ranking.first().filter(|_| self.verdict == Verdict::MissingEffect)
+        let mut added = self.ranking.iter().filter(|candidate| candidate.judgement.is_added());
+        added.next().filter(|_| self.verdict == Verdict::MissingEffect)
     }
 
     /// What the effects explain that were added, or that are proposed.
@@ -48,7 +49,14 @@ impl<'a> Finding<'a> {
             }
         };
         let (joint, attribution) = (self.compared.joint, self.attribution);
-        Consequence { joint, fit, attribution, before, after, sensor_noise: noise_of(joint) }
+        Consequence {
+            joint,
+            fit,
+            attribution,
+            before,
+            after,
+            sensor_noise: sensor_noise(&joint.trials),
+        }
     }
 }
 
@@ -66,7 +74,8 @@ pub(super) fn specs(candidate: &Candidate) -> impl Iterator<Item = &'static Spec
 
 /// A row per candidate, best first.
 pub(super) fn ranking_table(joint: &Joint, ranking: &[Candidate]) -> TextTable {
-    let header = ["effect", "validation", "reduction", "p-value", "indistinguishable from"];
+    let header =
+        ["effect", "validation", "reduction", "p-value", "indistinguishable from", "judgement"];
     let mut table = TextTable::new(header, &[1, 2]);
     for candidate in ranking {
         let same = &candidate.indistinguishable_from;
@@ -76,7 +85,18 @@ pub(super) fn ranking_table(joint: &Joint, ranking: &[Candidate]) -> TextTable {
             format!("{:.1} %", candidate.error_reduction_percent),
             p_text(candidate.p_value),
             if same.is_empty() { "-".to_owned() } else { same.join(", ") },
+            judgement_text(&candidate.judgement),
         ]);
     }
     table
+}
+
+/// `added: shown, …` or `refused: …`.
+pub(super) fn judgement_text(judgement: &Judgement) -> String {
+    format!("{}: {}", decision_id(judgement), judgement.reason())
+}
+
+/// What became of a candidate.
+pub(super) fn decision_id(judgement: &Judgement) -> &'static str {
+    if judgement.is_added() { "added" } else { "refused" }
 }

@@ -2,7 +2,7 @@
 
 #[cfg(feature = "rrd")]
 use super::compare::ComparedJoint;
-use super::compare::{figures, horizons};
+use super::compare::{errors_note, figures, horizons};
 use super::conclusion::{Conclusion, Passage, Topic};
 use super::finding::Finding;
 use super::parameters::model_text;
@@ -138,8 +138,8 @@ impl<'a> ImprovedJoint<'a> {
         let why = if index.checked_sub(1).is_some_and(pair) {
             "It is the second of a pair that was found together."
         } else {
-            "It is one of the usual effects of a joint that makes strokes: these are added in their \
-             order before all others are compared, and go at the end where they explain nothing."
+            "It is one of the usual effects of a valve and its joint: these are added in their order \
+             before all others are compared, and go at the end where they explain nothing."
         };
         let mut passages = finding.fails();
         passages.extend(Passage::of(Topic::Next, [format!("{id} ({summary}). {why}")]));
@@ -162,14 +162,23 @@ impl<'a> ImprovedJoint<'a> {
 
     /// The ladder of errors: a row per revision.
     pub(super) fn ladder(&self) -> TextTable {
-        let header =
-            ["revision", "change", "training", "validation", "fit", "noise", "lack of fit"];
-        let mut table = TextTable::new(header, &[2, 3, 4, 5]);
+        let header = [
+            "revision",
+            "change",
+            "training",
+            "validation",
+            "raw",
+            "free run",
+            "fit",
+            "noise",
+            "lack of fit",
+        ];
+        let mut table = TextTable::new(header, &[2, 3, 4, 5, 6, 7]);
         for (number, revision) in self.numbered() {
-            let [training, validation, fit, noise, lack] =
+            let [training, validation, raw, free, fit, noise, lack] =
                 figures(self.finding.compared.joint, &revision.comparison);
-            let change = change_in_words(revision);
-            table.row([number.to_string(), change, training, validation, fit, noise, lack]);
+            let (number, change) = (number.to_string(), change_in_words(revision));
+            table.row([number, change, training, validation, raw, free, fit, noise, lack]);
         }
         table
     }
@@ -207,5 +216,5 @@ pub(crate) fn revision_line(joint: &Joint, number: u32, revision: &Revision) -> 
 pub(crate) fn improve_text(joints: &[ImprovedJoint<'_>]) -> String {
     let horizon = horizons(joints.iter().map(|joint| joint.finding.compared));
     let joints: Vec<String> = joints.iter().map(ImprovedJoint::text).collect();
-    format!("{}\nroot-mean-square errors, {horizon}\n", joints.join("\n\n"))
+    format!("{}\n{}\n", joints.join("\n\n"), errors_note(&horizon))
 }

@@ -9,7 +9,7 @@ use super::protocol::{Mode, Protocol, Watched};
 use super::start::{as_it_is, best_fit, starts, typical_delay_s};
 use crate::delay::{EstimateError, level_tolerance};
 use crate::design::{FreeRunError, Suspects, SuspectsError, Uncertain};
-use crate::diagnosis::{Comparison, compare, compare_unfitted, floor_of};
+use crate::diagnosis::{Comparison, compare, compare_unfitted, sensor_noise};
 use crate::effect::Effect;
 use crate::experiment::{Joint, Other, Supply, Trial};
 use crate::explain::{AddError, Addition, Explanation, Improvement, Options, Revision, Workers};
@@ -119,7 +119,7 @@ pub fn know_joints(
         };
         let given = (FreeRunError::of(joint, &given.model), given);
         let (free_run, fit) = surer(given, improved);
-        let noise = floor_of(&record, &fit).unwrap_or(0.0).max(f64::MIN_POSITIVE);
+        let noise = sensor_noise(&joint.trials).unwrap_or(0.0).max(f64::MIN_POSITIVE);
         Uncertain { free_run, ..Uncertain::of_fit(&record, &fit, noise, share) }
     };
     for_each_joint((joints, estimates), models, protocol.into(), workers, (best_fit, work))

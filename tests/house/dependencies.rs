@@ -17,7 +17,7 @@ fn packages() -> Vec<Value> {
     let said = String::from_utf8(said.stdout).unwrap();
     let host = said.lines().find_map(|line| line.strip_prefix("host: ")).unwrap();
     let mut command = Command::new(env!("CARGO"));
-    command.args(["metadata", "--format-version", "1", "--offline", "--all-features"]);
+    command.args(["metadata", "--format-version", "1", "--locked", "--all-features"]);
     let output = command.args(["--filter-platform", host]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let known: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -110,7 +110,7 @@ fn each_dependency_comes_from_the_registry_and_none_is_banned() {
 /// The packages of `cargo tree`, a line each with version and features.
 fn tree(arguments: &[&str]) -> BTreeSet<String> {
     let mut command = Command::new(env!("CARGO"));
-    command.args(["tree", "--offline", "--prefix", "none", "--format", "{p} {f}"]);
+    command.args(["tree", "--locked", "--prefix", "none", "--format", "{p} {f}"]);
     let output = command.args(arguments).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout)

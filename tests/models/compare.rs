@@ -163,8 +163,9 @@ fn a_joint_that_slows_down_while_another_moves_is_seen_to() {
 
 #[test]
 fn what_is_left_of_a_good_model_is_white_and_free_of_the_input() {
+    const FREE: &str = "--horizon free --split 0.7";
     let desk = desk(|joint| joint);
-    let joint = compared(&desk, "");
+    let joint = compared(&desk, FREE);
     let (white, input) = (&joint["whiteness"], &joint["input_correlation"]);
     assert!(white["p_value"].as_f64().unwrap() > 0.01);
     let band = white["band"].as_f64().unwrap();
@@ -182,7 +183,7 @@ fn what_is_left_of_a_good_model_is_white_and_free_of_the_input() {
         let share = input[side]["share_outside"].as_f64().unwrap();
         assert!(lags == 401 && (share - found as f64 / 401.0).abs() < 1e-12);
     }
-    let text = String::from_utf8(run(&desk, "").stdout).unwrap();
+    let text = String::from_utf8(run(&desk, FREE).stdout).unwrap();
     assert!(text.contains("boom (integrator): white (p = "), "{text}");
 }
 

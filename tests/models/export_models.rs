@@ -18,7 +18,7 @@ use tauscope::{Effect, JointModel};
 const TOLERANCE: f64 = 1e-9;
 
 /// Effects with parameters away from their neutral ones.
-const EFFECTS: [(&str, &str); 24] = [
+const EFFECTS: [(&str, &str); 32] = [
     ("input_offset", "offset = 0.05"),
     ("dead_band", "lower = -0.3, upper = 0.4"),
     ("stiction", "start = 0.8, stop = 0.45"),
@@ -54,6 +54,21 @@ const EFFECTS: [(&str, &str); 24] = [
     ("end_stop", "low = -8.0, high = 9.0"),
     ("end_stop", "low = 3.0, high = 9.0"),
     ("backlash", "width = 0.7"),
+    (
+        "asymmetric_stiction",
+        "positive_start = 0.8, positive_stop = 0.45, negative_start = 0.6, negative_stop = 0.3",
+    ),
+    ("valve_hysteresis", "width = 0.3"),
+    ("input_quantization", "step = 0.35"),
+    (
+        "valve_curve",
+        "inner = 0.3, outer = 0.6, negative_inner = 0.6, negative_outer = 0.9, \
+         negative_factor = 0.8, reach = 2.0",
+    ),
+    ("spool_rate_limit", "seconds_per_input = 0.23"),
+    ("creep", "share = 0.4, time_constant = 0.8"),
+    ("position_ripple", "amplitude = 0.2, period = 3.0, phase = 0.5"),
+    ("accumulator_droop", "droop = 0.05, recovery_time = 3.0"),
 ];
 
 const OWN: &str = r#"

@@ -452,8 +452,20 @@ fn the_names_are_those_of_the_catalogue_and_all_are_documented() {
         names.sort_unstable();
         names
     };
+    // Of these the catalogue knows a law, and plants of other programs hide them.
+    let not_simulated = [
+        "accumulator_droop",
+        "asymmetric_stiction",
+        "creep",
+        "input_quantization",
+        "position_ripple",
+        "spool_rate_limit",
+        "valve_curve",
+        "valve_hysteresis",
+    ];
     let fitted = sorted(&mut REGISTRY.iter().map(|effect| effect.spec().id));
-    assert_eq!(sorted(&mut CATALOGUE.into_iter().chain(FINER)), fitted);
+    let known = CATALOGUE.into_iter().chain(FINER).chain(not_simulated);
+    assert_eq!(sorted(&mut { known }), fitted);
     assert!(OUTSIDE.iter().all(|name| !fitted.contains(name)));
     let text = std::fs::read_to_string("docs/simulating.md").unwrap();
     let names = NEUTRAL.map(|(text, _)| text.split_once(':').unwrap());

@@ -92,7 +92,7 @@ fn the_error_falls_along_the_revisions_as_in_the_report() {
     let validation = of("validation_rmse");
     assert_eq!(validation, expected(|c| c.validation.unwrap().rmse));
     assert_eq!(of("training_rmse"), expected(|c| c.training.unwrap().rmse));
-    assert_eq!(of("noise_floor"), expected(|c| c.noise_floor.unwrap()));
+    assert_eq!(of("noise_floor"), expected(|c| c.sensor_noise.unwrap()));
     assert!(validation.windows(2).all(|pair| pair[1].1 < pair[0].1), "{validation:?}");
     let mut added: Vec<_> = back.texts("/boom/revision/added", "TextDocument:text");
     added.sort_by(|a, b| a.1.cmp(&b.1));

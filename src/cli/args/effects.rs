@@ -16,11 +16,14 @@ pub(crate) struct EffectArgs {
 }
 
 impl EffectArgs {
-    /// How models are explained with these effects and those of `own`. What differs between
-    /// trials is tried, too, where no list was given.
+    /// How models are explained with these effects and those of `own`, which are tried and shown
+    /// whether or not anything is missing. What differs between trials is tried, too, where no list
+    /// was given.
     pub(crate) fn options(&self, own: &[&'static dyn Effect]) -> anyhow::Result<Options> {
         let tries_conditions = self.effects.is_empty();
-        Ok(Options { effects: self.effects(own)?, tries_conditions, ..Options::default() })
+        let always_tries = !self.effects.is_empty() || !own.is_empty();
+        let effects = self.effects(own)?;
+        Ok(Options { effects, always_tries, tries_conditions, ..Options::default() })
     }
 
     /// The effects of the list; all of the catalogue and of `own` without one.

@@ -11,20 +11,21 @@ pub(crate) struct ProtocolArgs {
     /// How long a simulation runs before its angle is set to the measured one: `free`
     /// (never), `steps` (at every step of the input, in long holds every 2 s), seconds, or
     /// `auto`: free where the output follows its input, as a speed or a pressure does, else steps,
-    /// where an error counts where it is made [default: free to compare, else auto]
+    /// where an error counts where it is made [default: auto]
     #[arg(long, value_name = "auto|free|steps|SECONDS", value_parser = horizon, help_heading = "Model")]
     horizon: Option<Horizon>,
 
-    /// Share of each trial's time that is for training, or `trials`: every third trial is
-    /// for validation [default: trials from six on, else 0.7]
-    #[arg(long, value_name = "SHARE|trials", value_parser = split, help_heading = "Model")]
+    /// Share of each trial's time that is for training; `blocks`: every third block of four runs
+    /// is for validation; or `trials`: every third trial is [default: trials from six on, else
+    /// blocks]
+    #[arg(long, value_name = "SHARE|blocks|trials", value_parser = split, help_heading = "Model")]
     split: Option<Split>,
 }
 
 impl ProtocolArgs {
-    /// The rules, `default` being the horizon where none is asked for.
-    pub(crate) fn with(&self, mode: Mode, default: Horizon) -> Protocol {
-        Protocol { mode, split: self.split, horizon: self.horizon.unwrap_or(default) }
+    /// The rules, with this mode.
+    pub(crate) fn with(&self, mode: Mode) -> Protocol {
+        Protocol { mode, split: self.split, horizon: self.horizon.unwrap_or(Horizon::Auto) }
     }
 
     /// How training and validation are divided, where that was said.
@@ -43,6 +44,7 @@ impl ProtocolArgs {
         let split = self.split.map(|split| match split {
             Split::Time(share) => share.to_string(),
             Split::Trials => "trials".to_owned(),
+            Split::Blocks => "blocks".to_owned(),
         });
         let options = [("--horizon", horizon), ("--split", split)].into_iter();
         let given = options.filter_map(|(name, value)| Some([name.to_owned(), value?]));
@@ -65,11 +67,13 @@ fn horizon(text: &str) -> Result<Horizon, String> {
 }
 
 fn split(text: &str) -> Result<Split, String> {
-    if text == "trials" {
-        return Ok(Split::Trials);
+    match text {
+        "blocks" => return Ok(Split::Blocks),
+        "trials" => return Ok(Split::Trials),
+        _ => {}
     }
     let share = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share <= 1.0);
     share
         .map(Split::Time)
-        .ok_or_else(|| "expected a share above 0 and up to 1, or trials".to_owned())
+        .ok_or_else(|| "expected a share above 0 and up to 1, blocks, or trials".to_owned())
 }

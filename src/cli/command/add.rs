@@ -4,7 +4,6 @@ use crate::batch::Threads;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::explain::{Addition, Change, Revision as Step, Verdict};
-use crate::fit::Horizon;
 use crate::model::{ModelFile, Revision};
 use crate::report::{AddJson, AddedJoint, ComparedJoint, Finding, ImprovedJoint};
 use crate::report::{add_text, gone};
@@ -50,7 +49,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::with_others("add", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
-    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
+    let protocol = args.protocol.with(Mode::FitOrIntegrator);
     let study = Study::of(session, &args.output.delay_settings(), |begun| {
         let bar = begun.bar("fitting");
         add_to_joints(

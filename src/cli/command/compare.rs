@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::batch::Threads;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
-use crate::fit::{FitError, Horizon};
+use crate::fit::FitError;
 use crate::model::{JointModel, ModelFile};
 use crate::report::{CompareJson, ComparedJoint, compare_text};
 use crate::study::{Mode, compare_joints};
@@ -72,10 +72,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
                 joints,
                 estimates,
                 starts,
-                args.protocol
-                    .with(named.mode(args), Horizon::FreeRun)
-                    .watched(&bar)
-                    .beside(begun.others),
+                args.protocol.with(named.mode(args)).watched(&bar).beside(begun.others),
                 &Threads,
             )
         };

@@ -6,7 +6,6 @@ use crate::batch::Threads;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::explain::{Change, Explanation, Revision};
-use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{ComparedJoint, ExplainJson, Finding, ImprovedJoint, explain_text};
 use crate::study::{JointEstimate, Mode, OfJoints, compare_joints, explain_joints};
@@ -54,7 +53,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::with_others("explain", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
-    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
+    let protocol = args.protocol.with(Mode::FitOrIntegrator);
     let study = Study::of(session, &args.output.delay_settings(), |context| {
         let (joints, estimates, bar) =
             (context.joints, context.estimates, context.bar("explaining"));
@@ -126,10 +125,10 @@ impl Args {
         let joints = context.joints;
         let best = |joint: &Joint| {
             let index = joints.iter().position(|other| other.name == joint.name)?;
-            explained.get(index)?.as_ref()?.as_ref().ok()?.ranking.first()
+            explained.get(index)?.as_ref()?.as_ref().ok()?.proposed()
         };
         let model = |joint: &Joint| Some(best(joint)?.fit.model.clone());
-        let protocol = self.protocol.with(Mode::AsItIs, Horizon::Auto);
+        let protocol = self.protocol.with(Mode::AsItIs);
         let watched = protocol.watched(&()).beside(context.others);
         let compared = compare_joints(joints, context.estimates, model, watched, &Threads);
         let named = |(joint, compared): (&Joint, Option<Result<Comparison, _>>)| {

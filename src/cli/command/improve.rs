@@ -5,7 +5,6 @@ use std::sync::Mutex;
 use crate::batch::Threads;
 use crate::experiment::Joint;
 use crate::explain::{Attribution, Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
-use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{ImproveJson, improve_text};
 use crate::study::{Mode, improve_joints};
@@ -88,7 +87,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let interrupt = Interrupt::watch(STOPPING);
     let session = Session::with_others("improve", &args.data, &args.output.run, stream)?;
     let name = name_of(Some(target));
-    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
+    let protocol = args.protocol.with(Mode::FitOrIntegrator);
     let study = Study::of(session, &args.output.delay_settings(), |context| {
         let (joints, estimates, bar) =
             (context.joints, context.estimates, context.bar("improving"));

@@ -9,7 +9,6 @@ use crate::batch::Threads;
 use crate::delay::Automatic;
 use crate::experiment::Joint;
 use crate::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Revision};
-use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{
     Document, EstimatedJoint, Heading, ImprovedJoint, RecordingFile, Report, ReportJson,
@@ -171,7 +170,7 @@ impl ModelArgs {
     ) -> Option<OfJoints<Improvement>> {
         let (joints, estimates) = (context.joints, context.estimates);
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
-        let protocol = self.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
+        let protocol = self.protocol.with(Mode::FitOrIntegrator);
         if self.improve {
             let bar = context.bar("improving");
             let progress = Progress::new(file, joints, context.verbosity(), None);

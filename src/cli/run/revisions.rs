@@ -12,6 +12,8 @@ use crate::study::JointEstimate;
 /// Which revisions there are so far, reported as they come.
 pub(crate) struct Progress<'a> {
     joints: &'a [Joint],
+    /// Per joint, the number of its first revision.
+    first: Vec<u32>,
     /// Per joint, the number of its next revision, and whether it was stopped.
     next: Vec<(AtomicU32, AtomicBool)>,
     verbosity: Verbosity,
@@ -27,8 +29,9 @@ impl<'a> Progress<'a> {
         interrupt: Option<Interrupt>,
     ) -> Self {
         let first = |joint: &Joint| file.revision(&joint.name).unwrap_or(0);
-        let next = joints.iter().map(|joint| (first(joint).into(), false.into())).collect();
-        Self { joints, next, verbosity, interrupt }
+        let first: Vec<u32> = joints.iter().map(first).collect();
+        let next = first.iter().map(|first| ((*first).into(), false.into())).collect();
+        Self { joints, first, next, verbosity, interrupt }
     }
 
     /// Reports a revision; whether to go on.
@@ -37,6 +40,10 @@ impl<'a> Progress<'a> {
         else {
             return true;
         };
+        // Another start of the search begins with the first revision again.
+        if revision.change == Change::Start {
+            next.store(self.first.get(index).copied().unwrap_or(0), Ordering::Relaxed);
+        }
         let number = next.fetch_add(1, Ordering::Relaxed);
         if self.verbosity == Verbosity::Normal {
             message("improving", &revision_line(joint, number, revision));

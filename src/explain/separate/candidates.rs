@@ -47,7 +47,7 @@ fn best_experiment(
     other: &Candidate,
 ) -> Option<Separation> {
     let &[id] = other.effects.as_slice() else { return None };
-    let noise = one.noise_floor.or(one.training.map(|error| error.rmse));
+    let noise = space.sensor_noise.or(one.training.map(|error| error.rmse));
     let noise = noise.filter(|noise| *noise > 0.0)?;
     let (within, beyond) = space.proposals([one, other]);
     let separation = |proposal: Proposal| {

@@ -110,6 +110,7 @@ mod tests {
             levels: (1.0, 2.0),
             range: (-30.0, 30.0),
             duration_s: 60.0,
+            sensor_noise: None,
             radians_per_output_unit: 1_f64.to_radians(),
         }
     }

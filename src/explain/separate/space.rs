@@ -1,6 +1,7 @@
 //! What experiments there can be on the joint of a record.
 
 use super::levels::{level_sets, thresholds, two_digits, two_digits_of};
+use crate::diagnosis::sensor_noise;
 use crate::effect::{Effect, RecordRange};
 use crate::explain::candidate::Candidate;
 use crate::explain::separation::{Proposal, Start};
@@ -18,6 +19,7 @@ pub(super) struct ExperimentSpace {
     pub(super) range: (f64, f64),
     pub(super) duration_s: f64,
     pub(super) radians_per_output_unit: f64,
+    pub(super) sensor_noise: Option<f64>,
 }
 
 impl ExperimentSpace {
@@ -42,6 +44,7 @@ impl ExperimentSpace {
             range: (output_min, output_max),
             duration_s,
             radians_per_output_unit,
+            sensor_noise: sensor_noise(&record.measured().trials),
         }
     }
 

@@ -33,7 +33,7 @@ impl Shown {
 
 /// What is shown of each level that acts; of parts of the record where no level is held.
 pub(super) fn all_held(joint: &Joint, comparison: &Comparison, shown: Shown) -> Vec<Held> {
-    let noise = comparison.noise_floor.unwrap_or(0.0);
+    let noise = comparison.sensor_noise.unwrap_or(0.0);
     let trials = joint.trials.iter().zip(&comparison.fit.evaluation.simulated);
     trials.flat_map(|(trial, simulated)| of_trial(trial, simulated, (noise, shown))).collect()
 }

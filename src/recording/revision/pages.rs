@@ -101,7 +101,7 @@ impl Steps<'_> {
         let figures: [(&str, Figure); 3] = [
             (paths::VALIDATION_RMSE, |c| c.validation.map(|error| error.rmse)),
             (paths::TRAINING_RMSE, |c| c.training.map(|error| error.rmse)),
-            (paths::NOISE_FLOOR, |c| c.noise_floor),
+            (paths::NOISE_FLOOR, |c| c.sensor_noise),
         ];
         for (path, figure) in figures {
             let all = improved.revisions.iter().map(|revision| figure(&revision.comparison));

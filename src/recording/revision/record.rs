@@ -180,7 +180,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         Self {
             layout,
             joint,
-            noise: sensor_noise(&joint.trials).filter(|noise| *noise > 0.0),
+            noise: sensor_noise(&joint.trials),
             output: Plot::within((120.0, 900.0), ROWS, x, Span::around(outputs, 0.08)),
             x,
             samples: trials.iter().map(|trial| trial.trial.len()).sum(),

@@ -35,7 +35,7 @@ pub(super) fn figure(
     let binned = of_each.map(|(name, samples)| (name, bins(samples)));
     let clearest = binned.into_iter().max_by(|a, b| followed(&a.1).total_cmp(&followed(&b.1)));
     let (name, bins) = clearest.unwrap_or_default();
-    let noise = comparison.noise_floor.unwrap_or(0.0);
+    let noise = comparison.sensor_noise.unwrap_or(0.0);
     let point = |(mean, count): &(Sample, f64)| Held {
         level: mean.x,
         speed: mean.residual,

@@ -250,7 +250,7 @@ fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {
     let unit = unit_suffix(improved.finding.compared.joint.output_unit.as_deref());
     let error = |place: usize| Some(judged(&improved.revisions.get(place)?.comparison));
     let Some(now) = error(place) else { return String::new() };
-    let floor = noise(improved).filter(|noise| *noise > 0.0);
+    let floor = noise(improved);
     let times = floor.map(|noise| now / noise).filter(|times| *times < MANY_TIMES_NOISE);
     let times =
         times.map_or_else(String::new, |times| format!(", {} times the noise", rounded(times)));

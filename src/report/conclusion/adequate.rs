@@ -72,7 +72,7 @@ impl Finding<'_> {
     fn is_exact(&self) -> bool {
         let Comparison { training, validation, .. } = self.comparison();
         let largest = training.iter().chain(validation).map(|error| error.max);
-        is_rounding(self.joint(), largest.fold(0.0, f64::max))
+        is_rounding(&self.joint().trials, largest.fold(0.0, f64::max))
     }
 
     /// A warning where the part that was not fitted is worse than noise, and than the other one.

@@ -1,9 +1,8 @@
 //! The figures of a finding that several sentences name: error, noise, what is explained.
 
-use crate::diagnosis::Comparison;
+use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
 use crate::report::add::gained;
-use crate::report::consequence::noise_of;
 use crate::report::finding::Finding;
 use crate::wording::{effects_text, measure, percent, rounded};
 
@@ -29,15 +28,17 @@ impl Finding<'_> {
     }
 
     pub(super) fn noise(&self) -> Option<f64> {
-        noise_of(self.joint())
+        sensor_noise(&self.joint().trials)
     }
 
     /// What the effects that were added explain of the error, where any were:
     /// `dead_band and end_stop explain 70 % of the error beyond the noise (2.89 to 0.88 deg)`.
     pub(super) fn explained(&self) -> Option<String> {
         let before = self.before?;
-        let names =
-            self.gained_in_words(gained(&before.fit.model, &self.comparison().fit.model))?;
+        let mut gained = gained(&before.fit.model, &self.comparison().fit.model);
+        let doubtful = self.attribution.map_or(&[][..], |known| &known.doubtful);
+        gained.retain(|id| doubtful.iter().all(|one| one.effect != *id));
+        let names = self.gained_in_words(gained)?;
         let explain = if names.contains(' ') { "explain" } else { "explains" };
         Some(format!("{names} {explain} {}", self.explained_share()?))
     }

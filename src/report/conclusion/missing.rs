@@ -66,9 +66,7 @@ impl Finding<'_> {
              {reduction} % ({p_value})"
         );
         let Some(noise) = self.noise() else { return format!("{falls}.") };
-        // Noise with a memory is larger than what windows show of it, but not beside the model.
-        let floor = best.noise_floor.unwrap_or(0.0).max(noise);
-        if best.rmse() > ABOVE_NOISE * floor {
+        if best.rmse() > ABOVE_NOISE * noise {
             let times = rounded(best.rmse() / noise);
             let rest = "more is missing, to be sought with it in the model";
             return format!("{falls}; that is still {times} times the noise, so {rest}.");
@@ -87,18 +85,23 @@ impl Finding<'_> {
             let apart = best.separated_by.iter().map(|s| sentence(self.joint(), s));
             return std::iter::once(alike).chain(apart).collect::<Vec<_>>().join(" ");
         }
-        match self.ranking.get(1) {
+        match self.next_to(best) {
             Some(next) => {
                 let (name, error) = (next.name(), self.output(next.rmse()));
-                format!("Second in the ranking, which goes by the fitted part, is {name}: {error}.")
+                format!("Of the others {name} leaves least: {error} ({}).", next.judgement.reason())
             }
             None => "No other effect was tried.".to_owned(),
         }
     }
 
+    /// The candidate beside the `best` that leaves least.
+    fn next_to(&self, best: &Candidate) -> Option<&Candidate> {
+        self.ranking.iter().find(|other| other.effects != best.effects)
+    }
+
     /// What the catalogue confuses with it, and how that did.
     fn look_alikes(&self, best: &Candidate) -> Option<String> {
-        let next = self.ranking.get(1).map(|next| next.effects.as_slice()).unwrap_or_default();
+        let next = self.next_to(best).map(|next| next.effects.as_slice()).unwrap_or_default();
         let mentioned = [&best.effects, &best.indistinguishable_from, next];
         let named = |id: &&str| !mentioned.iter().any(|ids| ids.contains(id));
         let confused = specs(best).flat_map(|spec| spec.confused_with).copied().filter(named);

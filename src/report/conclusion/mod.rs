@@ -3,6 +3,7 @@
 mod adequate;
 #[cfg(feature = "rrd")]
 mod answers;
+mod curves;
 mod figures;
 mod missing;
 mod passage;
@@ -56,6 +57,7 @@ impl Finding<'_> {
             (Verdict::MissingEffect, None) => (self.open_headline(), self.fails()),
             (_, None) => (self.unexplained_headline(), self.unexplained()),
         };
+        passages.extend(self.curves());
         let structure = first_order(self.joint(), self.consequence().fit);
         passages.extend(Passage::of(Topic::Structure, structure));
         passages.extend(Passage::of(Topic::Delay, self.delay()));

@@ -15,6 +15,8 @@ pub(crate) enum Topic {
     Next,
     /// What the residual follows.
     Residual,
+    /// The measured curves that the model does not follow.
+    Curves,
     /// The part of the error that each effect explains.
     Shares,
     /// Why the model has the structure that it has.
@@ -37,6 +39,7 @@ impl Topic {
             Self::Missing => "What is missing",
             Self::Next => "What comes next",
             Self::Residual => "What the residual follows",
+            Self::Curves => "Measured curves",
             Self::Shares => "What each effect explains",
             Self::Structure => "Structure",
             Self::Delay => "Delay",

@@ -5,8 +5,8 @@ use serde_json::{Map, Value};
 
 use super::joint::parameters;
 use crate::experiment::Joint;
-use crate::explain::{Candidate, Pattern, Separation, Start};
-use crate::report::finding::specs;
+use crate::explain::{Candidate, Judgement, Pattern, Separation, Start};
+use crate::report::finding::{decision_id, specs};
 use crate::report::separation::experiment;
 
 #[derive(Debug, Serialize)]
@@ -22,7 +22,33 @@ pub(super) struct CandidateJson<'a> {
     parameters: Map<String, Value>,
     indistinguishable_from: &'a [&'static str],
     separated_by: Vec<SeparationJson<'a>>,
-    noise_floor: Option<f64>,
+    judgement: JudgementJson,
+}
+
+/// Whether an effect is worth adding, and why.
+#[derive(Debug, Serialize)]
+struct JudgementJson {
+    evidence: f64,
+    determined: bool,
+    plausible: bool,
+    generalises: bool,
+    consequence_percent: f64,
+    decision: &'static str,
+    reason: String,
+}
+
+impl From<&Judgement> for JudgementJson {
+    fn from(judgement: &Judgement) -> Self {
+        Self {
+            evidence: judgement.evidence,
+            determined: judgement.determined,
+            plausible: judgement.plausible,
+            generalises: judgement.generalises,
+            consequence_percent: judgement.consequence_percent,
+            decision: decision_id(judgement),
+            reason: judgement.reason(),
+        }
+    }
 }
 
 impl<'a> CandidateJson<'a> {
@@ -40,7 +66,7 @@ impl<'a> CandidateJson<'a> {
             parameters: own_parameters(joint, candidate),
             indistinguishable_from: &candidate.indistinguishable_from,
             separated_by: separations.map(|s| SeparationJson::new(joint, s)).collect(),
-            noise_floor: candidate.noise_floor,
+            judgement: (&candidate.judgement).into(),
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::report::finding::Finding;
 pub(super) struct ConclusionJson {
     headline: String,
     found: Vec<FoundJson>,
+    doubtful: Vec<FoundJson>,
     refinements: Vec<&'static str>,
     explained_percent: Option<f64>,
     sensor_noise: Option<f64>,
@@ -61,6 +62,7 @@ impl ConclusionJson {
         Self {
             headline,
             found: of.attribution.iter().flat_map(|one| &one.found).map(found).collect(),
+            doubtful: of.attribution.iter().flat_map(|one| &one.doubtful).map(found).collect(),
             refinements: of.attribution.iter().flat_map(|one| &one.refinements).copied().collect(),
             explained_percent: of.explained().map(|share| 100.0 * share),
             sensor_noise: of.sensor_noise,

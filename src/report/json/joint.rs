@@ -4,10 +4,10 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::misfit::{
-    CorrelationJson, FailsWhereJson, FiguresJson, LackOfFitJson, RegionJson, WhitenessJson,
-    WorstSegmentJson,
+    CorrelationJson, CurveJson, FailsWhereJson, FiguresJson, LackOfFitJson, RegionJson,
+    WhitenessJson, WorstSegmentJson,
 };
-use crate::diagnosis::Comparison;
+use crate::diagnosis::{Comparison, ErrorFigures};
 use crate::experiment::Joint;
 use crate::fit::{AssessedModel, Parameter, Status};
 use crate::report::compare::ComparedJoint;
@@ -30,6 +30,7 @@ pub(super) struct JointJson<'a> {
     fails_where: Vec<FailsWhereJson<'a>>,
     worst_segments: Vec<WorstSegmentJson<'a>>,
     regions: Vec<RegionJson<'a>>,
+    curves: Vec<CurveJson<'a>>,
     termination: String,
 }
 
@@ -38,6 +39,8 @@ pub(super) struct JointJson<'a> {
 pub(super) struct ErrorJson {
     train: Option<FiguresJson>,
     validation: Option<FiguresJson>,
+    sensor_noise: Option<f64>,
+    /// The number of `sensor_noise`, under its older name.
     noise_floor: Option<f64>,
 }
 
@@ -62,6 +65,7 @@ impl<'a> JointJson<'a> {
                 .map(|worst| WorstSegmentJson::new(worst, compared.joint))
                 .collect(),
             regions: comparison.regions.iter().map(Into::into).collect(),
+            curves: comparison.curves.iter().map(Into::into).collect(),
             termination: comparison.termination.to_string(),
         }
     }
@@ -69,13 +73,11 @@ impl<'a> JointJson<'a> {
 
 impl ErrorJson {
     pub(super) fn new(comparison: &Comparison) -> Self {
-        let Comparison { training, validation, noise_floor, .. } = comparison;
-        let figures = |error: &Option<_>| error.as_ref().map(FiguresJson::from);
-        Self {
-            train: figures(training),
-            validation: figures(validation),
-            noise_floor: *noise_floor,
-        }
+        let Comparison { training, validation, raw, free, sensor_noise, .. } = comparison;
+        let figures = |error: &ErrorFigures, raw, free| FiguresJson::new(error, raw, free);
+        let train = training.as_ref().map(|e| figures(e, raw.training, free.training));
+        let unseen = validation.as_ref().map(|e| figures(e, raw.validation, free.validation));
+        Self { train, validation: unseen, sensor_noise: *sensor_noise, noise_floor: *sensor_noise }
     }
 }
 

@@ -4,22 +4,26 @@ use serde::Serialize;
 
 use crate::diagnosis::failure::{FailsWhere, Region, WorstSegment};
 use crate::diagnosis::{
-    CrossCorrelation, ErrorFigures, InputCorrelation, InputEdges, LackOfFit, LocalMisfit, ShownBy,
-    Whiteness,
+    CrossCorrelation, Curve, ErrorFigures, InputCorrelation, InputEdges, LackOfFit, LocalMisfit,
+    ShownBy, Whiteness,
 };
 use crate::experiment::{Joint, Trial};
 
 #[derive(Debug, Serialize)]
 pub(super) struct FiguresJson {
     rmse: f64,
+    rmse_raw: Option<f64>,
+    rmse_free: Option<f64>,
     fit_percent: f64,
     max: f64,
 }
 
-impl From<&ErrorFigures> for FiguresJson {
-    fn from(error: &ErrorFigures) -> Self {
+impl FiguresJson {
+    /// The figures of one part, with the errors from which nothing is removed: restarted, and of
+    /// a free run.
+    pub(super) fn new(error: &ErrorFigures, rmse_raw: Option<f64>, rmse_free: Option<f64>) -> Self {
         let ErrorFigures { rmse, fit_percent, max } = *error;
-        Self { rmse, fit_percent, max }
+        Self { rmse, rmse_raw, rmse_free, fit_percent, max }
     }
 }
 
@@ -216,6 +220,24 @@ impl<'a> From<&'a Region> for RegionJson<'a> {
             rmse: region.rmse,
             mean_residual: region.mean_residual,
         }
+    }
+}
+
+/// A curve without a law, its band, and the model's.
+#[derive(Debug, Serialize)]
+pub(super) struct CurveJson<'a> {
+    of: &'static str,
+    x: &'a [f64],
+    y: &'a [f64],
+    low: &'a [f64],
+    high: &'a [f64],
+    model: &'a [f64],
+}
+
+impl<'a> From<&'a Curve> for CurveJson<'a> {
+    fn from(curve: &'a Curve) -> Self {
+        let Curve { of, x, y, low, high, model } = curve;
+        Self { of: of.id(), x, y, low, high, model }
     }
 }
 

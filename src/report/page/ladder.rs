@@ -3,11 +3,11 @@
 use super::document::Figure;
 use super::layout::WIDTH;
 use super::plot::{PlotError, draw};
+use crate::diagnosis::sensor_noise;
 use crate::figure::Role;
 use crate::figure::Span;
 use crate::figure::ladder::{self, Rung};
 use crate::figure::{Axis, Mark, Panel, Shape};
-use crate::report::consequence::noise_of;
 use crate::report::{ImprovedJoint, change_in_words};
 use crate::units::floor_to_index;
 use crate::wording::{bracketed, number};
@@ -25,7 +25,7 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figur
     };
     let words = |(row, rung): (u32, &Rung<'_>)| ((rung.error, -f64::from(row)), number(rung.error));
     let largest = ladder::largest(&rungs).max(f64::MIN_POSITIVE);
-    let noise = noise_of(joint);
+    let noise = sensor_noise(&joint.trials);
     let rows = || (0..).zip(&rungs);
     // A revision has its colour in all figures, and in the recording.
     let bars = rows().map(|(row, rung)| {

@@ -4,6 +4,7 @@
 //! nothing of the moment at which it was made: the same input gives the same bytes.
 
 mod compose;
+mod curves;
 mod dead_time;
 mod delays;
 mod document;

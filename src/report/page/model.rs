@@ -3,14 +3,15 @@
 use super::document::Block;
 use super::plot::PlotError;
 use super::report::Report;
-use super::{ladder, share, simulated};
+use super::{curves, ladder, share, simulated};
 use crate::diagnosis::Comparison;
+use crate::diagnosis::sensor_noise;
 use crate::effect::Stage;
 use crate::explain::{Candidate, Revision, Verdict};
 use crate::fit::Split;
 use crate::model::Component;
 use crate::report::add::gained;
-use crate::report::consequence::noise_of;
+use crate::report::compare::errors_note;
 use crate::report::equation::filled_in;
 use crate::report::finding::ranking_table;
 use crate::report::text_table::TextTable;
@@ -90,7 +91,7 @@ fn came<'a>(improved: &ImprovedJoint<'a>) -> Vec<&'static str> {
 /// What is still missing.
 fn missing(improved: &ImprovedJoint<'_>) -> String {
     let more = if improved.revisions.len() > 1 { " more" } else { "" };
-    let best = improved.finding.ranking.first().map(Candidate::name);
+    let best = improved.finding.proposed().map(Candidate::name);
     match (improved.finding.verdict, best) {
         (Verdict::Adequate, _) => format!("nothing{more} is missing"),
         (Verdict::MissingEffect, Some(best)) => format!("{best} is missing"),
@@ -109,7 +110,7 @@ fn judged_error(improved: &ImprovedJoint<'_>, comparison: &Comparison) -> String
 fn error_of(improved: &ImprovedJoint<'_>, comparison: &Comparison) -> String {
     let rmse = judged_error(improved, comparison);
     let Some(error) = comparison.judged() else { return rmse };
-    let noise = noise_of(improved.finding.compared.joint);
+    let noise = sensor_noise(&improved.finding.compared.joint.trials);
     let times = noise
         .map_or_else(String::new, |noise| format!(", {:.2} times the noise", error.rmse / noise));
     let fit = error.fit_text().map_or_else(String::new, |fit| format!(" (fit {fit})"));
@@ -190,7 +191,7 @@ fn errors(
     }
     blocks.push(Block::Table(improved.ladder()));
     let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
-    blocks.push(Block::text(format!("Root-mean-square errors, {horizon}.")));
+    blocks.push(Block::text(format!("{}.", capitalized(&errors_note(&horizon.to_string())))));
     blocks.extend(history(report, improved));
     Ok(blocks)
 }
@@ -223,6 +224,11 @@ fn beside_the_measurement(
     let mut blocks = vec![Block::part("Measured and simulated"), Block::Figures(vec![figure])];
     let earlier = simulated::earlier(improved, format!("{file}-earlier-residuals"))?;
     blocks.extend(earlier.map(|figure| Block::Figures(vec![figure])));
+    let curves = curves::figures(compared, file)?;
+    if !curves.is_empty() {
+        blocks.push(Block::part("Measured curves"));
+        blocks.push(Block::Figures(curves));
+    }
     let residual = correlation_sentences(compared.comparison).join("; ");
     if !residual.is_empty() {
         blocks.push(Block::text(format!("Residual of the part that was fitted: {residual}.")));

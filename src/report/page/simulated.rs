@@ -5,12 +5,12 @@ use super::layout::{HALF, WIDTH, values_of};
 use super::plot::{PlotError, draw};
 use super::timeline::Timeline;
 use crate::diagnosis::failure::WorstSegment;
+use crate::diagnosis::sensor_noise;
 use crate::experiment::{Joint, Trial};
 use crate::figure::Role;
 use crate::figure::{Axis, Mark, Panel, Place, Shape};
 use crate::figure::{Span, thinned_to};
 use crate::fit::{FitRecord, Horizon, Part, Split, Window};
-use crate::report::consequence::noise_of;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::bracketed;
 use crate::wording::{measure, percent, worst_segment_text};
@@ -188,19 +188,19 @@ fn outputs(compared: &ComparedJoint<'_>) -> Span {
 
 fn residuals(compared: &ComparedJoint<'_>) -> Span {
     let all = compared.comparison.fit.evaluation.residuals.iter().flatten().copied();
-    let band = noise_of(compared.joint).unwrap_or(0.0) * BAND;
+    let band = sensor_noise(&compared.joint.trials).unwrap_or(0.0) * BAND;
     Span::around(all.chain([-band, band]), 0.06)
 }
 
 /// Between these values 95 % of normal noise would be.
 fn noise(compared: &ComparedJoint<'_>) -> Option<Mark> {
-    let band = noise_of(compared.joint)? * BAND;
+    let band = sensor_noise(&compared.joint.trials)? * BAND;
     Some(Mark::new(Role::Noise, Shape::Band(-band, band)))
 }
 
 /// The edges of that, which show over the residual.
 fn noise_edges(compared: &ComparedJoint<'_>, (from, to): (f64, f64)) -> Option<Mark> {
-    let band = noise_of(compared.joint)? * BAND;
+    let band = sensor_noise(&compared.joint.trials)? * BAND;
     let edges = [-band, band].map(|edge| vec![(from, edge), (to, edge)]);
     Some(Mark::new(Role::Noise, Shape::Lines(edges.to_vec(), 1.4)))
 }

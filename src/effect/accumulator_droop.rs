@@ -1,0 +1,121 @@
+//! Droop of an accumulator: the gain falls with what the joint itself has lately consumed.
+//!
+//! ```text
+//! out = in · max(1 − droop · w, 0.05),   w' = |in| − w / recovery_time
+//! ```
+//!
+//! A pump that is smaller than the largest demand feeds an accumulator: its pressure falls with the
+//! oil that was drawn, here as the way `w` that the joint went, and recovers with the time constant
+//! of the pump. At the start of a record the accumulator is full.
+//!
+//! # References
+//! Merritt, H. E., 1967, Hydraulic Control Systems (hydraulic power supplies with accumulators).
+
+use super::decay::{DECAY, DECAY_MEMORY, Decay};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+
+/// See the [module](self).
+#[derive(Clone, Copy, Debug)]
+pub struct AccumulatorDroop;
+
+static SPEC: Spec = Spec::new(
+    "accumulator_droop",
+    Stage::Load,
+    "accumulator: the gain falls with what the joint has lately consumed",
+)
+.equation("out = in (1 - droop w), dw/dt = abs(in) - w / recovery_time")
+.source("Merritt, 1967, Hydraulic Control Systems")
+.parameters(&[
+    Parameter::new("droop", "part of the speed lost per way lately gone", Dimension::PerOutput)
+        .between(0.0, UNLIMITED),
+    Parameter::new("recovery_time", "time to recover 63 %", Dimension::Seconds)
+        .between(0.0, UNLIMITED)
+        .neutral(1.0),
+])
+.memory(1 + DECAY_MEMORY)
+.confused_with(&["thermal_drift", "creep", "input_saturation"]);
+
+/// Smallest factor that is left of the gain.
+const SMALLEST_FACTOR: f64 = 0.05;
+
+impl Effect for AccumulatorDroop {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    /// What was consumed depends on the input, not on where the joint is.
+    fn depends_on_angle(&self) -> bool {
+        false
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(
+            Equations::new(
+                [
+                    "interval = dt\ntime_constant = recovery_time\n",
+                    DECAY,
+                    "steady = abs(signal) * recovery_time
+             deviation = way - steady
+             during = steady + deviation * mean
+             way = steady + deviation * left
+             out = signal * max(1 - droop * during, 0.05)",
+                ]
+                .concat(),
+            )
+            .remembering(&["way"], "way = abs(signal) * recovery_time"),
+        )
+    }
+
+    /// The memory is the way `w`, and the decay that was computed last.
+    fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
+        let (&[droop, recovery_time], [way, known @ ..]) = (parameters, memory) else {
+            return at.signal;
+        };
+        let decay = Decay::recall(known, at.dt_s, recovery_time);
+        let steady = at.signal.abs() * recovery_time;
+        let deviation = *way - steady;
+        let during = steady + deviation * decay.mean;
+        *way = steady + deviation * decay.left;
+        at.signal * (1.0 - droop * during).max(SMALLEST_FACTOR)
+    }
+
+    fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
+        if let (&[_, recovery_time], Some(way)) = (parameters, memory.first_mut()) {
+            *way = at.signal.abs() * recovery_time;
+        }
+    }
+
+    /// Up to where the longest move at the largest speed would use it up.
+    fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
+        let longest = record.duration_s.max(1.0);
+        let droop = 10.0 / record.size(Dimension::OutputPerSecond);
+        vec![(0.0, droop), (10.0 * record.sample_period_s, longest)]
+    }
+
+    fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        let speed = record.size(Dimension::OutputPerSecond);
+        let of = |recovery_s: f64| vec![0.3 / (speed * recovery_s), recovery_s];
+        let slow = 100.0 * record.sample_period_s;
+        vec![of(2.0 * slow), of(10.0 * slow)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{assert_close, moment};
+    use super::*;
+
+    #[test]
+    fn slows_down_as_it_goes_and_recovers_at_rest() {
+        let mut memory = [0.0; 5];
+        let mut pass = |signal: f64, dt_s: f64| {
+            AccumulatorDroop.step(&[0.01, 5.0], &mut memory, &Moment { dt_s, ..moment(signal) })
+        };
+        let e = (-1.0_f64).exp();
+        // 10 per second for 5 s: w = 50 (1 − e), on average 50 e.
+        assert_close(&[pass(10.0, 5.0)], &[10.0 * (1.0 - 0.5 * e)]);
+        pass(0.0, 5.0);
+        let before = 50.0 * (1.0 - e) * e;
+        assert_close(&[pass(-10.0, 0.0)], &[-10.0 * (1.0 - 0.01 * before)]);
+    }
+}

@@ -1,0 +1,81 @@
+//! Quantized command: what reaches the valve is a multiple of a step.
+//!
+//! ```text
+//! out = step · round(in / step)
+//! ```
+//!
+//! A converter of few bits, or a duty cycle in whole percent, between the logged command and the
+//! coil. Commands that differ by less than a step may do the same, and the speed is off by half a
+//! step of the input at most.
+//!
+//! # References
+//! Widrow, B., and Kollár, I., 2008, Quantization Noise.
+
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+
+/// See the [module](self).
+#[derive(Clone, Copy, Debug)]
+pub struct InputQuantization;
+
+static SPEC: Spec = Spec::new(
+    "input_quantization",
+    Stage::Spool,
+    "quantized command: the valve gets multiples of a step",
+)
+.equation("out = step round(in / step)")
+.source("Widrow and Kollár, 2008, Quantization Noise")
+.parameters(&[
+    Parameter::new("step", "distance of two commands", Dimension::Input).between(0.0, UNLIMITED)
+])
+.confused_with(&["dead_band", "flow_curve"]);
+
+/// Steps that a fit tries, in parts of the largest input: between two of them few levels of the
+/// input come to another multiple.
+const TRIED: usize = 14;
+
+impl Effect for InputQuantization {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn is_steady(&self) -> bool {
+        true
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new(
+            "count = floor(abs(signal) / step + 0.5)
+             out = if(step > 0 && is_finite(count), sign(signal) * step * count, signal)",
+        ))
+    }
+
+    fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
+        let &[step] = parameters else { return at.signal };
+        let count = (at.signal.abs() / step + 0.5).floor();
+        if step > 0.0 && count.is_finite() { (step * count).copysign(at.signal) } else { at.signal }
+    }
+
+    fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
+        vec![(0.0, record.size(Dimension::Input).min(UNLIMITED))]
+    }
+
+    /// From a twentieth of the largest input on, each a fifth larger.
+    fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        let least = 0.05 * record.size(Dimension::Input);
+        let steps = std::iter::successors(Some(least), |step| Some(1.2 * step));
+        steps.take(TRIED).map(|step| vec![step]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{assert_close, run};
+    use super::*;
+
+    #[test]
+    fn a_command_goes_to_the_nearest_multiple() {
+        let inputs = [0.0, 0.2, 0.3, -0.7, -0.8, 2.1];
+        let outputs = [0.0, 0.0, 0.5, -0.5, -1.0, 2.0];
+        assert_close(&run(&InputQuantization, &[0.5], &inputs), &outputs);
+    }
+}
