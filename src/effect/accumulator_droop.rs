@@ -62,7 +62,7 @@ impl Effect for AccumulatorDroop {
                 ]
                 .concat(),
             )
-            .remembering(&["way"], "way = abs(signal) * recovery_time"),
+            .remembering(&["way"], ""),
         )
     }
 
@@ -77,12 +77,6 @@ impl Effect for AccumulatorDroop {
         let during = steady + deviation * decay.mean;
         *way = steady + deviation * decay.left;
         at.signal * (1.0 - droop * during).max(SMALLEST_FACTOR)
-    }
-
-    fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let (&[_, recovery_time], Some(way)) = (parameters, memory.first_mut()) {
-            *way = at.signal.abs() * recovery_time;
-        }
     }
 
     /// Up to where the longest move at the largest speed would use it up.

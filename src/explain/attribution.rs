@@ -157,7 +157,7 @@ impl Grown<'_, '_> {
         let alternatives = |one: &LeftOut| {
             let as_little = exchanged.iter().filter_map(|(change, fit)| match *change {
                 Change::Replaced { old, new } if old == one.effect => {
-                    (self.share(fit) < self.hardly(one)).then_some(new)
+                    (self.share(fit) < hardly(one)).then_some(new)
                 }
                 _ => None,
             });
@@ -178,14 +178,6 @@ impl Grown<'_, '_> {
             doubtful: doubtful.into_iter().map(contribution).collect(),
             refinements,
         }
-    }
-
-    /// The share by which the error may be larger with another effect in the place of one, for the two to
-    /// be alternatives. A curve of any form is resembled by the law that has most of its share.
-    fn hardly(&self, one: &LeftOut) -> f64 {
-        /// The part of its share that such a law may miss.
-        const RESEMBLES: f64 = 0.2;
-        if is_free_form(one.effect) { CONSEQUENCE.max(RESEMBLES * one.share) } else { CONSEQUENCE }
     }
 
     /// Whether what the error of `fit` is larger by has no consequence.
@@ -213,4 +205,12 @@ impl Grown<'_, '_> {
 
 fn is_free_form(id: &str) -> bool {
     by_id(id).is_some_and(|effect| effect.spec().is_free_form)
+}
+
+/// The share by which the error may be larger with another effect in the place of one, for the two to
+/// be alternatives. A curve of any form is resembled by the law that has most of its share.
+fn hardly(one: &LeftOut) -> f64 {
+    /// The part of its share that such a law may miss.
+    const RESEMBLES: f64 = 0.2;
+    if is_free_form(one.effect) { CONSEQUENCE.max(RESEMBLES * one.share) } else { CONSEQUENCE }
 }

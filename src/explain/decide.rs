@@ -21,7 +21,7 @@ pub(super) struct Judge<'a, 'r> {
     misfit: Misfit,
     options: &'a Options,
     /// Whether many curves match the few levels of the input: more is then asked of an effect.
-    are_levels_few: bool,
+    pub(super) are_levels_few: bool,
 }
 
 impl<'a, 'r> Judge<'a, 'r> {
@@ -30,9 +30,9 @@ impl<'a, 'r> Judge<'a, 'r> {
         base: &'a Fit,
         misfit: Misfit,
         options: &'a Options,
-        are_levels_few: bool,
     ) -> Self {
-        Self { record, base, own: Errors::of(record, base), misfit, options, are_levels_few }
+        let (own, are_levels_few) = (Errors::of(record, base), false);
+        Self { record, base, own, misfit, options, are_levels_few }
     }
 
     /// Judges one candidate by itself.

@@ -49,7 +49,8 @@ pub fn explain(
         return Explanation { base, verdict: Verdict::Adequate, ranking, attribution };
     }
     let named = is_named(record, &fit, &mut ranking, options, workers);
-    judged(record, &fit, &mut ranking, named, options);
+    let verdict = if named { Verdict::MissingEffect } else { Verdict::Unexplained };
+    judged(record, &fit, &mut ranking, verdict, options);
     separate(record, &mut ranking, workers);
     if let Some(best) = ranking.first_mut().filter(|_| named) {
         best.fit.keep_series(record);
@@ -61,25 +62,25 @@ pub fn explain(
         Grown { record, first: &first, whole: &best.fit.on(record), misfit, options }
             .attribution(workers)
     });
-    let verdict = if named { Verdict::MissingEffect } else { Verdict::Unexplained };
     Explanation { base, verdict, ranking: in_order(ranking), attribution }
 }
 
-/// Judges each candidate by itself; of those that nothing speaks against the first is added where one
-/// is `named`, and none else.
+/// Judges each candidate by itself; of those that nothing speaks against the first is added where the
+/// verdict is that one is missing, and none else.
 fn judged(
     record: &FitRecord<'_>,
     fit: &Fit,
     ranking: &mut [Candidate],
-    named: bool,
+    verdict: Verdict,
     options: &Options,
 ) {
     let misfit = Misfit::of(record, Errors::of(record, fit));
-    let judge = Judge::new(record, fit, misfit, options, false);
+    let judge = Judge::new(record, fit, misfit, options);
     for candidate in &mut *ranking {
         candidate.judgement = judge.judge(candidate);
     }
     let Some((first, others)) = ranking.split_first_mut() else { return };
+    let named = verdict == Verdict::MissingEffect;
     let why_not = if named {
         first.judgement.refusal = None;
         Refusal::Behind(first.name())

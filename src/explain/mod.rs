@@ -64,7 +64,7 @@ pub(crate) use judge::named;
 pub use judgement::{Judgement, Refusal};
 #[cfg(feature = "rrd")]
 pub(crate) use misfit::CONSEQUENCE;
-pub use options::{MAX_EFFECTS, Options};
+pub use options::{MAX_EFFECTS, Options, Tried};
 pub use outcome::FitOutcome;
 pub use revision::{AddError, Addition, Change, Improvement, Revision};
 pub(crate) use separate::{level_sets, thresholds, two_digits};

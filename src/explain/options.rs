@@ -18,13 +18,22 @@ pub struct Options {
     /// Whether each revision keeps what its model simulates, as recordings need it, and not the last
     /// alone: of a long record that is most of the memory.
     pub keeps_series: bool,
-    /// Whether the effects are tried, and shown with what is thought of them, though nothing is
-    /// missing from the model: where somebody asked for them.
-    pub always_tries: bool,
+    /// When the effects are tried.
+    pub tried: Tried,
     /// Whether what [differs between trials](conditions) is tried, too: the effects of
     /// [`OF_CONDITIONS`], each in the trials of one condition; and a gain that depends on a measured
     /// signal, for each that may be a cause.
     pub tries_conditions: bool,
+}
+
+/// When effects are tried.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tried {
+    /// Where a model lacks something.
+    #[default]
+    WhereLacking,
+    /// Always, and shown with what is thought of them: where somebody asked for them.
+    Always,
 }
 
 impl Options {
@@ -61,7 +70,7 @@ impl Default for Options {
             max_effects: MAX_EFFECTS,
             keeps_refinements: false,
             keeps_series: true,
-            always_tries: false,
+            tried: Tried::WhereLacking,
             tries_conditions: true,
         }
     }

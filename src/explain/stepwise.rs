@@ -13,7 +13,7 @@ use super::decide::Judge;
 use super::extension::ids;
 use super::judgement::Refusal;
 use super::misfit::{Errors, Misfit};
-use super::options::Options;
+use super::options::{Options, Tried};
 use super::ranking::{Scope, rank};
 use super::removal::{Exchange, Removal};
 use super::revision::Change;
@@ -59,7 +59,7 @@ impl Step {
         options: &Options,
         workers: &impl Workers,
     ) -> bool {
-        if self.is_at_the_noise() && !options.always_tries {
+        if self.is_at_the_noise() && options.tried == Tried::WhereLacking {
             return false;
         }
         if self.ranking.is_empty() {
@@ -70,7 +70,7 @@ impl Step {
         let lacks = !self.is_at_the_noise()
             && (!self.is_adequate() || self.ranking.iter().any(Candidate::is_beyond_doubt));
         match self.ranking.iter().position(Candidate::is_significant) {
-            _ if !lacks && options.always_tries => self.refuse_all(),
+            _ if !lacks && options.tried == Tried::Always => self.refuse_all(),
             _ if !lacks => self.ranking.clear(),
             Some(index) => self.ranking[..=index].rotate_right(1),
             None => {}
@@ -128,7 +128,8 @@ pub(super) fn add_stepwise(
             let was_stopped = !visit(&step);
             return ended(Verdict::Adequate, step.fit, was_stopped);
         }
-        let judge = Judge::new(record, &step.fit, misfit, options, matched_by_many);
+        let mut judge = Judge::new(record, &step.fit, misfit, options);
+        judge.are_levels_few = matched_by_many;
         let found = judge.judge_all(&mut step.ranking);
         if found.is_none() && step.ranking.iter().any(Candidate::is_significant) {
             let refused = step.ranking.iter().find(|candidate| candidate.judgement.is_sound());

@@ -4,7 +4,7 @@ use anyhow::{Context as _, anyhow};
 use clap::Args;
 
 use crate::effect::{Effect, REGISTRY, find_among};
-use crate::explain::Options;
+use crate::explain::{Options, Tried};
 
 /// Which effects are tried.
 #[derive(Args, Debug)]
@@ -21,9 +21,10 @@ impl EffectArgs {
     /// was given.
     pub(crate) fn options(&self, own: &[&'static dyn Effect]) -> anyhow::Result<Options> {
         let tries_conditions = self.effects.is_empty();
-        let always_tries = !self.effects.is_empty() || !own.is_empty();
+        let are_asked_for = !self.effects.is_empty() || !own.is_empty();
+        let tried = if are_asked_for { Tried::Always } else { Tried::WhereLacking };
         let effects = self.effects(own)?;
-        Ok(Options { effects, always_tries, tries_conditions, ..Options::default() })
+        Ok(Options { effects, tried, tries_conditions, ..Options::default() })
     }
 
     /// The effects of the list; all of the catalogue and of `own` without one.
