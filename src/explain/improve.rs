@@ -20,8 +20,8 @@ use crate::fit::{Fit, FitRecord};
 
 /// Adds what is missing from the model of `fit`, one effect after the other.
 ///
-/// Where that ends far from the noise, the search starts anew from the [usual
-/// structures](super::structures), and the more likely end counts: `done` then sees the first
+/// Where that ends far from the noise, the search starts anew from the usual
+/// structures of such joints, and the more likely end counts: `done` then sees the first
 /// revision once more.
 ///
 /// After each effect, those that were added before and have become useless are removed. At the
