@@ -74,6 +74,11 @@ impl Effect for InputSaturation {
         limited(at.signal, limit, softness)
     }
 
+    fn shows_its_form(&self, parameters: &[f64], record: &RecordRange<'_>) -> bool {
+        let &[limit, softness] = parameters else { return true };
+        is_reached(limit, softness, record)
+    }
+
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
         let (low, high) = FITTED_LIMIT;
         let largest = record.size(Dimension::Input);
@@ -84,6 +89,11 @@ impl Effect for InputSaturation {
         let largest = record.size(Dimension::Input);
         [0.4, 0.65, 0.9].into_iter().map(|part| vec![part * largest, 0.1]).collect()
     }
+}
+
+/// Whether the input of `record` goes to where the flow rises no more.
+pub(super) fn is_reached(limit: f64, softness: f64, record: &RecordRange<'_>) -> bool {
+    limit * (1.0 + softness) <= record.input_abs_max
 }
 
 /// What passes of `signal`.

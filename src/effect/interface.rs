@@ -57,6 +57,14 @@ pub trait Effect: Debug + Send + Sync {
         false
     }
 
+    /// Whether over the range of `record` its signal has the form that its name says.
+    ///
+    /// Without it, as a limit beyond the range whose knee alone is seen, it is one of several curves
+    /// that bend alike.
+    fn shows_its_form(&self, _parameters: &[f64], _record: &RecordRange<'_>) -> bool {
+        true
+    }
+
     /// Whether it has neutral parameters, at which it changes nothing.
     ///
     /// If not, a model with it and the same without are not nested: one is not a special

@@ -30,7 +30,6 @@ use super::outcome::FitOutcome;
 use super::removal::{changed, fitted_with, replacements};
 use super::revision::Change;
 use super::workers::Workers;
-use crate::effect::by_id;
 use crate::fit::{AssessedModel, Fit, FitRecord, fit_to_compare};
 
 /// A model, and the one to which its effects were added.
@@ -99,7 +98,7 @@ impl Grown<'_, '_> {
         let found = left_out.iter().filter(|one| one.has_consequence());
         let others =
             |one: &LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
-        let (free, lawful): (Vec<_>, Vec<_>) = found.partition(|one| is_free_form(one.effect));
+        let (free, lawful): (Vec<_>, Vec<_>) = found.partition(|one| self.is_any_form(one.effect));
         let changes = |of: Vec<&LeftOut>| of.into_iter().flat_map(others).collect::<Vec<Change>>();
         let mut exchanged = fitted_with(self.record, self.whole, &changes(lawful), workers);
         // Which law a free form resembles is asked, though it leaves more.
@@ -157,7 +156,7 @@ impl Grown<'_, '_> {
         let alternatives = |one: &LeftOut| {
             let as_little = exchanged.iter().filter_map(|(change, fit)| match *change {
                 Change::Replaced { old, new } if old == one.effect => {
-                    (self.share(fit) < hardly(one)).then_some(new)
+                    (self.share(fit) < self.hardly(one)).then_some(new)
                 }
                 _ => None,
             });
@@ -185,6 +184,30 @@ impl Grown<'_, '_> {
         self.share(fit) < CONSEQUENCE
     }
 
+    /// The share by which the error may be larger with another effect in the place of one, for the two
+    /// to be alternatives. A curve of any form, or that does not have the form that its name says, is
+    /// resembled by the law that has most of its share.
+    fn hardly(&self, one: &LeftOut) -> f64 {
+        /// The part of its share that such a law may miss.
+        const RESEMBLES: f64 = 0.2;
+        if self.is_any_form(one.effect) {
+            CONSEQUENCE.max(RESEMBLES * one.share)
+        } else {
+            CONSEQUENCE
+        }
+    }
+
+    /// Whether an effect of the whole model is a curve of any form, or of none that its name says.
+    fn is_any_form(&self, id: &'static str) -> bool {
+        let range = self.record.range_for(&self.whole.model);
+        let effect = [id];
+        let mut component = components_of(&self.whole.model, &effect);
+        component.any(|one| {
+            let effect = one.effect();
+            effect.spec().is_free_form || !effect.shows_its_form(&one.plain(), &range)
+        })
+    }
+
     /// The model without `effect`, the rest fitted again.
     fn without(&self, effect: &str) -> Option<FitOutcome> {
         let model = self.whole.model.without(effect);
@@ -201,16 +224,4 @@ impl Grown<'_, '_> {
         let own = Errors::of(self.record, self.whole);
         self.misfit.share_of_either(fit.errors, own).min(1.0)
     }
-}
-
-fn is_free_form(id: &str) -> bool {
-    by_id(id).is_some_and(|effect| effect.spec().is_free_form)
-}
-
-/// The share by which the error may be larger with another effect in the place of one, for the two to
-/// be alternatives. A curve of any form is resembled by the law that has most of its share.
-fn hardly(one: &LeftOut) -> f64 {
-    /// The part of its share that such a law may miss.
-    const RESEMBLES: f64 = 0.2;
-    if is_free_form(one.effect) { CONSEQUENCE.max(RESEMBLES * one.share) } else { CONSEQUENCE }
 }

@@ -7,6 +7,7 @@ use super::likeness::are_distinguished;
 use super::outcome::FitOutcome;
 use super::separation::Separation;
 use crate::diagnosis::ErrorFigures;
+use crate::effect::RecordRange;
 use crate::fit::{AssessedModel, Status};
 use crate::model::Component;
 
@@ -130,8 +131,8 @@ impl Candidate {
     }
 
     /// Whether each effect that it adds can be distinguished from what is fitted beside it and looks like it.
-    pub(super) fn is_distinguished_from_its_like(&self) -> bool {
-        are_distinguished(&self.fit, &self.effects)
+    pub(super) fn is_distinguished_from_its_like(&self, range: &RecordRange<'_>) -> bool {
+        are_distinguished(&self.fit, &self.effects, range)
     }
 
     /// Whether it is needed even where the model passes for adequate.

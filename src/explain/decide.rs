@@ -74,7 +74,8 @@ impl<'a, 'r> Judge<'a, 'r> {
         if let Some(parameter) = implausible {
             return Some(Refusal::Implausible(parameter));
         }
-        if !candidate.is_distinguished_from_its_like() {
+        let range = self.record.range_for(&candidate.fit.model);
+        if !candidate.is_distinguished_from_its_like(&range) {
             return Some(Refusal::LikeAnother);
         }
         let (record, options) = (self.record, self.options);

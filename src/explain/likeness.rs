@@ -1,7 +1,7 @@
 //! Effects that look like one another in a record.
 
 use super::determined::{BESIDE_ITS_LIKE, is_distinct};
-use crate::effect::{Effect, by_id};
+use crate::effect::{Effect, RecordRange, by_id};
 use crate::fit::AssessedModel;
 use crate::model::Component;
 
@@ -15,25 +15,37 @@ pub(super) fn looks_like(one: &str, other: &str) -> bool {
 }
 
 /// Whether each of the effects `new` of a fitted model is distinguished from what looks like it beside
-/// it.
+/// it: its parameters differ from doing nothing, and both have the form that their names say.
 ///
 /// What was there before may no longer be: that is for a removal to judge.
-pub(super) fn are_distinguished(fit: &AssessedModel, new: &[&str]) -> bool {
+pub(super) fn are_distinguished(
+    fit: &AssessedModel,
+    new: &[&str],
+    range: &RecordRange<'_>,
+) -> bool {
     let is_fitted = |component: &&Component| component.parameters().iter().any(|p| !p.fixed);
     let fitted: Vec<&Component> = fit.model.components().iter().filter(is_fitted).collect();
     let id = |component: &Component| component.effect().spec().id;
     let is_beside_its_like =
         |one: &Component| fitted.iter().any(|other| looks_like(id(one), id(other)));
+    let shows_its_form = |one: &Component| one.effect().shows_its_form(&one.plain(), range);
+    let is_beside_another_bend = |one: &Component| {
+        let mut alike = fitted.iter().filter(|other| looks_like(id(one), id(other)));
+        alike.any(|other| !(shows_its_form(one) && shows_its_form(other)))
+    };
     let mut added = fitted.iter().filter(|one| new.contains(&id(one)));
-    added.all(|one| !is_beside_its_like(one) || is_distinct(fit, one, BESIDE_ITS_LIKE))
+    added.all(|one| {
+        !is_beside_its_like(one)
+            || is_distinct(fit, one, BESIDE_ITS_LIKE) && !is_beside_another_bend(one)
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{CoulombFriction, DeadBand, InputOffset};
+    use crate::effect::{CoulombFriction, DeadBand, FlowCurve, InputOffset, InputSaturation};
     use crate::fit::{Parameter, Status};
-    use crate::model::JointModel;
+    use crate::model::{JointModel, Value};
 
     /// A model with `effects`, the first parameter of each so many standard errors from where it does
     /// nothing.
@@ -52,20 +64,40 @@ mod tests {
         AssessedModel { model, parameters: effects.iter().map(parameter).collect() }
     }
 
+    /// Whether they are, in a record without extent.
+    fn is_told(fit: &AssessedModel, new: &[&str]) -> bool {
+        are_distinguished(fit, new, &RecordRange::default())
+    }
+
     #[test]
     fn beside_an_overlap_a_friction_is_distinguished_by_three_standard_errors() {
         let with = |friction| fitted(&[(&DeadBand, 9.0), (&CoulombFriction, friction)]);
-        assert!(are_distinguished(&with(4.0), &["coulomb_friction"]));
-        assert!(!are_distinguished(&with(2.5), &["coulomb_friction"]));
-        assert!(!are_distinguished(&with(2.5), &["dead_band", "coulomb_friction"]), "each of both");
-        assert!(are_distinguished(&with(2.5), &["dead_band"]));
+        assert!(is_told(&with(4.0), &["coulomb_friction"]));
+        assert!(!is_told(&with(2.5), &["coulomb_friction"]));
+        assert!(!is_told(&with(2.5), &["dead_band", "coulomb_friction"]), "each of both");
+        assert!(is_told(&with(2.5), &["dead_band"]));
         // Not beside it, less will do here.
         let mut alone = fitted(&[(&CoulombFriction, 2.5)]);
-        assert!(are_distinguished(&alone, &["coulomb_friction"]));
+        assert!(is_told(&alone, &["coulomb_friction"]));
         // A neutral that is known is no friction.
         let mut offset = Component::neutral(&InputOffset).parameters().to_vec();
         offset[0].fixed = true;
         alone.model = alone.model.with(Component::new(&InputOffset, offset).unwrap());
-        assert!(are_distinguished(&alone, &["coulomb_friction"]));
+        assert!(is_told(&alone, &["coulomb_friction"]));
+    }
+
+    #[test]
+    fn a_curve_that_bends_is_distinguished_beside_a_limit_that_is_reached_alone() {
+        let with_limit = |limit: f64| {
+            let mut fit = fitted(&[(&FlowCurve, 9.0), (&InputSaturation, -9.0)]);
+            let values = [limit, 0.2].map(Value::from);
+            let component = Component::new(&InputSaturation, values.to_vec()).unwrap();
+            fit.model = fit.model.without("input_saturation").with(component);
+            fit
+        };
+        let record = RecordRange { input_abs_max: 2.0, ..RecordRange::default() };
+        let is_told = |limit, new| are_distinguished(&with_limit(limit), &[new], &record);
+        assert!(is_told(1.5, "flow_curve") && is_told(1.5, "input_saturation"));
+        assert!(!is_told(1.8, "flow_curve") && !is_told(1.8, "input_saturation"));
     }
 }

@@ -119,7 +119,7 @@ impl Removal<'_> {
             let behind = evidence.criterion() - of_whole.criterion() + hurdle;
             let new: Vec<&str> = change.new_effects().collect();
             let is_known = components_of(&fit.model, &new).all(|one| is_determined(&fit, one))
-                && are_distinguished(&fit, &new)
+                && are_distinguished(&fit, &new, &record.range_for(&fit.model))
                 && limiting_case_of(record, &fit, &new, self.options).is_none();
             (behind < 0.0 && leaves_less && !does_harm && is_worth_it && is_known)
                 .then_some((behind, (change, fit)))

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::evaluation::Evaluation;
 use super::record::FitRecord;
-use super::space::Space;
+use super::space::{Space, place};
 use crate::model::{BESIDE, JointModel};
 
 /// A model on a record, and the free values at which it is.
@@ -97,82 +97,100 @@ impl Problem<'_, '_> {
     /// between which it matters; whether that is another one.
     pub(super) fn cross_flat(&mut self, variable: usize) -> bool {
         let values = self.space.flats.get(variable).map_or(&[][..], Vec::as_slice);
-        let (cost, start) = (self.cost(), self.free.clone());
-        let best = self.best_within(variable, values).filter(|(least, _)| *least < cost);
-        self.move_to(&start);
-        let Some(value) = best.and_then(|(_, index)| values.get(index)) else { return false };
-        self.set_value(variable, *value);
-        true
+        let Some(index) = self.best_within(variable, values) else { return false };
+        values.get(index).is_some_and(|value| self.is_better_with(&[(variable, *value)]))
     }
 
     /// Does so for two of the variables `flats`, where neither gains by itself: a valve
     /// that stops at a higher level than it starts at stops where it starts, whatever the one
     /// that is lower.
     pub(super) fn cross_two_flats(&mut self, flats: &[usize]) -> bool {
-        // Levels that belong together are neighbours.
+        // Levels that belong together are neighbours, and parameters of one effect.
         let pairs = flats.windows(2).filter_map(|pair| <[usize; 2]>::try_from(pair).ok());
-        let (cost, start) = (self.cost(), self.free.clone());
-        let best = pairs.filter_map(|pair| self.best_of_two(pair)).collect::<Vec<_>>();
-        let best = best.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
-        self.move_to(&start);
-        let Some((_, values)) = best.filter(|(least, _)| *least < cost) else { return false };
-        for (variable, value) in values {
-            self.set_value(variable, value);
-        }
-        true
+        let pairs = pairs.filter(|pair| self.are_of_one_effect(*pair));
+        let best =
+            pairs.filter_map(|pair| self.best_of_two(pair)).min_by(|a, b| a.0.total_cmp(&b.0));
+        best.is_some_and(|(_, values)| self.is_better_with(&values))
     }
 
-    /// The least error with some of the values of two variables, and these.
-    fn best_of_two(&mut self, [one, two]: [usize; 2]) -> Option<(f64, [(usize, f64); 2])> {
+    /// Moves to these values of some variables, where the error is less there; whether it is.
+    fn is_better_with(&mut self, values: &[(usize, f64)]) -> bool {
+        let (cost, start) = (self.cost(), self.free.clone());
+        self.move_to(&with_values(&start, values));
+        let is_better = self.cost() < cost;
+        if !is_better {
+            self.move_to(&start);
+        }
+        is_better
+    }
+
+    /// Whether two variables are parameters of the same effect.
+    fn are_of_one_effect(&self, variables: [usize; 2]) -> bool {
+        let [one, two] = variables.map(|variable| {
+            let index = self.space.free.get(variable)?;
+            place(self.model, *index).map(|(component, _)| component.effect().spec().id)
+        });
+        one == two
+    }
+
+    /// About the least error with some of the values of two variables, and these.
+    fn best_of_two(&self, [one, two]: [usize; 2]) -> Option<(f64, [(usize, f64); 2])> {
         /// Values of each that are tried: all levels of most experiments.
         const COARSE: usize = 12;
-        let space = self.space;
-        let (firsts, seconds) = (space.flats.get(one)?, space.flats.get(two)?);
-        let some = |values: &[f64]| (0..values.len()).step_by(values.len().div_ceil(COARSE).max(1));
-        let of_first = |index: usize| {
-            let first = *firsts.get(index)?;
-            self.set_value(one, first);
-            let (cost, second) = self.best_of(two, seconds, some(seconds))?;
-            Some((cost, [(one, first), (two, *seconds.get(second)?)]))
+        let some = |variable: usize| -> Vec<f64> {
+            let values = self.space.flats.get(variable).map_or(&[][..], Vec::as_slice);
+            values.iter().step_by(values.len().div_ceil(COARSE).max(1)).copied().collect()
         };
-        let all = some(firsts).filter_map(of_first).collect::<Vec<_>>();
-        all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
+        let (firsts, seconds) = (some(one), some(two));
+        let with = |first: &f64| {
+            let first = *first;
+            seconds.iter().map(move |second| [(one, first), (two, *second)])
+        };
+        let all: Vec<_> = firsts.iter().flat_map(with).collect();
+        let (cost, index) = self.least_of(&all)?;
+        Some((cost, *all.get(index)?))
     }
 
-    /// The least error with one of `values` for a variable, and its index: some of them are
-    /// tried, then those near the best of these, ever closer.
-    fn best_within(&mut self, variable: usize, values: &[f64]) -> Option<(f64, usize)> {
+    /// The index of about the best of `values` for a variable: some of them are tried, then those near the
+    /// best of these, ever closer.
+    fn best_within(&self, variable: usize, values: &[f64]) -> Option<usize> {
         /// Values that are tried at a time.
         const COARSE: usize = 24;
+        let best_of = |indices: Vec<usize>| {
+            let value = |index: &usize| Some([(variable, *values.get(*index)?)]);
+            let tried: Vec<_> = indices.iter().filter_map(value).collect();
+            indices.get(self.least_of(&tried)?.1).copied()
+        };
         let mut stride = values.len().div_ceil(COARSE).max(1);
-        let mut best = self.best_of(variable, values, (0..values.len()).step_by(stride))?;
+        let mut best = best_of((0..values.len()).step_by(stride).collect())?;
         while stride > 1 {
-            let near = best.1.saturating_sub(stride)..(best.1 + stride).min(values.len());
+            let near = best.saturating_sub(stride)..(best + stride).min(values.len());
             stride = (2 * stride).div_ceil(COARSE);
-            best = self.best_of(variable, values, near.step_by(stride))?;
+            best = best_of(near.step_by(stride).collect())?;
         }
         Some(best)
     }
 
-    /// The least error with one of `values` for a variable, and its index.
-    fn best_of(
-        &mut self,
-        variable: usize,
-        values: &[f64],
-        indices: impl IntoIterator<Item = usize>,
-    ) -> Option<(f64, usize)> {
-        let costs = indices.into_iter().filter_map(|index| {
-            self.set_value(variable, *values.get(index)?);
-            Some((self.cost(), index))
+    /// The least error with one of `all` values of some variables, and its index; windows start where
+    /// they do here, which is near enough to choose by.
+    fn least_of<const N: usize>(&self, all: &[[(usize, f64); N]]) -> Option<(f64, usize)> {
+        let model = |values: &[(usize, f64); N]| self.model_at(&with_values(&self.free, values));
+        let costs = all.chunks(BESIDE).flat_map(|some| {
+            let models: Vec<JointModel> = some.iter().map(model).collect();
+            let residuals = self.record.training_near(&models, self.here());
+            residuals.iter().map(cost_of).collect::<Vec<f64>>()
         });
-        costs.min_by(|a, b| a.0.total_cmp(&b.0))
+        costs.zip(0..).min_by(|a, b| a.0.total_cmp(&b.0))
     }
+}
 
-    /// Sets one free value.
-    fn set_value(&mut self, variable: usize, value: f64) {
-        self.free[variable] = value;
-        self.here.take();
+/// `free` with other values of some variables.
+fn with_values(free: &DVector<f64>, values: &[(usize, f64)]) -> DVector<f64> {
+    let mut there = free.clone();
+    for (variable, value) in values {
+        there[*variable] = *value;
     }
+    there
 }
 
 /// The sum of squares; infinite where one is not a number.

@@ -134,7 +134,7 @@ fn is_level(model: &JointModel, index: usize) -> bool {
 }
 
 /// The effect of which a value of `model` is a parameter, and this.
-fn place(model: &JointModel, index: usize) -> Option<(&Component, &'static Parameter)> {
+pub(super) fn place(model: &JointModel, index: usize) -> Option<(&Component, &'static Parameter)> {
     let of = |component| {
         let parameters = Component::effect(component).spec().parameters.iter();
         parameters.map(move |parameter| (component, parameter))

@@ -90,7 +90,7 @@ impl Component {
     }
 
     /// The values alone.
-    pub(super) fn plain(&self) -> Vec<f64> {
+    pub(crate) fn plain(&self) -> Vec<f64> {
         self.parameters.iter().map(|parameter| parameter.value).collect()
     }
 }
