@@ -15,7 +15,7 @@
 //! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems: Modelling, Identification and Control
 //! (flow saturation, single-rod cylinders).
 
-use super::input_saturation::{FITTED_LIMIT, SOFTNESS, is_reached, limited};
+use super::input_saturation::{FITTED_LIMIT, SOFTNESS, levels_off, limited};
 use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
@@ -77,7 +77,7 @@ impl Effect for AsymmetricSaturation {
 
     fn shows_its_form(&self, parameters: &[f64], record: &RecordRange<'_>) -> bool {
         let &[limit, softness, negative_limit] = parameters else { return true };
-        is_reached(limit.min(negative_limit), softness, record)
+        levels_off(limit.min(negative_limit), softness, record)
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {

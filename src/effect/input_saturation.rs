@@ -76,7 +76,7 @@ impl Effect for InputSaturation {
 
     fn shows_its_form(&self, parameters: &[f64], record: &RecordRange<'_>) -> bool {
         let &[limit, softness] = parameters else { return true };
-        is_reached(limit, softness, record)
+        levels_off(limit, softness, record)
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
@@ -91,8 +91,8 @@ impl Effect for InputSaturation {
     }
 }
 
-/// Whether the input of `record` goes to where the flow rises no more.
-pub(super) fn is_reached(limit: f64, softness: f64, record: &RecordRange<'_>) -> bool {
+/// Whether the input of `record` passes the knee, beyond which the flow rises no more.
+pub(super) fn levels_off(limit: f64, softness: f64, record: &RecordRange<'_>) -> bool {
     limit * (1.0 + softness) <= record.input_abs_max
 }
 

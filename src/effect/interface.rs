@@ -57,10 +57,10 @@ pub trait Effect: Debug + Send + Sync {
         false
     }
 
-    /// Whether over the range of `record` its signal has the form that its name says.
+    /// Whether the effect, over the range of `record`, has the feature after which it is named.
     ///
-    /// Without it, as a limit beyond the range whose knee alone is seen, it is one of several curves
-    /// that bend alike.
+    /// A flow limit has it where the input passes the knee. Where only a part of the knee is seen, the
+    /// curve is one of several that bend alike, and the record does not tell which.
     fn shows_its_form(&self, _parameters: &[f64], _record: &RecordRange<'_>) -> bool {
         true
     }

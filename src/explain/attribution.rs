@@ -185,8 +185,8 @@ impl Grown<'_, '_> {
     }
 
     /// The share by which the error may be larger with another effect in the place of one, for the two
-    /// to be alternatives. A curve of any form, or that does not have the form that its name says, is
-    /// resembled by the law that has most of its share.
+    /// to be alternatives. A curve of any form, or one that does not show the feature after which it is
+    /// named, is resembled by the law that has most of its share.
     fn hardly(&self, one: &LeftOut) -> f64 {
         /// The part of its share that such a law may miss.
         const RESEMBLES: f64 = 0.2;
@@ -197,7 +197,8 @@ impl Grown<'_, '_> {
         }
     }
 
-    /// Whether an effect of the whole model is a curve of any form, or of none that its name says.
+    /// Whether an effect of the whole model has a free form, or does not show the feature after which it
+    /// is named.
     fn is_any_form(&self, id: &'static str) -> bool {
         let range = self.record.range_for(&self.whole.model);
         let effect = [id];

@@ -3,11 +3,9 @@
 use super::determined::{DISTINCT, is_determined, is_distinct, is_reached};
 use super::extension::{Extension, components_of};
 use super::judgement::Judgement;
-use super::likeness::are_distinguished;
 use super::outcome::FitOutcome;
 use super::separation::Separation;
 use crate::diagnosis::ErrorFigures;
-use crate::effect::RecordRange;
 use crate::fit::{AssessedModel, Status};
 use crate::model::Component;
 
@@ -128,11 +126,6 @@ impl Candidate {
     /// Whether a value of what it adds is known to be another than that at which it does nothing.
     pub(super) fn is_distinct(&self) -> bool {
         self.added().any(|effect| is_distinct(&self.fit, effect, DISTINCT))
-    }
-
-    /// Whether each effect that it adds can be distinguished from what is fitted beside it and looks like it.
-    pub(super) fn is_distinguished_from_its_like(&self, range: &RecordRange<'_>) -> bool {
-        are_distinguished(&self.fit, &self.effects, range)
     }
 
     /// Whether it is needed even where the model passes for adequate.

@@ -8,6 +8,7 @@
 use super::candidate::Candidate;
 use super::determined::{implausible, is_determined, is_reached};
 use super::judgement::{Judgement, Refusal};
+use super::likeness::are_distinguished;
 use super::limiting_case::limiting_case_of;
 use super::misfit::{CONSEQUENCE, Errors, Misfit};
 use super::options::Options;
@@ -75,7 +76,7 @@ impl<'a, 'r> Judge<'a, 'r> {
             return Some(Refusal::Implausible(parameter));
         }
         let range = self.record.range_for(&candidate.fit.model);
-        if !candidate.is_distinguished_from_its_like(&range) {
+        if !are_distinguished(&candidate.fit, &candidate.effects, &range) {
             return Some(Refusal::LikeAnother);
         }
         let (record, options) = (self.record, self.options);

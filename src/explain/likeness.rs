@@ -15,7 +15,7 @@ pub(super) fn looks_like(one: &str, other: &str) -> bool {
 }
 
 /// Whether each of the effects `new` of a fitted model is distinguished from what looks like it beside
-/// it: its parameters differ from doing nothing, and both have the form that their names say.
+/// it: it is known to do something, and both show the feature after which they are named.
 ///
 /// What was there before may no longer be: that is for a removal to judge.
 pub(super) fn are_distinguished(
@@ -26,17 +26,13 @@ pub(super) fn are_distinguished(
     let is_fitted = |component: &&Component| component.parameters().iter().any(|p| !p.fixed);
     let fitted: Vec<&Component> = fit.model.components().iter().filter(is_fitted).collect();
     let id = |component: &Component| component.effect().spec().id;
-    let is_beside_its_like =
-        |one: &Component| fitted.iter().any(|other| looks_like(id(one), id(other)));
     let shows_its_form = |one: &Component| one.effect().shows_its_form(&one.plain(), range);
-    let is_beside_another_bend = |one: &Component| {
-        let mut alike = fitted.iter().filter(|other| looks_like(id(one), id(other)));
-        alike.any(|other| !(shows_its_form(one) && shows_its_form(other)))
-    };
     let mut added = fitted.iter().filter(|one| new.contains(&id(one)));
     added.all(|one| {
-        !is_beside_its_like(one)
-            || is_distinct(fit, one, BESIDE_ITS_LIKE) && !is_beside_another_bend(one)
+        let mut alike = fitted.iter().filter(|other| looks_like(id(one), id(other)));
+        alike.all(|other| {
+            is_distinct(fit, one, BESIDE_ITS_LIKE) && shows_its_form(one) && shows_its_form(other)
+        })
     })
 }
 
@@ -64,7 +60,7 @@ mod tests {
         AssessedModel { model, parameters: effects.iter().map(parameter).collect() }
     }
 
-    /// Whether they are, in a record without extent.
+    /// Whether they are distinguished; none of these effects needs the range of a record.
     fn is_told(fit: &AssessedModel, new: &[&str]) -> bool {
         are_distinguished(fit, new, &RecordRange::default())
     }
@@ -87,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_that_bends_is_distinguished_beside_a_limit_that_is_reached_alone() {
+    fn a_limit_is_told_from_a_flow_curve_only_where_the_input_passes_its_knee() {
         let with_limit = |limit: f64| {
             let mut fit = fitted(&[(&FlowCurve, 9.0), (&InputSaturation, -9.0)]);
             let values = [limit, 0.2].map(Value::from);

@@ -171,8 +171,8 @@ impl Problem<'_, '_> {
         Some(best)
     }
 
-    /// The least error with one of `all` values of some variables, and its index; windows start where
-    /// they do here, which is near enough to choose by.
+    /// The least error with one of `all` values of some variables, and its index. Windows start at the
+    /// outputs at which they start here: near enough to choose by, and one simulation each.
     fn least_of<const N: usize>(&self, all: &[[(usize, f64); N]]) -> Option<(f64, usize)> {
         let model = |values: &[(usize, f64); N]| self.model_at(&with_values(&self.free, values));
         let costs = all.chunks(BESIDE).flat_map(|some| {

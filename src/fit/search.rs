@@ -74,8 +74,8 @@ impl<'p, 'r> Search<'p, 'r> {
         self.across(&levels)
     }
 
-    /// Moves those of them to their best that started where the model does not have them; all where
-    /// none did. The others have been moved when they were new.
+    /// Does so for parameters that started away from the values of the model, those of a new effect;
+    /// for all where none did. The others were moved when they were new.
     pub(super) fn across_new_flats(self) -> Self {
         let Problem { model, space, start, .. } = &self.problem;
         let values = model.values();
