@@ -177,7 +177,7 @@ pub fn survey(
     let best = rough(&short, None, model, &space, range)
         .into_iter()
         .min_by(|a, b| a.cost.total_cmp(&b.cost));
-    let best = best.map(Search::across_new_flats);
+    let best = best.map(Search::across_flats);
     let found = best.map(|search| Survey { model: search.problem.model_now(), cost: search.cost });
     Ok(found.unwrap_or_else(|| Survey { model: model.clone(), cost: f64::MAX }))
 }

@@ -67,40 +67,11 @@ impl<'p, 'r> Search<'p, 'r> {
     }
 
     /// Moves the parameters on which the error depends only in jumps to their best.
-    pub(super) fn across_flats(self) -> Self {
-        let free = self.problem.free.len();
-        let levels: Vec<usize> =
-            (0..free).filter(|index| self.problem.space.is_level(*index)).collect();
-        self.across(&levels)
-    }
-
-    /// Does so for parameters that started away from the values of the model, those of a new effect;
-    /// for all where none did. The others were moved when they were new.
-    pub(super) fn across_new_flats(self) -> Self {
-        let Problem { model, space, start, .. } = &self.problem;
-        let values = model.values();
-        #[expect(clippy::float_cmp, reason = "a start has its own value or that of the model")]
-        let has_moved = |index: &usize| {
-            let place = space.free[*index];
-            start[place] != values[place].value
-        };
-        let moved: Vec<usize> = (0..space.free.len()).filter(has_moved).collect();
-        if moved.is_empty() {
-            return self.across_flats();
-        }
-        let levels: Vec<usize> = moved.into_iter().filter(|index| space.is_level(*index)).collect();
-        self.across(&levels)
-    }
-
-    /// Moves those of `levels` on which the error depends only in jumps to their best.
-    fn across(mut self, levels: &[usize]) -> Self {
+    pub(super) fn across_flats(mut self) -> Self {
         /// One may have to wait for another.
         const PASSES: usize = 3;
-        if levels.is_empty() {
-            return self;
-        }
         for _ in 0..PASSES {
-            let flats = self.flats_among(levels);
+            let flats = self.flat_variables();
             let crossed = flats.iter().filter(|index| self.problem.cross_flat(**index)).count();
             if crossed == 0 && !self.problem.cross_two_flats(&flats) {
                 break;
@@ -111,13 +82,13 @@ impl<'p, 'r> Search<'p, 'r> {
         self
     }
 
-    /// Those of the variables `levels` on which the error depends only in jumps.
-    fn flats_among(&self, levels: &[usize]) -> Vec<usize> {
+    /// The variables on which the error depends only in jumps.
+    fn flat_variables(&self) -> Vec<usize> {
         let residuals = self.problem.residuals();
         let free = self.problem.free.len();
+        let levels: Vec<usize> = (0..free).filter(|i| self.problem.space.is_level(*i)).collect();
         let mut slopes = DMatrix::zeros(residuals.len(), free);
-        self.problem.put_slopes(&mut slopes, levels, &residuals);
-        let is_flat = |index: &usize| slopes.column(*index).amax() <= 0.0;
-        levels.iter().copied().filter(is_flat).collect()
+        self.problem.put_slopes(&mut slopes, &levels, &residuals);
+        levels.into_iter().filter(|index| slopes.column(*index).amax() <= 0.0).collect()
     }
 }
