@@ -30,9 +30,8 @@ pub(super) enum Scope {
 const FINALISTS: (usize, usize) = (6, 3);
 
 /// What the cost of a finalist may be after the survey, in parts of the least. Chosen: a rough
-/// descent may end above where a fit does; of 30 records of three effects 26 are explained with 1.5
-/// as with 3.
-const HOPELESS: f64 = 1.5;
+/// descent may end well above where a fit does.
+const HOPELESS: f64 = 3.0;
 
 /// Ranks the effects of `options` by how well the model of `base` with each of them, fitted,
 /// explains the record, best first.
