@@ -1,5 +1,5 @@
-//! Static curve of the valve: the flow as a monotone function of the command, by straight lines
-//! between knots.
+//! Static curve of the valve: the flow as a monotone function of the command, by cubics between
+//! knots.
 //!
 //! ```text
 //! out(0) = 0,   out(reach/3) = inner · outer · reach,   out(2 reach/3) = outer · reach,
@@ -9,13 +9,17 @@
 //! and with parameters of its own, times `negative_factor`, for commands below zero. It has no law:
 //! overlap, limits and progression of an unusual valve all show in its knots, and a model with it
 //! follows the static curve whatever made it so. A search names it where no named effect explains
-//! the curve. `reach` is the largest command of the record, and not fitted; beyond it the outer line
-//! goes on.
+//! the curve. `reach` is the largest command of the record, and not fitted; beyond it the curve goes
+//! on straight.
+//!
+//! The curve is a cubic between knots. With the secants `s` and `t` on its sides it has at a knot the
+//! slope `2 min(s, t, (s + t)/4)`, and at an end, with the secant `s` of its own interval and `t` of
+//! the next, `(3 s − t)/2` within 0 and `2 s`. So it is monotone, and follows a parabola exactly.
 //!
 //! # References
 //! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems: Modelling, Identification and Control
-//! (measured flow curves of valves); Hastie, T., Tibshirani, R., and Friedman, J., 2009, The Elements
-//! of Statistical Learning, section 5.2 (piecewise linear functions).
+//! (measured flow curves of valves); Steffen, M., 1990, A simple method for monotonic interpolation in
+//! one dimension, Astronomy and Astrophysics 239, 443-450.
 
 use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage};
 
@@ -26,15 +30,15 @@ pub struct ValveCurve;
 static SPEC: Spec = Spec::new(
     "valve_curve",
     Stage::Input,
-    "static curve of the valve without a law, by straight lines between knots",
+    "static curve of the valve without a law, by monotone cubics between knots",
 )
 .equation(
-    "out = 0, inner outer reach, outer reach, reach at in = 0, 1/3, 2/3, 1 of reach, straight \
-     between; for in < 0 with negative_inner, negative_outer, times negative_factor",
+    "out = 0, inner outer reach, outer reach, reach at in = 0, 1/3, 2/3, 1 of reach, monotone \
+     cubics between; for in < 0 with negative_inner, negative_outer, times negative_factor",
 )
 .source(
-    "Jelali and Kroll, 2003, Hydraulic Servo-systems; Hastie, Tibshirani and Friedman, 2009, The \
-     Elements of Statistical Learning",
+    "Jelali and Kroll, 2003, Hydraulic Servo-systems; Steffen, 1990, A simple method for monotonic \
+     interpolation in one dimension",
 )
 .parameters(&[
     share("inner", "flow at a third of reach over that at two thirds", 0.5),
@@ -83,10 +87,22 @@ impl Effect for ValveCurve {
              far = if(signal < 0, negative_outer, outer)
              factor = if(signal < 0, negative_factor, 1)
              size = if(reach > 0, 3 * abs(signal) / reach, 0)
-             first = size * near * far
-             second = far * (near + (size - 1) * (1 - near))
-             third = far + (size - 2) * (1 - far)
-             part = if(size < 1, first, if(size < 2, second, third))
+             low = near * far
+             second = far - low
+             third = 1 - far
+             at_zero = min(max(1.5 * low - 0.5 * second, 0), 2 * low)
+             at_near = 2 * min(min(low, second), 0.25 * (low + second))
+             at_far = 2 * min(min(second, third), 0.25 * (second + third))
+             at_end = min(max(1.5 * third - 0.5 * second, 0), 2 * third)
+             along = if(size < 1, size, if(size < 2, size - 1, size - 2))
+             from = if(size < 1, 0, if(size < 2, low, far))
+             rise = if(size < 1, low, if(size < 2, second, third))
+             left = if(size < 1, at_zero, if(size < 2, at_near, at_far))
+             right = if(size < 1, at_near, if(size < 2, at_far, at_end))
+             bend = 3 * rise - 2 * left - right
+             twist = left + right - 2 * rise
+             cubic = from + along * (left + along * (bend + along * twist))
+             part = if(size > 3, 1 + (size - 3) * at_end, cubic)
              out = if(reach > 0, sign(signal) * factor * reach * part, signal)",
         ))
     }
@@ -104,14 +120,7 @@ impl Effect for ValveCurve {
         } else {
             (inner, outer, 1.0)
         };
-        let size = 3.0 * at.signal.abs() / reach;
-        let part = if size < 1.0 {
-            size * near * far
-        } else if size < 2.0 {
-            far * (near + (size - 1.0) * (1.0 - near))
-        } else {
-            far + (size - 2.0) * (1.0 - far)
-        };
+        let part = along([near * far, far], 3.0 * at.signal.abs() / reach);
         (factor * reach * part).copysign(at.signal)
     }
 
@@ -123,6 +132,26 @@ impl Effect for ValveCurve {
     }
 }
 
+/// The monotone cubics through (0, 0), (1, `near`), (2, `far`) and (3, 1), at `size`.
+fn along([near, far]: [f64; 2], size: f64) -> f64 {
+    let middle = |s: f64, t: f64| 2.0 * s.min(t).min(0.25 * (s + t));
+    let end = |s: f64, t: f64| (1.5 * s - 0.5 * t).max(0.0).min(2.0 * s);
+    let secants @ [first, second, third] = [near, far - near, 1.0 - far];
+    let slopes =
+        [end(first, second), middle(first, second), middle(second, third), end(third, second)];
+    if size > 3.0 {
+        return 1.0 + (size - 3.0) * slopes[3];
+    }
+    let (index, t) = match size {
+        ..1.0 => (0, size),
+        ..2.0 => (1, size - 1.0),
+        _ => (2, size - 2.0),
+    };
+    let (rise, left, right) = (secants[index], slopes[index], slopes[index + 1]);
+    let (bend, twist) = (3.0 * rise - 2.0 * left - right, left + right - 2.0 * rise);
+    [0.0, near, far][index] + t * (left + t * (bend + t * twist))
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::testing::{assert_close, run};
@@ -131,8 +160,24 @@ mod tests {
     #[test]
     fn it_goes_through_its_knots() {
         let parameters = [0.25, 0.8, 0.5, 0.4, 0.5, 3.0];
-        let inputs = [0.0, 1.0, 1.5, 2.0, 3.0, 4.0, -1.0, -2.0, -3.0];
-        let outputs = [0.0, 0.6, 1.5, 2.4, 3.0, 3.6, -0.3, -0.6, -1.5];
+        let inputs = [0.0, 1.0, 2.0, 3.0, -1.0, -2.0, -3.0];
+        let outputs = [0.0, 0.6, 2.4, 3.0, -0.3, -0.6, -1.5];
         assert_close(&run(&ValveCurve, &parameters, &inputs), &outputs);
+    }
+
+    #[test]
+    fn it_follows_a_parabola_and_is_monotone_whatever_its_knots() {
+        let law = |u: f64| (u + 0.7 * u * u) / (1.0 + 0.7);
+        let (near, far) = (law(1.0 / 3.0), law(2.0 / 3.0));
+        for k in 0..=30 {
+            let u = f64::from(k) / 30.0;
+            assert!((along([near, far], 3.0 * u) - law(u)).abs() < 1e-12, "{u}");
+        }
+        for (near, far) in [(0.0, 0.1), (0.05, 1.0), (0.5, 0.5), (0.9, 0.95)] {
+            let values: Vec<f64> =
+                (0..400).map(|k| along([near, far], 0.01 * f64::from(k))).collect();
+            let rises = |pair: &[f64]| pair[1] >= pair[0] - 1e-12;
+            assert!(values.windows(2).all(rises), "{near} {far}");
+        }
     }
 }

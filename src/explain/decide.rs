@@ -17,10 +17,10 @@ use crate::fit::{Fit, FitRecord};
 /// What candidates for one model are judged by.
 pub(super) struct Judge<'a, 'r> {
     record: &'a FitRecord<'r>,
-    base: &'a Fit,
+    pub(super) base: &'a Fit,
     own: Errors,
-    misfit: Misfit,
-    options: &'a Options,
+    pub(super) misfit: Misfit,
+    pub(super) options: &'a Options,
     /// Whether many curves match the few levels of the input: more is then asked of an effect.
     pub(super) are_levels_few: bool,
 }
@@ -110,4 +110,71 @@ impl<'a, 'r> Judge<'a, 'r> {
 pub(super) fn in_order(mut ranking: Vec<Candidate>) -> Vec<Candidate> {
     ranking.sort_by(|a, b| a.rmse().total_cmp(&b.rmse()));
     ranking
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ranking::{Scope, rank};
+    use super::super::workers::Sequential;
+    use super::*;
+    use crate::effect::{DirectionGain, FlowCurve, InputSaturation};
+    use crate::experiment::{Joint, Trial};
+    use crate::fit::{Horizon, Split, fit};
+    use crate::model::{Component, JointModel, Value};
+    use crate::numerics::testing::normals;
+    use crate::units::SamplePeriod;
+
+    /// An integrator that is slower down than up, measured with noise.
+    fn joint() -> Joint {
+        let levels = [1.0, -0.7, 0.4, -1.0, 0.7, -0.4];
+        let input: Vec<f64> = (0..2400).map(|k| levels[k / 60 % levels.len()]).collect();
+        let (mut angle, mut normal) = (0.0, normals(3));
+        let mut turn = |u: &f64| {
+            angle += 0.02 * if *u < 0.0 { 0.8 * u } else { *u };
+            angle + 0.01 * normal()
+        };
+        let output = input.iter().map(&mut turn).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trials = vec![Trial::new("1", 0.0, period, input, output).unwrap()];
+        Joint {
+            name: "boom".to_owned(),
+            input_unit: None,
+            output_unit: None,
+            covariates: Vec::new(),
+            trials: trials.into(),
+        }
+    }
+
+    #[test]
+    fn each_thing_that_speaks_against_an_effect_refuses_it() {
+        let joint = joint();
+        let record = FitRecord::new(&joint, Split::Blocks, Horizon::Auto);
+        let base = JointModel::integrator(1.0, 0.0);
+        let base = fit(&record, &base, &record.range_for(&base)).unwrap();
+        let options = Options { effects: vec![&DirectionGain], ..Options::default() };
+        let ranking = rank(&record, &base, 0.01, &options, Scope::SingleEffects, &Sequential);
+        let misfit = Misfit::of(&record, Errors::of(&record, &base));
+        let judge = Judge::new(&record, &base, misfit, &options);
+        let candidate = &ranking[0];
+        let sound = judge.judge(candidate);
+        assert!(sound.is_added(), "{sound:?}");
+        let with = |change: fn(&mut Judgement), implausible: Option<&str>| {
+            let mut judgement = sound.clone();
+            change(&mut judgement);
+            judge.refusal(candidate, &judgement, implausible.map(str::to_owned))
+        };
+        assert_eq!(with(|one| one.determined = false, None), Some(Refusal::Undetermined));
+        assert_eq!(with(|one| one.generalises = false, None), Some(Refusal::DoesNotGeneralise));
+        let small = with(|one| one.consequence_percent = 0.1, None);
+        assert_eq!(small, Some(Refusal::NoConsequence));
+        let implausible = Refusal::Implausible("factor".to_owned());
+        assert_eq!(with(|_| (), Some("factor")), Some(implausible));
+        assert_eq!(with(|_| (), None), None);
+        // Beside a limit that lies beyond the record, a curve that bends is not told from it.
+        let mut alike = candidate.clone();
+        let limit = Component::new(&InputSaturation, [5.0, 0.2].map(Value::from).to_vec()).unwrap();
+        alike.effects = vec!["flow_curve"];
+        alike.fit.assessed.model = base.model.with(limit).with(Component::neutral(&FlowCurve));
+        assert_eq!(judge.refusal(&alike, &sound, None), Some(Refusal::LikeAnother));
+    }
 }

@@ -50,17 +50,7 @@ pub(super) fn rank(
         return Vec::new();
     }
     let range = record.range_for(&base.model);
-    let effects = eligible(record, &base.model, options);
-    let refinements = steady_refinements(record, &base.model, options);
-    let search = Search {
-        record,
-        base,
-        noise_floor,
-        effects: &effects,
-        refinements: &refinements,
-        options,
-        range: &range,
-    };
+    let search = Search::new(record, base, noise_floor, options, &range);
     let [thinned, training] = [record.thinned(), record.for_training()];
     let fitted = record.part(Part::Training).count();
     let ranking = search.singles(&thinned, scope, workers);
@@ -75,11 +65,21 @@ pub(super) fn rank(
         return ranking;
     }
     let paired = search.beside_pairs(&ranking, workers);
-    if shows(&paired) {
-        return paired;
-    }
-    // What no law explains may follow a curve of any form.
-    search.beside_free_forms(&ranking, workers)
+    if shows(&paired) { paired } else { search.beside_free_forms(&ranking, workers) }
+}
+
+/// A [`rank`]ing of laws beside the effects of a free form, each in the place of the laws that it
+/// absorbs: what no law explains may follow a curve of any form.
+pub(super) fn rank_free_forms(
+    record: &FitRecord<'_>,
+    base: &Fit,
+    noise_floor: f64,
+    options: &Options,
+    laws: &[Candidate],
+    workers: &impl Workers,
+) -> Vec<Candidate> {
+    let range = record.range_for(&base.model);
+    Search::new(record, base, noise_floor, options, &range).beside_free_forms(laws, workers)
 }
 
 /// A model, and what may be missing from it.
@@ -88,14 +88,26 @@ struct Search<'a, 'r> {
     base: &'a Fit,
     /// Standard deviation of the measurement noise, output units.
     noise_floor: f64,
-    effects: &'a [&'static dyn Effect],
+    effects: Vec<&'static dyn Effect>,
     /// Finer forms of some of the effects.
-    refinements: &'a [&'static dyn Effect],
+    refinements: Vec<&'static dyn Effect>,
     options: &'a Options,
     range: &'a RecordRange<'a>,
 }
 
-impl Search<'_, '_> {
+impl<'a, 'r> Search<'a, 'r> {
+    fn new(
+        record: &'a FitRecord<'r>,
+        base: &'a Fit,
+        noise_floor: f64,
+        options: &'a Options,
+        range: &'a RecordRange<'a>,
+    ) -> Self {
+        let effects = eligible(record, &base.model, options);
+        let refinements = steady_refinements(record, &base.model, options);
+        Self { record, base, noise_floor, effects, refinements, options, range }
+    }
+
     /// The base with each effect by itself, ranked.
     fn singles(
         &self,
@@ -134,7 +146,7 @@ impl Search<'_, '_> {
 
     /// The candidates of `ranking` among the best pairs of effects.
     fn beside_pairs(&self, ranking: &[Candidate], workers: &impl Workers) -> Vec<Candidate> {
-        let mut extensions = pairs(self.record, self.base, self.effects, self.range, workers);
+        let mut extensions = pairs(self.record, self.base, &self.effects, self.range, workers);
         extensions.extend(ranking.iter().map(Candidate::extension));
         self.compared(extensions)
     }
@@ -187,7 +199,7 @@ impl Search<'_, '_> {
             Some(Extension { effects: vec![effect.spec().id], fit })
         };
         let limit = MUCH_LESS * Self::least_error(extensions);
-        let fitted = workers.map(self.refinements, with).into_iter().flatten();
+        let fitted = workers.map(&self.refinements, with).into_iter().flatten();
         fitted.filter(|one| one.fit.errors.seen.is_some_and(|error| error < limit)).collect()
     }
 

@@ -14,7 +14,7 @@ use super::extension::ids;
 use super::judgement::Refusal;
 use super::misfit::{Errors, Misfit};
 use super::options::{Options, Tried};
-use super::ranking::{Scope, rank};
+use super::ranking::{Scope, rank, rank_free_forms};
 use super::removal::{Exchange, Removal};
 use super::revision::Change;
 use super::verdict::Verdict;
@@ -130,7 +130,13 @@ pub(super) fn add_stepwise(
         }
         let mut judge = Judge::new(record, &step.fit, misfit, options);
         judge.are_levels_few = matched_by_many;
-        let found = judge.judge_all(&mut step.ranking);
+        let mut found = judge.judge_all(&mut step.ranking);
+        if found.is_none() && !step.is_adequate() {
+            let curve = curve_beside(&step.ranking, record, &judge, workers);
+            if let Some((index, ranking)) = curve {
+                (found, step.ranking) = (Some(index), ranking);
+            }
+        }
         if found.is_none() && step.ranking.iter().any(Candidate::is_significant) {
             let refused = step.ranking.iter().find(|candidate| candidate.judgement.is_sound());
             let refinements = refused.map(|refused| refused.effects.clone()).unwrap_or_default();
@@ -165,6 +171,26 @@ pub(super) fn add_stepwise(
             ControlFlow::Break(ended) => return ended,
         };
     }
+}
+
+/// The ranking of `laws`, of which none is added though some show, beside curves of any form, and
+/// the place of the one that is added.
+///
+/// Where such a curve does not come near the noise either, it is not the curve that is missing.
+fn curve_beside(
+    laws: &[Candidate],
+    record: &FitRecord<'_>,
+    judge: &Judge<'_, '_>,
+    workers: &impl Workers,
+) -> Option<(usize, Vec<Candidate>)> {
+    if !laws.iter().any(Candidate::is_significant) {
+        return None;
+    }
+    let floor = sensor_noise(&record.measured().trials).unwrap_or(0.0);
+    let mut ranking = rank_free_forms(record, judge.base, floor, judge.options, laws, workers);
+    let index = judge.judge_all(&mut ranking)?;
+    let comes_near = !judge.misfit.is_far_from_noise(ranking[index].fit.errors);
+    comes_near.then_some((index, ranking))
 }
 
 /// `step` with effects removed or exchanged for as long as that is better; how the search ended

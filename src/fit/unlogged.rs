@@ -9,6 +9,7 @@
 use crate::delay::followed;
 use crate::experiment::{Record, Trial};
 use crate::model::Commands;
+use crate::numerics::median;
 
 /// The changes of the input of each of `trials`, with those from and to `neutral` that are in no log.
 /// Where the output follows the input itself, no level is one of rest.
@@ -50,14 +51,16 @@ fn is_away(trial: &Trial, sample: usize, neutral: f64) -> bool {
 
 /// Whether the output rests at sample `from` and leaves within the hold that begins there.
 ///
-/// It has left when it has made a small part of the way of the hold. Its mean speed until then is
-/// to be much below that over the next half of the way: a joint that moved from the first sample on has
-/// about the same.
+/// It has left when it has made a small part of the way of the hold, beyond the noise. Its mean speed
+/// until then is to be much below that over the next half of the way: a joint that moved from the
+/// first sample on has about the same.
 #[expect(clippy::float_cmp, reason = "a hold ends with any change")]
 fn rests_first(trial: &Trial, from: usize) -> bool {
     /// The part of the way with which it has left, and the one at which its speed is compared.
-    /// Chosen: beyond the noise of most sensors, and before most stops.
+    /// Chosen: less than most first reactions, and before most stops.
     const LEFT: f64 = 0.03;
+    /// Standard deviations of the noise that none of some hundred samples exceeds.
+    const BEYOND: f64 = 4.0;
     const AWAY: f64 = 0.6;
     /// The first speed in parts of the second, at most. Chosen: a rest of three samples in a hold of
     /// seventy has 0.4.
@@ -68,17 +71,29 @@ fn rests_first(trial: &Trial, from: usize) -> bool {
     let hold = trial.input()[from..].iter().take_while(|u| **u == level).count();
     let output = &trial.output()[from..from + hold];
     let (Some(first), Some(last)) = (output.first(), output.last()) else { return false };
+    let left_at = f64::max(LEFT, BEYOND * noise(trial.output()) / (last - first).abs());
     let way = |y: &f64| (y - first) / (last - first);
     let reaches = |part: f64| output.iter().position(|y| way(y) >= part);
-    let is_the_way = output.iter().all(|y| (-LEFT..=1.0 / (1.0 - LEFT)).contains(&way(y)));
-    let (Some(left), Some(away)) = (reaches(LEFT), reaches(AWAY)) else { return false };
+    let is_the_way = output.iter().all(|y| (-left_at..=1.0 + left_at).contains(&way(y)));
+    let (Some(left), Some(away)) = (reaches(left_at), reaches(AWAY)) else { return false };
     let speed = |part: f64, samples: usize| part / samples.max(1) as f64;
-    is_the_way && left > FEWEST && speed(LEFT, left) < SLOWER * speed(AWAY - LEFT, away - left)
+    let is_slower = || speed(left_at, left) < SLOWER * speed(AWAY - left_at, away - left);
+    is_the_way && left_at < AWAY / 2.0 && left > FEWEST && is_slower()
+}
+
+/// Standard deviation of the noise of an output, from its second differences, whose variance is six
+/// times that of white noise; of what is measured in coarse steps it may be zero.
+fn noise(output: &[f64]) -> f64 {
+    /// The standard deviation of a normal variable over the median of its size.
+    const NORMAL: f64 = 1.4826;
+    let bends = output.windows(3).map(|y| (y[0] - 2.0 * y[1] + y[2]).abs()).collect::<Vec<_>>();
+    NORMAL * median(&bends).unwrap_or(0.0) / 6_f64.sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::testing::normals;
     use crate::units::SamplePeriod;
 
     /// A joint that rests for `rest` samples and then moves by 0.1 a sample.
@@ -95,6 +110,20 @@ mod tests {
         assert_eq!(begun(0, 10.0), held, "it moved from the first sample on");
         assert_eq!(begun(70, 10.0), held, "it never moved");
         assert_eq!(begun(6, 7.5), Commands::new(&[7.5; 70], 0.02), "it is at its neutral");
+    }
+
+    #[test]
+    fn noise_hides_no_rest_and_is_none() {
+        let (period, mut normal) = (SamplePeriod::from_seconds(0.02).unwrap(), normals(7));
+        let mut begun_of = |rest: usize| {
+            let output =
+                (0..70_usize).map(|k| 0.1 * k.saturating_sub(rest) as f64 + 0.1 * normal());
+            let trial = Trial::new("1", 0.0, period, vec![10.0; 70], output.collect()).unwrap();
+            with_rests(&trial, 7.5) != Commands::new(&[10.0; 70], 0.02)
+        };
+        let rested = (0..40).filter(|_| begun_of(12)).count();
+        assert!(rested >= 36, "{rested} of 40 that rested");
+        assert_eq!((0..40).filter(|_| begun_of(0)).count(), 0, "it moved from the first sample on");
     }
 
     #[test]

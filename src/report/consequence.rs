@@ -108,8 +108,8 @@ impl Consequence<'_> {
         (!shares.is_empty()).then(|| {
             format!(
                 "In the model, but not to be believed as a name: {}. Each takes less than half of the \
-                 squared error that is there without it, so that it may stand for an effect that is \
-                 not known.",
+                 squared error beyond the noise that is there without it, so that it may stand for an \
+                 effect that is not known.",
                 shares.join(", ")
             )
         })
