@@ -59,9 +59,9 @@ fn rests_first(trial: &Trial, from: usize) -> bool {
     /// The part of the way with which it has left, and the one at which its speed is compared.
     /// Chosen: less than most first reactions, and before most stops.
     const LEFT: f64 = 0.03;
+    const AWAY: f64 = 0.6;
     /// Standard deviations of the noise that none of some hundred samples exceeds.
     const BEYOND: f64 = 4.0;
-    const AWAY: f64 = 0.6;
     /// The first speed in parts of the second, at most. Chosen: a rest of three samples in a hold of
     /// seventy has 0.4.
     const SLOWER: f64 = 0.5;
@@ -122,8 +122,9 @@ mod tests {
             with_rests(&trial, 7.5) != Commands::new(&[10.0; 70], 0.02)
         };
         let rested = (0..40).filter(|_| begun_of(12)).count();
-        assert!(rested >= 36, "{rested} of 40 that rested");
-        assert_eq!((0..40).filter(|_| begun_of(0)).count(), 0, "it moved from the first sample on");
+        let moved = (0..40).filter(|_| begun_of(0)).count();
+        // In noise of one sample's way each fails in a few of a hundred.
+        assert!(rested >= 34 && moved <= 2, "{rested} of 40 that rested, {moved} that moved");
     }
 
     #[test]
