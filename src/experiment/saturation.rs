@@ -1,7 +1,7 @@
 //! Sensors and converters whose range ends before the motion does.
 
 use super::trial::Trial;
-use crate::numerics::{least_change, robust_scale};
+use crate::numerics::{least_change, noise_of_bends};
 
 /// Samples in a row at the end of a range that are no chance.
 const IN_A_ROW: usize = 5;
@@ -57,11 +57,8 @@ pub(crate) fn saturations(trials: &[Trial]) -> Vec<Saturation> {
 /// The standard deviation of the noise of outputs where none of three neighbours `is_at` an end: that of
 /// their second differences, in which a joint that moves evenly has no part.
 fn noise(trials: &[Trial], is_at: impl Fn(f64) -> bool) -> f64 {
-    let bends = trials.iter().flat_map(|trial| trial.output().windows(3));
-    let bends = bends.filter(|three| !three.iter().any(|value| is_at(*value)));
-    let bends: Vec<f64> = bends.map(|three| three[0] - 2.0 * three[1] + three[2]).collect();
-    // Var(e₁ − 2e₂ + e₃) = 6σ².
-    robust_scale(&bends) / 6.0_f64.sqrt()
+    let triples = trials.iter().flat_map(|trial| trial.output().windows(3));
+    noise_of_bends(triples.filter(|three| !three.iter().any(|value| is_at(*value))))
 }
 
 #[cfg(test)]

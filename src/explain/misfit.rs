@@ -98,8 +98,8 @@ impl Misfit {
         /// The part of the squared error that it takes at least. Chosen: of misfits from outside the
         /// catalogue the nearest effect takes less.
         const HALF: f64 = 0.5;
-        /// The noise, in parts of its estimate, at most. Chosen: estimates on records whose noise is
-        /// known are within 5 %.
+        /// The noise, in parts of its estimate, at most. Chosen: that of 132 simulated records was 1.03
+        /// times its estimate at most.
         const NOISE: f64 = 1.1;
         let noise = NOISE * self.noise;
         let beyond = |errors: Errors| (errors.whole.powi(2) - noise.powi(2)).max(0.0);

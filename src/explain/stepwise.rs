@@ -131,11 +131,11 @@ pub(super) fn add_stepwise(
         let mut judge = Judge::new(record, &step.fit, misfit, options);
         judge.are_levels_few = matched_by_many;
         let mut found = judge.judge_all(&mut step.ranking);
-        if found.is_none() && !step.is_adequate() {
-            let curve = curve_beside(&step.ranking, record, &judge, workers);
-            if let Some((index, ranking)) = curve {
-                (found, step.ranking) = (Some(index), ranking);
-            }
+        if found.is_none()
+            && !step.is_adequate()
+            && let Some((index, ranking)) = curve_beside(&step.ranking, record, &judge, workers)
+        {
+            (found, step.ranking) = (Some(index), ranking);
         }
         if found.is_none() && step.ranking.iter().any(Candidate::is_significant) {
             let refused = step.ranking.iter().find(|candidate| candidate.judgement.is_sound());

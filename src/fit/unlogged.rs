@@ -9,38 +9,43 @@
 use crate::delay::followed;
 use crate::experiment::{Record, Trial};
 use crate::model::Commands;
-use crate::numerics::median;
+use crate::numerics::noise_of_bends;
 
 /// The changes of the input of each of `trials`, with those from and to `neutral` that are in no log.
 /// Where the output follows the input itself, no level is one of rest.
 pub(super) fn commands(trials: &Record, neutral: f64) -> Vec<Commands> {
-    let has_rest = |trial: &Trial| {
-        let gaps = trial.unlogged().iter().map(|gap| gap.end);
-        gaps.chain([0]).any(|from| rests(trial, from, neutral))
-    };
+    let rests: Vec<Vec<usize>> = trials.iter().map(|trial| rests(trial, neutral)).collect();
     // What the output follows takes a look at the whole record.
-    if !trials.iter().any(has_rest) || followed(trials).is_some() {
+    if rests.iter().all(Vec::is_empty) || followed(trials).is_some() {
         return trials.iter().map(logged).collect();
     }
-    trials.iter().map(|trial| with_rests(trial, neutral)).collect()
+    let pairs = trials.iter().zip(&rests);
+    pairs.map(|(trial, rests)| with_rests(trial, rests, neutral)).collect()
 }
 
 fn logged(trial: &Trial) -> Commands {
     Commands::new(trial.input(), trial.period().seconds())
 }
 
-fn with_rests(trial: &Trial, neutral: f64) -> Commands {
+fn with_rests(trial: &Trial, rests: &[usize], neutral: f64) -> Commands {
     let mut commands = logged(trial);
-    for gap in trial.unlogged().iter().filter(|gap| rests(trial, gap.end, neutral)) {
+    for gap in trial.unlogged().iter().filter(|gap| rests.contains(&gap.end)) {
         let from_s = gap.start as f64 * trial.period().seconds();
         commands = commands.with_rest_at(neutral, from_s);
     }
-    if rests(trial, 0, neutral) { commands.begun_at(neutral) } else { commands }
+    if rests.contains(&0) { commands.begun_at(neutral) } else { commands }
 }
 
-/// Whether the joint rests at a sample though the input is not `neutral` there.
-fn rests(trial: &Trial, sample: usize, neutral: f64) -> bool {
-    is_away(trial, sample, neutral) && rests_first(trial, sample)
+/// The first sample of the trial, and those behind gaps, at which the joint rests though the input is
+/// not `neutral` there.
+fn rests(trial: &Trial, neutral: f64) -> Vec<usize> {
+    let gaps = trial.unlogged().iter().map(|gap| gap.end);
+    let mut away = gaps.chain([0]).filter(|from| is_away(trial, *from, neutral)).peekable();
+    if away.peek().is_none() {
+        return Vec::new();
+    }
+    let noise = noise_of_bends(trial.output().windows(3));
+    away.filter(|from| rests_first(trial, *from, noise)).collect()
 }
 
 /// Whether the input is not `neutral` at a sample.
@@ -55,7 +60,7 @@ fn is_away(trial: &Trial, sample: usize, neutral: f64) -> bool {
 /// until then is to be much below that over the next half of the way: a joint that moved from the
 /// first sample on has about the same.
 #[expect(clippy::float_cmp, reason = "a hold ends with any change")]
-fn rests_first(trial: &Trial, from: usize) -> bool {
+fn rests_first(trial: &Trial, from: usize, noise: f64) -> bool {
     /// The part of the way with which it has left, and the one at which its speed is compared.
     /// Chosen: less than most first reactions, and before most stops.
     const LEFT: f64 = 0.03;
@@ -71,23 +76,18 @@ fn rests_first(trial: &Trial, from: usize) -> bool {
     let hold = trial.input()[from..].iter().take_while(|u| **u == level).count();
     let output = &trial.output()[from..from + hold];
     let (Some(first), Some(last)) = (output.first(), output.last()) else { return false };
-    let left_at = f64::max(LEFT, BEYOND * noise(trial.output()) / (last - first).abs());
+    let left_at = f64::max(LEFT, BEYOND * noise / (last - first).abs());
+    // So much noise leaves too little of the way to compare speeds in.
+    if left_at >= AWAY / 2.0 {
+        return false;
+    }
     let way = |y: &f64| (y - first) / (last - first);
     let reaches = |part: f64| output.iter().position(|y| way(y) >= part);
     let is_the_way = output.iter().all(|y| (-left_at..=1.0 + left_at).contains(&way(y)));
     let (Some(left), Some(away)) = (reaches(left_at), reaches(AWAY)) else { return false };
     let speed = |part: f64, samples: usize| part / samples.max(1) as f64;
-    let is_slower = || speed(left_at, left) < SLOWER * speed(AWAY - left_at, away - left);
-    is_the_way && left_at < AWAY / 2.0 && left > FEWEST && is_slower()
-}
-
-/// Standard deviation of the noise of an output, from its second differences, whose variance is six
-/// times that of white noise; of what is measured in coarse steps it may be zero.
-fn noise(output: &[f64]) -> f64 {
-    /// The standard deviation of a normal variable over the median of its size.
-    const NORMAL: f64 = 1.4826;
-    let bends = output.windows(3).map(|y| (y[0] - 2.0 * y[1] + y[2]).abs()).collect::<Vec<_>>();
-    NORMAL * median(&bends).unwrap_or(0.0) / 6_f64.sqrt()
+    let is_slower = speed(left_at, left) < SLOWER * speed(AWAY - left_at, away - left);
+    is_the_way && left > FEWEST && is_slower
 }
 
 #[cfg(test)]
@@ -102,9 +102,14 @@ mod tests {
         Trial::new("1", 0.0, SamplePeriod::from_seconds(0.02).unwrap(), input, output).unwrap()
     }
 
+    /// The commands of a trial at rest at 7.5.
+    fn found(trial: &Trial) -> Commands {
+        with_rests(trial, &rests(trial, 7.5), 7.5)
+    }
+
     #[test]
     fn a_joint_that_leaves_its_rest_within_a_hold_was_at_its_neutral() {
-        let begun = |rest, input| with_rests(&trial(rest, vec![input; 70]), 7.5);
+        let begun = |rest, input| found(&trial(rest, vec![input; 70]));
         let held = Commands::new(&[10.0; 70], 0.02);
         assert_eq!(begun(6, 10.0), held.clone().begun_at(7.5));
         assert_eq!(begun(0, 10.0), held, "it moved from the first sample on");
@@ -119,7 +124,7 @@ mod tests {
             let output =
                 (0..70_usize).map(|k| 0.1 * k.saturating_sub(rest) as f64 + 0.1 * normal());
             let trial = Trial::new("1", 0.0, period, vec![10.0; 70], output.collect()).unwrap();
-            with_rests(&trial, 7.5) != Commands::new(&[10.0; 70], 0.02)
+            found(&trial) != Commands::new(&[10.0; 70], 0.02)
         };
         let rested = (0..40).filter(|_| begun_of(12)).count();
         let moved = (0..40).filter(|_| begun_of(0)).count();
@@ -136,9 +141,9 @@ mod tests {
             output.push(0.1 * k.min(40) as f64 - 0.1 * back);
         }
         let whole = Trial::new("1", 0.0, period, levels.clone(), output).unwrap();
-        assert_eq!(with_rests(&whole, 7.5), Commands::new(&levels, 0.02));
+        assert_eq!(found(&whole), Commands::new(&levels, 0.02));
         let gap = whole.with_unlogged(std::iter::once(20..40).collect());
         let expected = Commands::new(&levels, 0.02).with_rest_at(7.5, 0.4);
-        assert_eq!(with_rests(&gap, 7.5), expected);
+        assert_eq!(found(&gap), expected);
     }
 }

@@ -34,4 +34,6 @@ pub(crate) use rounding::{
 };
 pub use statistics::{RankTest, mann_whitney, median, quantile, ranks, spearman};
 pub(crate) use statistics::{chi_square_tail, fisher_tail, holm, normal_below, student_quantile};
-pub(crate) use statistics::{least_change, noise_of_differences, quantile_of, robust_scale};
+pub(crate) use statistics::{
+    least_change, noise_of_bends, noise_of_differences, quantile_of, robust_scale,
+};

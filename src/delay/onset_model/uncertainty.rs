@@ -16,7 +16,7 @@
 
 use super::search::{Candidate, Search};
 use super::windows::Onset;
-use crate::numerics::{median, quantile};
+use crate::numerics::{median, noise_of_bends, quantile};
 
 /// What the residuals of all windows of a joint say.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,11 +37,7 @@ pub(super) fn sensor_noise<'a>(outputs: &(impl Iterator<Item = &'a [f64]> + Clon
     const REPEATED: f64 = 0.05;
     /// Part of the changes that may be smaller than a quantum, by the noise of numbers.
     const QUANTUM: f64 = 0.1;
-    let differences = outputs.clone().flat_map(|y| y.windows(3));
-    let second: Vec<f64> = differences.map(|y| (y[0] - 2.0 * y[1] + y[2]).abs()).collect();
-    // Of normal noise half of the values are within 0.6745 standard deviations; y₀ − 2y₁ + y₂ has
-    // √6 of them.
-    let noise = median(&second).unwrap_or(0.0) / (0.6745 * 6.0_f64.sqrt());
+    let noise = noise_of_bends(outputs.clone().flat_map(|y| y.windows(3)));
     let pairs = || outputs.clone().flat_map(|y| y.windows(2));
     #[expect(clippy::float_cmp, reason = "a repeated value")]
     let repeated = pairs().filter(|y| y[0] == y[1]).count() as f64;

@@ -115,6 +115,14 @@ fn scale_of_distances(mut distances: Vec<f64>) -> f64 {
     *distances.select_nth_unstable_by(middle, f64::total_cmp).1 / NORMAL
 }
 
+/// The standard deviation of the noise of a series, from the second differences of `triples` of
+/// neighbours, in which an even motion has no part: `Var(e₁ − 2e₂ + e₃) = 6σ²`. Of what is measured in
+/// coarse steps it may be zero.
+pub(crate) fn noise_of_bends<'a>(triples: impl Iterator<Item = &'a [f64]>) -> f64 {
+    let bends = triples.map(|y| (y[0] - 2.0 * y[1] + y[2]).abs());
+    scale_of_distances(bends.collect()) / 6.0_f64.sqrt()
+}
+
 /// The standard deviation of the noise of several series, from differences of neighbours, which
 /// leave little of a motion.
 pub(crate) fn noise_of_differences<'a>(series: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
