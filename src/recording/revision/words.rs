@@ -193,18 +193,17 @@ const HOW: &str = "`sample` or `time`: choose it at the bottom.";
 /// Which revisions did not lower the error on what was not fitted.
 fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
     let revisions: Vec<(u32, &Revision)> = improved.numbered().collect();
-    let is_without = |before: &Revision, after: &Revision| {
-        if matches!(after.change, Change::Replaced { .. }) {
-            return false;
-        }
+    let gained = |before: &Revision, after: &Revision| {
         let error = |of: &Revision| of.comparison.validation.map(|error| error.rmse);
-        let gained = error(before).zip(error(after)).map(|(before, after)| 1.0 - after / before);
+        error(before).zip(error(after)).map(|(before, after)| 1.0 - after / before)
+    };
+    let is_without = |before: &Revision, after: &Revision| {
         // What left the model or was exchanged for a simpler effect is to gain nothing.
         let least = if matches!(after.change, Change::Added(_)) { GAIN } else { -GAIN };
-        gained.is_some_and(|gained| gained < least)
+        gained(before, after).is_some_and(|gained| gained < least)
     };
-    let pairs = revisions.iter().zip(revisions.iter().skip(1));
-    let without = pairs.filter(|((_, before), (_, after))| is_without(before, after));
+    let pairs = || revisions.iter().zip(revisions.iter().skip(1));
+    let without = pairs().filter(|((_, before), (_, after))| is_without(before, after));
     let numbers: Vec<String> = without.map(|(_, (number, _))| number.to_string()).collect();
     let not_fallen = match numbers.as_slice() {
         [] => None,
@@ -216,8 +215,11 @@ fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
             several.join(", ")
         )),
     };
-    let exchanges = revisions.iter().filter_map(|(number, revision)| match revision.change {
-        Change::Replaced { old, new } => Some(format!(
+    let fits_alike = |before: &Revision, after: &Revision| {
+        gained(before, after).is_none_or(|gained| gained.abs() <= GAIN)
+    };
+    let exchanges = pairs().filter_map(|((_, before), (number, after))| match after.change {
+        Change::Replaced { old, new } if fits_alike(before, after) => Some(format!(
             "revision {number}, which exchanges {old} for {new}, which fits about as well"
         )),
         _ => None,
