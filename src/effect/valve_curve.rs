@@ -95,13 +95,13 @@ impl Effect for ValveCurve {
              at_far = 2 * min(min(second, third), 0.25 * (second + third))
              at_end = min(max(1.5 * third - 0.5 * second, 0), 2 * third)
              along = if(size < 1, size, if(size < 2, size - 1, size - 2))
-             from = if(size < 1, 0, if(size < 2, low, far))
+             base = if(size < 1, 0, if(size < 2, low, far))
              rise = if(size < 1, low, if(size < 2, second, third))
              left = if(size < 1, at_zero, if(size < 2, at_near, at_far))
              right = if(size < 1, at_near, if(size < 2, at_far, at_end))
              bend = 3 * rise - 2 * left - right
              twist = left + right - 2 * rise
-             cubic = from + along * (left + along * (bend + along * twist))
+             cubic = base + along * (left + along * (bend + along * twist))
              part = if(size > 3, 1 + (size - 3) * at_end, cubic)
              out = if(reach > 0, sign(signal) * factor * reach * part, signal)",
         ))

@@ -15,6 +15,24 @@ pub enum Verdict {
     Unexplained,
 }
 
+impl Verdict {
+    /// Its id in results.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Adequate => "adequate",
+            Self::MissingEffect => "missing_effect",
+            Self::Unexplained => "unexplained",
+        }
+    }
+
+    /// The verdict of this id.
+    pub fn by_id(id: &str) -> Option<Self> {
+        [Self::Adequate, Self::MissingEffect, Self::Unexplained]
+            .into_iter()
+            .find(|verdict| verdict.id() == id)
+    }
+}
+
 impl Explanation {
     /// The candidate that is proposed or, where none is, the one that leaves least.
     pub fn proposed(&self) -> Option<&Candidate> {

@@ -12,7 +12,6 @@ pub(crate) mod course;
 pub(crate) mod delay_against;
 pub(crate) mod delay_levels;
 pub(crate) mod error_share;
-pub(crate) mod ladder;
 mod panel;
 mod role;
 pub(crate) mod segment;

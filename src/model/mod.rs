@@ -20,7 +20,7 @@ mod simulate;
 mod start;
 
 pub use arrivals::{Arrival, Arrivals, Commands};
-pub use file::{ModelError, ModelFile, Revision};
+pub use file::{Fitted, FittedParameter, LogHash, ModelError, ModelFile, Revision, RevisionErrors};
 pub use joint_model::{Component, JointModel, Value};
 pub use motion::{Restart, Signals, Surroundings};
 pub(crate) use neutral::coded_neutral;

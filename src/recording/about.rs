@@ -11,7 +11,7 @@ use super::markdown::{plain, prose};
 use super::origin::made_from;
 use super::paths::ABOUT;
 use super::recorded::Recording;
-use crate::figure::ladder::judged;
+use crate::recording::rungs::judged;
 use crate::report::{
     EstimatedJoint, JointSummary, LEVEL_HEADER, ReviewCount, SUMMARY_HEADER, change_in_words,
     chosen_line, dead_time_sentences, doubtful_lines, kind_sentence, level_cells, settings_rows,

@@ -51,6 +51,7 @@ mod preview;
 mod recorded;
 mod revision;
 mod rows;
+mod rungs;
 mod scatter;
 mod segment_view;
 mod shaded;

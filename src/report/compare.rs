@@ -1,13 +1,12 @@
 //! `compare` as text.
 
+use super::ladder::{errors_of, figures};
 use super::parameters::model_text;
 use super::text_table::TextTable;
-use crate::diagnosis::{Comparison, ErrorFigures, ModelDifference, RawErrors, sensor_noise};
+use crate::diagnosis::{Comparison, ModelDifference};
 use crate::experiment::Joint;
 use crate::fit::Horizon;
-use crate::wording::{
-    self, correlation_sentences, effects_text, model_difference_sentences, with_unit,
-};
+use crate::wording::{self, correlation_sentences, effects_text, model_difference_sentences};
 
 /// A joint, its model, and how the two compare.
 #[derive(Clone, Copy, Debug)]
@@ -156,7 +155,7 @@ fn failure_sentences(compared: &ComparedJoint<'_>) -> Vec<String> {
 fn row(compared: &ComparedJoint<'_>) -> [String; 9] {
     let effects = effects_text(&compared.comparison.fit.model);
     let [training, validation, raw, free, fit, noise, lack] =
-        figures(compared.joint, compared.comparison);
+        figures(compared.joint, &errors_of(compared.comparison));
     [compared.joint.name.clone(), effects, training, validation, raw, free, fit, noise, lack]
 }
 
@@ -166,19 +165,4 @@ pub(super) fn errors_note(horizon: &str) -> String {
         "root-mean-square errors, {horizon}; training and validation without the mean of each run, \
          raw with it (validation, from the measured output), free run from the start of each trial"
     )
-}
-
-/// Error on both parts, raw and of a free run, fit in percent, noise of the sensor and lack of fit,
-/// for a table.
-pub(super) fn figures(joint: &Joint, comparison: &Comparison) -> [String; 7] {
-    let Comparison { training, validation, lack_of_fit, .. } = comparison;
-    let dash = || "-".to_owned();
-    let output = |value: f64| with_unit(value, joint.output_unit.as_deref());
-    let rmse = |error: &Option<ErrorFigures>| error.map_or_else(dash, |error| output(error.rmse));
-    let percent = validation.and_then(|error| error.fit_text()).unwrap_or_else(dash);
-    let verdict = lack_of_fit.map_or_else(dash, wording::lack_of_fit);
-    let noise = sensor_noise(&joint.trials).map_or_else(dash, output);
-    let raw = |errors: RawErrors| errors.judged().map_or_else(dash, output);
-    let (restarted, free) = (raw(comparison.raw), raw(comparison.free));
-    [rmse(training), rmse(validation), restarted, free, percent, noise, verdict]
 }

@@ -2,11 +2,11 @@
 
 #[cfg(feature = "rrd")]
 use super::compare::ComparedJoint;
-use super::compare::{errors_note, figures, horizons};
+use super::compare::{errors_note, horizons};
 use super::conclusion::{Conclusion, Passage, Topic};
 use super::finding::Finding;
+use super::ladder::{History, LadderRow, change_in_words, errors_of, figures, ladder_table};
 use super::parameters::model_text;
-use super::text_table::TextTable;
 #[cfg(feature = "rrd")]
 use crate::diagnosis::Comparison;
 #[cfg(feature = "rrd")]
@@ -15,7 +15,7 @@ use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
 #[cfg(feature = "rrd")]
 use crate::model::Component;
-use crate::wording::effects_text;
+use crate::wording::effect_ids;
 #[cfg(feature = "rrd")]
 use crate::wording::measure;
 
@@ -28,6 +28,8 @@ pub struct ImprovedJoint<'a> {
     pub revisions: &'a [Revision],
     /// Number of the first of them.
     pub first_revision: u32,
+    /// How the model that was given came about.
+    pub history: History<'a>,
     /// Whether it was stopped before it came to an end.
     pub interrupted: bool,
     /// Whether more is missing, and as many effects were added as are allowed.
@@ -39,8 +41,8 @@ impl<'a> ImprovedJoint<'a> {
     pub fn of(finding: Finding<'a>, revisions: &'a [Revision]) -> Self {
         let later = u32::try_from(revisions.len().saturating_sub(1)).unwrap_or(u32::MAX);
         let first_revision = finding.compared.revision.saturating_sub(later);
-        let (interrupted, reached_limit) = (false, false);
-        Self { finding, revisions, first_revision, interrupted, reached_limit }
+        let (interrupted, reached_limit, history) = (false, false, History::default());
+        Self { finding, revisions, first_revision, history, interrupted, reached_limit }
     }
 
     /// The revisions with their numbers.
@@ -150,37 +152,26 @@ impl<'a> ImprovedJoint<'a> {
         }
     }
 
+    /// The ladder of errors: the revisions of the model's history, and those made now.
+    pub(super) fn ladder(&self) -> Vec<LadderRow> {
+        self.history.rows(self.first_revision, self.revisions)
+    }
+
+    /// Effects that the last revision has, and the first of the ladder has not.
+    pub(super) fn came(&self) -> Vec<&'static str> {
+        let first = self.history.first_effects(self.revisions);
+        let own = effect_ids(&self.finding.compared.comparison.fit.model);
+        own.into_iter().filter(|id| !first.contains(id)).collect()
+    }
+
     fn text(&self) -> String {
         let conclusion = self.conclusion();
         let stopped = if self.interrupted { " (stopped before the end)" } else { "" };
-        let ladder = self.ladder();
+        let ladder = ladder_table(self.finding.compared.joint, &self.ladder());
         let compared = &self.finding.compared;
         let model = model_text(compared.joint, compared.comparison, None);
         let headline = &conclusion.headline;
         format!("{headline}{stopped}\n{ladder}\n\n{}\n{model}\n", conclusion.printed())
-    }
-
-    /// The ladder of errors: a row per revision.
-    pub(super) fn ladder(&self) -> TextTable {
-        let header = [
-            "revision",
-            "change",
-            "training",
-            "validation",
-            "raw",
-            "free run",
-            "fit",
-            "noise",
-            "lack of fit",
-        ];
-        let mut table = TextTable::new(header, &[2, 3, 4, 5, 6, 7]);
-        for (number, revision) in self.numbered() {
-            let [training, validation, raw, free, fit, noise, lack] =
-                figures(self.finding.compared.joint, &revision.comparison);
-            let (number, change) = (number.to_string(), change_in_words(revision));
-            table.row([number, change, training, validation, raw, free, fit, noise, lack]);
-        }
-        table
     }
 }
 
@@ -190,20 +181,10 @@ fn is_finer(new: &str, old: &str) -> bool {
     by_id(new).is_some_and(|effect| effect.spec().refines == Some(old))
 }
 
-/// `+ dead_band`; the first revision by what it has.
-pub(crate) fn change_in_words(revision: &Revision) -> String {
-    match revision.change {
-        Change::Start => effects_text(&revision.comparison.fit.model),
-        Change::Added(id) => format!("+ {id}"),
-        Change::Removed(id) => format!("− {id}"),
-        Change::Replaced { old, new } => format!("+ {new}, − {old}"),
-    }
-}
-
 /// One line on a revision, for somebody who waits: `boom: revision 1, + dead_band:
 /// validation error 0.06 deg`.
 pub(crate) fn revision_line(joint: &Joint, number: u32, revision: &Revision) -> String {
-    let [training, validation, ..] = figures(joint, &revision.comparison);
+    let [training, validation, ..] = figures(joint, &errors_of(&revision.comparison));
     let change = change_in_words(revision);
     let error = match revision.comparison.validation {
         Some(_) => format!("validation error {validation}"),

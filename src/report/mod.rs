@@ -23,6 +23,7 @@ mod first_order;
 mod folder;
 mod improve;
 mod json;
+mod ladder;
 mod lookup;
 mod model_delay;
 mod page;
@@ -79,12 +80,16 @@ pub(crate) use explain::explain_text;
 pub use finding::Finding;
 pub(crate) use folder::{FolderReport, LogResult};
 pub use improve::ImprovedJoint;
-pub(crate) use improve::{change_in_words, improve_text, revision_line};
+pub(crate) use improve::{improve_text, revision_line};
 pub(crate) use json::Header;
 pub(crate) use json::{
     AddJson, ColumnsJson, CompareJson, DesignJson, EffectsJson, EstimateJson, ExplainJson,
     FolderJson, ImproveJson, ReportJson, SweepJson,
 };
+pub use ladder::History;
+#[cfg(feature = "rrd")]
+pub(crate) use ladder::change_in_words;
+pub(crate) use ladder::errors_of;
 pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{Document, Heading, RecordingFile, Report, report_text};
 #[cfg(feature = "rrd")]

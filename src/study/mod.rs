@@ -24,7 +24,7 @@ pub use difference::{JointDifferences, JointResult, OtherResult, StepPair, StepR
 pub use earlier::EarlierError;
 pub(crate) use estimate::estimate_each;
 pub use estimate::{JointEstimate, estimate_joints};
-pub(crate) use models::{OfJoints, others_of};
+pub(crate) use models::{Known, OfJoints, explain_unknown_joints, others_of};
 pub use models::{
     add_to_joints, compare_joints, explain_joints, improve_joints, know_joints, suspect_joints,
 };

@@ -12,7 +12,9 @@ use crate::design::{FreeRunError, Suspects, SuspectsError, Uncertain};
 use crate::diagnosis::{Comparison, compare, compare_unfitted, sensor_noise};
 use crate::effect::Effect;
 use crate::experiment::{Joint, Other, Supply, Trial};
-use crate::explain::{AddError, Addition, Explanation, Improvement, Options, Revision, Workers};
+use crate::explain::{
+    AddError, Addition, Attribution, Explanation, Improvement, Options, Revision, Verdict, Workers,
+};
 use crate::explain::{add, explain, improve};
 use crate::fit::{Fit, FitError, FitRecord, Horizon, Split};
 use crate::model::JointModel;
@@ -55,6 +57,47 @@ pub fn explain_joints<'a>(
         explain(record, fit, options, &watched.workers(workers))
     };
     for_each_joint((joints, estimates), models, watched, workers, (best_fit, work))
+}
+
+/// What is known of a model since it was made from the very logs that are read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Known {
+    /// The root mean square error by which it was judged, in output units.
+    pub(crate) rmse: f64,
+    /// The verdict on it.
+    pub(crate) verdict: Verdict,
+}
+
+/// As [`explain_joints`], but for joints whose model is `known` and has the error that it had: it
+/// is compared as it is, and nothing is fitted.
+pub(crate) fn explain_unknown_joints(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    known: impl Fn(&Joint) -> Option<Known> + Sync,
+    watched: Watched<'_>,
+    options: &Options,
+    workers: &impl Workers,
+) -> OfJoints<Explanation> {
+    /// By how much of itself the error may differ: what the order of a sum makes of it.
+    const SAME: f64 = 1e-6;
+    let as_known = |record: &FitRecord<'_>, starts: &[JointModel]| {
+        let known = known(record.joint())?;
+        let base = compare_unfitted(record, as_it_is(record, starts)?.ok()?);
+        let is_same = (base.judged()?.rmse - known.rmse).abs() <= SAME * known.rmse;
+        let (verdict, attribution) = (known.verdict, Attribution::default());
+        is_same.then(|| Explanation { base, verdict, ranking: Vec::new(), attribution })
+    };
+    let prepare = |record: &FitRecord<'_>, starts: &[JointModel]| match as_known(record, starts) {
+        Some(explanation) => Some(Ok(Err(explanation))),
+        None => Some(best_fit(record, starts)?.map(Ok)),
+    };
+    let work = |_: usize, record: &FitRecord<'_>, prepared: Result<Fit, Explanation>| match prepared
+    {
+        Ok(fit) => explain(record, fit, options, &watched.workers(workers)),
+        Err(explanation) => explanation,
+    };
+    for_each_joint((joints, estimates), models, watched, workers, (prepare, work))
 }
 
 /// Adds `effect` to each joint's model: see [`add`].

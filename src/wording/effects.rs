@@ -9,6 +9,10 @@ pub(crate) fn effect_ids(model: &JointModel) -> Vec<&'static str> {
 
 /// `dead_band + stiction`; a model without effects is an integrator.
 pub(crate) fn effects_text(model: &JointModel) -> String {
-    let ids = effect_ids(model);
+    effects_named(&effect_ids(model))
+}
+
+/// As [`effects_text`], of the ids of effects.
+pub(crate) fn effects_named(ids: &[&str]) -> String {
     if ids.is_empty() { "integrator".to_owned() } else { ids.join(" + ") }
 }

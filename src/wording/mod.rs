@@ -20,7 +20,7 @@ pub(crate) use difference::{
 #[cfg(feature = "rrd")]
 pub(crate) use doubt::{DOUBT_MEANS, doubt_in_short, doubtful_sentence};
 pub(crate) use doubt::{doubt_percent, doubt_sentence};
-pub(crate) use effects::{effect_ids, effects_text};
+pub(crate) use effects::{effect_ids, effects_named, effects_text};
 pub(crate) use legible::legible;
 pub(crate) use misfit::{correlation_sentences, lack_of_fit};
 pub(crate) use model_difference::model_difference_sentences;

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use crate::desk::{Desk, assert_fields, banded, fields, joint, number};
 use crate::sample::size;
 use serde_json::{Value, json};
+use sha2::{Digest as _, Sha256};
 use tauscope::model::ModelFile;
 use tauscope::synthetic::effects::OilColumn;
 use tauscope::synthetic::{CylinderSpec, DelayLaw, InputSpec, JointSpec};
@@ -25,7 +26,7 @@ fn assert_history_is_that_of(desk: &Desk, file: &str, joint: &Value) {
     for (entry, revision) in history.iter().zip(&revisions[1..]) {
         assert_eq!(json!(entry.revision), revision["revision"]);
         assert_eq!(entry.added.as_deref(), revision["added"].as_str());
-        assert_eq!(entry.validation_rmse, revision["error"]["validation"]["rmse"].as_f64());
+        assert_eq!(entry.errors.validation_rmse, revision["error"]["validation"]["rmse"].as_f64());
     }
     let last = file.joint(name).unwrap();
     let effects: Vec<_> = last.components().iter().map(|c| c.effect().spec().id).collect();
@@ -345,4 +346,33 @@ fn a_speed_that_settles_is_a_first_order_with_dead_time() {
     assert_eq!(motor["verdict"], "adequate");
     let words = motor["in_words"].as_str().unwrap();
     assert!(words.contains("first order with dead time, of time constant 0.299 s"), "{words}");
+}
+
+#[test]
+fn the_model_file_says_what_its_numbers_were_fitted_to() {
+    let desk = Desk::with(vec![banded("boom")]);
+    let json = desk.json("improve log.csv --write boom.toml --effects dead_band", 0);
+    let file = ModelFile::read(&desk.folder.path().join("boom.toml")).unwrap();
+    let (boom, fitted) = (&json["joints"][0], file.fitted("boom").unwrap());
+    let hash = Sha256::digest(std::fs::read(desk.folder.path().join("log.csv")).unwrap());
+    let hash: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
+    let logs: Vec<_> = fitted.logs.iter().map(|log| (log.file.as_str(), &log.sha256)).collect();
+    assert_eq!(logs, [("log.csv", &hash)]);
+    assert_eq!(json!(fitted.verdict), boom["verdict"]);
+    let start = fitted.start.as_ref().unwrap();
+    assert_eq!(json!(start.train_rmse), boom["revisions"][0]["error"]["train"]["rmse"]);
+    let parameters = boom["parameters"].as_object().unwrap();
+    assert_eq!(fitted.parameters.len(), parameters.len());
+    for (name, parameter) in parameters {
+        let known = &fitted.parameters[name];
+        assert_eq!(json!(known.std_error), parameter["std_error"], "{name}");
+        assert_eq!(json!(known.unit), parameter["unit"], "{name}");
+    }
+    // One effect more is another fit, and the errors at first stay.
+    desk.run("add actuator_lag log.csv --model boom.toml --quiet");
+    let file = ModelFile::read(&desk.folder.path().join("boom.toml")).unwrap();
+    let grown = file.fitted("boom").unwrap();
+    assert_eq!(grown.start, fitted.start);
+    assert!(grown.parameters.contains_key("actuator_lag.time_constant"), "{grown:?}");
+    assert_eq!(grown.verdict, None, "what is still missing was not looked for");
 }

@@ -7,7 +7,9 @@ use proptest::prelude::*;
 use tauscope::effect::expression::define;
 use tauscope::effect::{Definition, OwnParameter};
 use tauscope::effect::{Effect, Placebo, REGISTRY, Stage, find};
-use tauscope::model::{Component, JointModel, ModelError, ModelFile, Revision, Value};
+use tauscope::model::{
+    Component, JointModel, ModelError, ModelFile, Revision, RevisionErrors, Value,
+};
 
 fn parse(text: &str) -> ModelFile {
     ModelFile::parse(text, Path::new("mine.toml")).unwrap()
@@ -19,7 +21,8 @@ fn component(id: &str, values: &[f64]) -> Component {
 }
 
 fn added(revision: u32, id: &str) -> Revision {
-    Revision { revision, added: Some(id.to_owned()), validation_rmse: Some(0.25), ..<_>::default() }
+    let errors = RevisionErrors { validation_rmse: Some(0.25), ..<_>::default() };
+    Revision { revision, added: Some(id.to_owned()), errors, ..<_>::default() }
 }
 
 /// The lines of `new` that `old` has not, and those of `old` that `new` has not.
@@ -370,7 +373,7 @@ fn any_revision() -> impl Strategy<Value = Revision> {
         revision,
         added,
         removed,
-        validation_rmse,
+        errors: RevisionErrors { validation_rmse, ..<_>::default() },
     })
 }
 

@@ -130,12 +130,32 @@ fn a_model_is_reported_with_its_ladder() {
     {
         assert!(text.contains(part), "no {part}");
     }
+}
 
+#[test]
+fn a_model_that_improve_made_is_reported_from_its_file() {
+    let desk = Desk::with(vec![banded("boom")]);
     desk.run("improve log.csv --write boom.toml --quiet --effects dead_band,actuator_lag");
-    let json = desk.json("report log.csv --model boom.toml -o given.html", 0);
-    let sentence = json["joints"][0]["sentence"].as_str().unwrap();
-    assert!(sentence.contains("integrator + dead_band, error"), "{sentence}");
-    assert!(words(parsed(&desk.read("given.html")).root_element()).contains("Earlier revisions"));
+    let of_report = |file: &str| {
+        let json = desk.json(&format!("report log.csv --model {file} -o given.html"), 0);
+        let sentence = json["joints"][0]["sentence"].as_str().unwrap().to_owned();
+        (sentence, words(parsed(&desk.read("given.html")).root_element()))
+    };
+    let (sentence, page) = of_report("boom.toml");
+    assert!(sentence.contains("dead_band was missing; with it"), "{sentence}");
+    for part in ["0: integrator", "1: + dead_band", "as it is in its file"] {
+        assert!(page.contains(part), "no {part}");
+    }
+    assert!(!page.contains("Effects that were tried"), "something was fitted");
+
+    // With another value it is not the model whose errors the file knows.
+    let text = desk.read("boom.toml");
+    let (before, gain) = text.split_once("gain = ").unwrap();
+    let (_, behind) = gain.split_once(',').unwrap();
+    desk.write("other.toml", &format!("{before}gain = 5.0,{behind}"));
+    let (sentence, page) = of_report("other.toml");
+    assert!(sentence.contains("dead_band was missing; with it"), "{sentence}");
+    assert!(!page.contains("as it is in its file"), "it was to be fitted");
 }
 
 #[test]
@@ -278,7 +298,7 @@ fn a_browser_has_nothing_to_complain_of() {
     );
     let (page, profile) = (desk.folder.path().join("r.html"), desk.folder.path().join("profile"));
     let (dom, complaints) = shown(browser, &page, &profile, &["--dump-dom"]);
-    assert!(dom.contains("Delays in log.csv") && dom.contains("</svg>"), "{complaints}");
+    assert!(dom.contains("Delays and models in log.csv") && dom.contains("</svg>"), "{complaints}");
     assert!(!complaints.contains("CONSOLE"), "{complaints}");
 
     // The check can fail: a page that complains is heard.

@@ -2,11 +2,11 @@
 
 use crate::batch::Threads;
 use crate::diagnosis::Comparison;
-use crate::experiment::Joint;
+use crate::experiment::{Joint, Source};
 use crate::explain::{Addition, Change, Revision as Step, Verdict};
-use crate::model::{ModelFile, Revision};
+use crate::model::ModelFile;
+use crate::report::add_text;
 use crate::report::{AddJson, AddedJoint, ComparedJoint, Finding, ImprovedJoint};
-use crate::report::{add_text, gone};
 use crate::study::{Mode, add_to_joints};
 use clap::Args as ClapArgs;
 
@@ -15,7 +15,7 @@ use crate::cli::args::{
 };
 use crate::cli::exit::Completion;
 use crate::cli::output::check_outputs;
-use crate::cli::run::{Session, Study, outcomes};
+use crate::cli::run::{Session, Study, entry, outcomes, with_fit};
 
 /// Add an effect to a model, and write its next revision
 ///
@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let (joints, failures) = outcomes(study.experiment(), &study.result, added)?;
     let mut revised = file.clone();
     for joint in &joints {
-        revised = with_revision(&revised, joint)?;
+        revised = with_revision(&revised, joint, &study.experiment().sources)?;
     }
     if args.output.is_recorded() {
         let names: Vec<_> = joints.iter().map(revision_names).collect();
@@ -129,14 +129,15 @@ fn grown<'a>(added: &AddedJoint<'a>, revisions: &'a [Step]) -> ImprovedJoint<'a>
     ImprovedJoint::of(finding, revisions)
 }
 
-fn with_revision(file: &ModelFile, added: &AddedJoint<'_>) -> anyhow::Result<ModelFile> {
+fn with_revision(
+    file: &ModelFile,
+    added: &AddedJoint<'_>,
+    sources: &[Source],
+) -> anyhow::Result<ModelFile> {
     let Addition { before, after, .. } = added.addition;
-    let model = &after.fit.model;
-    let revision = Revision {
-        revision: added.revision,
-        added: Some(added.effect.to_owned()),
-        removed: gone(&before.fit.model, model).first().map(|id| (*id).to_owned()),
-        validation_rmse: after.validation.map(|error| error.rmse),
-    };
-    Ok(file.revised(&added.joint.name, model, &revision)?)
+    let entry = entry(added.revision, Some(added.effect), before, after);
+    let file = file.revised(&added.joint.name, &after.fit.model, &entry)?;
+    let [_, compared] = added.compared();
+    // What the model still lacks was not looked for.
+    with_fit(&file, &compared, Some(before), None, sources)
 }

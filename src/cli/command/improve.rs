@@ -7,7 +7,7 @@ use crate::experiment::Joint;
 use crate::explain::{Attribution, Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
 use crate::model::ModelFile;
 use crate::report::{ImproveJson, improve_text};
-use crate::study::{Mode, improve_joints};
+use crate::study::{Mode, OfJoints, improve_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
@@ -110,36 +110,49 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
         );
         (improved, progress.stopped())
     })?;
-    let joints = &study.experiment().joints;
-    note_missing(&file, joints, study.verbosity());
-    let ((results, stopped), arguments) = (&study.result, args.add_arguments(joints));
-    let improved = |index: usize, joint, improvement| {
-        let stopped = stopped.get(index).is_some_and(|stopped| *stopped);
-        let add_arguments = arguments.get(index)?;
-        let found = (improvement, estimate_at(&study.estimates, index));
-        let mut improved = improved(&file, &name, joint, found, add_arguments)?;
-        improved.interrupted = stopped && improved.finding.verdict != Verdict::Adequate;
-        improved.reached_limit &= !stopped;
-        Some(improved)
-    };
-    let (improved, failures) = outcomes(study.experiment(), results, improved)?;
-    let improved: Vec<_> = improved.into_iter().flatten().collect();
-    if args.output.is_recorded() {
-        let names = revision_names(&improved);
-        let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
-        study.record(recording, &models, &improved)?;
-    }
-    args.model.write(&file, &revised(&file, &improved)?, study.verbosity())?;
-    let text = || improve_text(&improved);
-    let completion = study.end(&failures, text, || ImproveJson::new(&improved, &failures))?;
-    let is_whole = improved.iter().all(|joint| !joint.interrupted);
-    Ok(if is_whole { completion } else { Completion::Partial })
+    args.end(&study, (&file, &name))
 }
 
 /// What is said when somebody presses Ctrl-C.
 const STOPPING: &str = "after this revision; Ctrl-C again ends at once, without results";
 
 impl Args {
+    /// Says and writes what came of each joint.
+    fn end(
+        &self,
+        study: &Study<'_, (OfJoints<Improvement>, Vec<bool>)>,
+        (file, name): (&ModelFile, &str),
+    ) -> anyhow::Result<Completion> {
+        let joints = &study.experiment().joints;
+        note_missing(file, joints, study.verbosity());
+        let ((results, stopped), arguments) = (&study.result, self.add_arguments(joints));
+        let improved = |index: usize, joint, improvement| {
+            let stopped = stopped.get(index).is_some_and(|stopped| *stopped);
+            let add_arguments = arguments.get(index)?;
+            let found = (improvement, estimate_at(&study.estimates, index));
+            let mut improved = improved(file, name, joint, found, add_arguments)?;
+            improved.interrupted = stopped && improved.finding.verdict != Verdict::Adequate;
+            improved.reached_limit &= !stopped;
+            Some(improved)
+        };
+        let (improved, failures) = outcomes(study.experiment(), results, improved)?;
+        let improved: Vec<_> = improved.into_iter().flatten().collect();
+        if self.output.is_recorded() {
+            let names = revision_names(&improved);
+            let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
+            study.record(self.output.recording.as_deref(), &models, &improved)?;
+        }
+        self.model.write(
+            file,
+            &revised(file, &improved, &study.experiment().sources)?,
+            study.verbosity(),
+        )?;
+        let text = || improve_text(&improved);
+        let completion = study.end(&failures, text, || ImproveJson::new(&improved, &failures))?;
+        let is_whole = improved.iter().all(|joint| !joint.interrupted);
+        Ok(if is_whole { completion } else { Completion::Partial })
+    }
+
     fn options(&self, file: &ModelFile) -> anyhow::Result<Options> {
         Ok(Options {
             max_effects: self.max_effects,

@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 
 use crate::batch::Threads;
 use crate::delay::Automatic;
-use crate::experiment::Joint;
-use crate::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Revision};
-use crate::model::ModelFile;
+use crate::experiment::{Joint, Source};
+use crate::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Revision, Verdict};
+use crate::model::{LogHash, ModelFile};
 use crate::report::{
     Document, EstimatedJoint, Heading, ImprovedJoint, RecordingFile, Report, ReportJson,
     report_text, review_page,
 };
-use crate::study::{Mode, OfJoints, explain_joints, improve_joints};
+use crate::study::{Known, Mode, OfJoints, explain_unknown_joints, improve_joints};
 use anyhow::{Context as _, bail};
 use clap::Args as ClapArgs;
 
@@ -28,7 +28,7 @@ use crate::cli::failure::{nothing_usable, said};
 use crate::cli::output::{check_outputs, write_file};
 use crate::cli::run::{
     self, Progress, Session, Study, StudyContext, add_arguments, compared, estimate_at, estimated,
-    improved, others, revised,
+    improved, log_hashes, others, revised,
 };
 use crate::cli::typed::quoted;
 use crate::cli::viewer::StreamArgs;
@@ -64,8 +64,9 @@ pub(crate) struct Args {
 /// Which model is reported.
 #[derive(ClapArgs, Debug)]
 struct ModelArgs {
-    /// Report this model, too (TOML, schema `tauscope/model/1`): fitted, starting at its
-    /// values. Joints that it has not start as plain integrators
+    /// Report this model, too (TOML, schema `tauscope/model/1`). One that `improve` made from
+    /// these logs is shown as it is, with the ladder of its history; any other is fitted,
+    /// starting at its values. Joints that it has not start as plain integrators
     #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
     model: Option<PathBuf>,
 
@@ -183,10 +184,24 @@ impl ModelArgs {
         self.model.as_ref()?;
         let bar = context.bar("explaining");
         let protocol = protocol.watched(&bar).beside(context.others);
-        let explained = explain_joints(joints, estimates, starts, protocol, options, &Threads);
+        let known = |joint: &Joint| known(file, joint, &context.experiment().sources);
+        let explained =
+            explain_unknown_joints(joints, estimates, starts, known, protocol, options, &Threads);
         let one = |found: Option<Result<_, _>>| Some(found?.map(as_it_is));
         Some(explained.into_iter().map(one).collect())
     }
+}
+
+/// What the file says of the model of `joint`, where it was made from these very logs.
+fn known(file: &ModelFile, joint: &Joint, sources: &[Source]) -> Option<Known> {
+    let fitted = file.fitted(&joint.name)?;
+    let hashes = |logs: &[LogHash]| logs.iter().map(|log| log.sha256.clone()).collect::<Vec<_>>();
+    if hashes(&fitted.logs) != hashes(&log_hashes(sources)) {
+        return None;
+    }
+    let last = file.history(&joint.name).last().map(|revision| &revision.errors);
+    let rmse = last.or(fitted.start.as_ref())?.judged()?;
+    Some(Known { rmse, verdict: Verdict::by_id(fitted.verdict.as_deref()?)? })
 }
 
 /// A model and what it lacks, as the only revision.
@@ -352,7 +367,7 @@ impl Reported<'_> {
         failures: &[String],
         target: &Target,
     ) -> anyhow::Result<Completion> {
-        let Self { args, file, study } = *self;
+        let Self { args, study, .. } = *self;
         let experiment = study.experiment();
         let against = compared(joints, study.beside())?;
         let further = run::left_over(&against, &args.data);
@@ -371,7 +386,6 @@ impl Reported<'_> {
             settings: &study.settings,
             models,
             against: &against,
-            model: args.model.model.as_ref().map(|_| file),
             revised: revised.as_ref().map(ModelFile::text),
             split: args.model.protocol.split(),
             command: &command(),
@@ -425,7 +439,7 @@ impl Reported<'_> {
 
     /// The model file with the fitted models in it.
     fn revised(&self, models: &[ImprovedJoint<'_>]) -> anyhow::Result<ModelFile> {
-        let mut file = revised(self.file, models)?;
+        let mut file = revised(self.file, models, &self.study.experiment().sources)?;
         for joint in models.iter().filter(|joint| joint.revisions.len() == 1) {
             let compared = &joint.finding.compared;
             file = file.refitted(&compared.joint.name, &compared.comparison.fit.model)?;

@@ -13,6 +13,8 @@ pub(crate) use add_command::add_arguments;
 pub(crate) use against::{compared, left_over, others};
 pub(crate) use estimates::{Estimates, estimate_at, estimated, failures, notes};
 pub(crate) use outcomes::outcomes;
-pub(crate) use revisions::{Progress, improved, models, revised, revision_names};
+pub(crate) use revisions::{
+    Progress, entry, improved, log_hashes, models, revised, revision_names, with_fit,
+};
 pub(crate) use session::Session;
 pub(crate) use study::{Study, StudyContext};

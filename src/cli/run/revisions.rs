@@ -3,11 +3,15 @@
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use crate::cli::console::{Interrupt, Verbosity, message};
-use crate::experiment::Joint;
+use crate::diagnosis::Comparison;
+use crate::experiment::{Joint, Source};
 use crate::explain::{Change, Improvement, Revision as Step, Verdict};
-use crate::model::{ModelFile, Revision};
-use crate::report::{ComparedJoint, Finding, ImprovedJoint, gone, revision_line};
+use crate::model::{Fitted, FittedParameter, LogHash, ModelFile, Revision};
+use crate::report::{
+    ComparedJoint, Finding, History, ImprovedJoint, errors_of, gone, revision_line,
+};
 use crate::study::JointEstimate;
+use crate::wording::parameter_units;
 
 /// Which revisions there are so far, reported as they come.
 pub(crate) struct Progress<'a> {
@@ -61,7 +65,7 @@ impl<'a> Progress<'a> {
 
 /// What is to be said of a joint that was improved.
 pub(crate) fn improved<'a>(
-    file: &ModelFile,
+    file: &'a ModelFile,
     model: &'a str,
     joint: &'a Joint,
     (improvement, delays): (&'a Improvement, Option<&'a JointEstimate>),
@@ -80,50 +84,109 @@ pub(crate) fn improved<'a>(
     // Where more is missing at the end, nothing but the limit has ended it, or whoever stopped it.
     let reached_limit = verdict == Verdict::MissingEffect;
     let improved = ImprovedJoint::of(finding, revisions);
-    Some(ImprovedJoint { first_revision, reached_limit, ..improved })
+    let history =
+        History { revisions: file.history(&joint.name), fitted: file.fitted(&joint.name) };
+    Some(ImprovedJoint { first_revision, history, reached_limit, ..improved })
 }
 
 /// `file` with all revisions of all joints. A joint that has no new one stays as it is.
 pub(crate) fn revised(
     file: &ModelFile,
     improved: &[ImprovedJoint<'_>],
+    sources: &[Source],
 ) -> anyhow::Result<ModelFile> {
     let is_known = |joint: &&ImprovedJoint<'_>| file.joint(joint.name()).is_some();
     let known = improved.iter().filter(is_known);
-    let file = known.clone().try_fold(file.clone(), |file, joint| revised_for(file, joint))?;
+    let file =
+        known.clone().try_fold(file.clone(), |file, joint| revised_for(file, joint, sources))?;
     let new = improved.iter().filter(|joint| !is_known(joint));
-    let new: Vec<ModelFile> =
-        new.map(|joint| revised_for(file.emptied(), joint)).collect::<anyhow::Result<_>>()?;
+    let new: Vec<ModelFile> = new
+        .map(|joint| revised_for(file.emptied(), joint, sources))
+        .collect::<anyhow::Result<_>>()?;
     Ok(file.joined(&new)?)
 }
 
 /// `file` with all revisions of a joint.
-fn revised_for(mut file: ModelFile, joint: &ImprovedJoint<'_>) -> anyhow::Result<ModelFile> {
+fn revised_for(
+    mut file: ModelFile,
+    joint: &ImprovedJoint<'_>,
+    sources: &[Source],
+) -> anyhow::Result<ModelFile> {
     let pairs = (joint.first_revision + 1..).zip(joint.revisions.windows(2));
     for (number, pair) in pairs {
         let [before, after] = pair else { continue };
         let model = &after.comparison.fit.model;
-        file = file.revised(joint.name(), model, &entry(number, before, after))?;
+        let added = match after.change {
+            Change::Added(id) | Change::Replaced { new: id, .. } => Some(id),
+            Change::Start | Change::Removed(_) => None,
+        };
+        let entry = entry(number, added, &before.comparison, &after.comparison);
+        file = file.revised(joint.name(), model, &entry)?;
     }
-    if file.joint(joint.name()).is_none() {
-        file = file.refitted(joint.name(), &joint.finding.compared.comparison.fit.model)?;
+    let is_new = file.joint(joint.name()).is_none();
+    let compared = joint.finding.compared;
+    if is_new {
+        file = file.refitted(joint.name(), &compared.comparison.fit.model)?;
+    }
+    if is_new || joint.revisions.len() > 1 {
+        let first = joint.revisions.first().map(|first| &first.comparison);
+        file = with_fit(&file, &compared, first, Some(joint.finding.verdict), sources)?;
     }
     Ok(file)
 }
 
-/// What the history says of `after`.
-fn entry(revision: u32, before: &Step, after: &Step) -> Revision {
-    let model = &after.comparison.fit.model;
-    let removed = gone(&before.comparison.fit.model, model);
-    let added = match after.change {
-        Change::Added(id) | Change::Replaced { new: id, .. } => Some(id.to_owned()),
-        Change::Start | Change::Removed(_) => None,
+/// `file` with what the model of a joint was fitted to; `first` is the model before its first
+/// revision of this work.
+pub(crate) fn with_fit(
+    file: &ModelFile,
+    compared: &ComparedJoint<'_>,
+    first: Option<&Comparison>,
+    verdict: Option<Verdict>,
+    sources: &[Source],
+) -> anyhow::Result<ModelFile> {
+    let ComparedJoint { joint, comparison, .. } = compared;
+    let known = file.fitted(&joint.name).and_then(|fitted| fitted.start.clone());
+    let history = file.history(&joint.name);
+    // The errors before a history that began elsewhere are not known.
+    let begins = history.first().is_none_or(|entry| history.len() == 1 || entry.revision == 1);
+    let fit = &comparison.fit;
+    let units = parameter_units(joint, &fit.model);
+    let parameters = fit.parameters.iter().zip(units).map(|(parameter, unit)| {
+        let known = FittedParameter { std_error: parameter.std_error, unit };
+        (parameter.name.clone(), known)
+    });
+    let fitted = Fitted {
+        logs: log_hashes(sources),
+        sensor_noise: comparison.sensor_noise,
+        verdict: verdict.map(|verdict| verdict.id().to_owned()),
+        start: known.or_else(|| first.filter(|_| begins).map(errors_of)),
+        parameters: parameters.collect(),
     };
+    Ok(file.fitted_to(&joint.name, &fitted)?)
+}
+
+/// The logs that were read, as a model file names them.
+pub(crate) fn log_hashes(sources: &[Source]) -> Vec<LogHash> {
+    let hash = |source: &Source| LogHash {
+        file: source.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        sha256: source.sha256.clone(),
+    };
+    sources.iter().map(hash).collect()
+}
+
+/// What the history says of `after`, to which `added` came.
+pub(crate) fn entry(
+    revision: u32,
+    added: Option<&str>,
+    before: &Comparison,
+    after: &Comparison,
+) -> Revision {
+    let removed = gone(&before.fit.model, &after.fit.model);
     Revision {
         revision,
-        added,
+        added: added.map(str::to_owned),
         removed: removed.first().map(|id| (*id).to_owned()),
-        validation_rmse: after.comparison.validation.map(|error| error.rmse),
+        errors: errors_of(after),
     }
 }
 

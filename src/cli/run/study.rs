@@ -67,6 +67,11 @@ impl<'a> StudyContext<'a> {
         Self { session, joints, estimates, others: &[], settings }
     }
 
+    /// The logs.
+    pub(crate) fn experiment(&self) -> &'a Experiment {
+        &self.session.experiment
+    }
+
     /// A bar that counts the fits of what is being done.
     pub(crate) fn bar(&self, what: &'static str) -> Bar {
         Bar::new(self.verbosity(), what, "fits", 0)

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::read::{self, JointReader};
-use super::schema::{FileToml, SCHEMA};
-use super::{ModelError, Revision};
+use super::schema::{FileToml, JointToml, SCHEMA};
+use super::{Fitted, ModelError, Revision};
 use crate::effect::Effect;
 use crate::experiment::read_text;
 use crate::model::JointModel;
@@ -39,6 +39,7 @@ pub struct ModelFile {
 struct Revised {
     model: JointModel,
     history: Vec<Revision>,
+    fitted: Option<Fitted>,
 }
 
 impl ModelFile {
@@ -91,7 +92,8 @@ impl ModelFile {
         for (name, joint) in file.joint {
             let reader = JointReader { path, joint: &name, candidates: &candidates };
             let model = reader.joint(&joint)?;
-            joints.insert(name, Revised { model, history: joint.history });
+            let JointToml { history, fitted, .. } = joint;
+            joints.insert(name, Revised { model, history, fitted });
         }
         let (path, text, others) = (path.to_owned(), text.to_owned(), others.to_owned());
         Ok(Self { path, text, others, candidates, joints })
@@ -127,6 +129,11 @@ impl ModelFile {
     /// Its revisions, in the order of the file.
     pub fn history(&self, joint: &str) -> &[Revision] {
         self.joints.get(joint).map_or(&[], |revised| revised.history.as_slice())
+    }
+
+    /// What its numbers were fitted to; none of a model that was written by hand.
+    pub fn fitted(&self, joint: &str) -> Option<&Fitted> {
+        self.joints.get(joint)?.fitted.as_ref()
     }
 
     /// Names of the joints, in order.

@@ -3,6 +3,7 @@
 mod document;
 mod edit;
 mod error;
+mod fitted;
 mod parameter;
 mod read;
 mod revise;
@@ -11,4 +12,5 @@ mod schema;
 
 pub use document::ModelFile;
 pub use error::ModelError;
-pub use revision::Revision;
+pub use fitted::{Fitted, FittedParameter, LogHash};
+pub use revision::{Revision, RevisionErrors};

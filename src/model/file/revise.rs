@@ -5,10 +5,11 @@
 
 use toml_edit::{DocumentMut, Item, Table, TableLike};
 
-use super::edit::{entries, is_empty, number, or_new, push, retain, set_text};
+use super::edit::{entries, is_empty, or_new, push, retain, set_text};
+use super::fitted::insert_errors;
 use super::parameter::{write_component, write_parameters};
 use super::schema::SCHEMA;
-use super::{ModelError, ModelFile, Revision};
+use super::{Fitted, ModelError, ModelFile, Revision};
 use crate::effect::expression::KIND;
 use crate::effect::{Definition, Effect};
 use crate::model::{Component, JointModel};
@@ -29,7 +30,7 @@ impl ModelFile {
     /// ```
     /// use std::path::Path;
     /// use tauscope::effect::DeadBand;
-    /// use tauscope::model::{Component, ModelFile, Revision};
+    /// use tauscope::model::{Component, ModelFile, Revision, RevisionErrors};
     ///
     /// let text = r#"
     /// schema = "tauscope/model/1"
@@ -41,7 +42,8 @@ impl ModelFile {
     /// let plain = file.joint("boom").unwrap();
     /// let banded = plain.with(Component::new(&DeadBand, vec![(-0.6).into(), 0.6.into()]).unwrap());
     /// let added = Some("dead_band".to_owned());
-    /// let revision = Revision { revision: 1, added, validation_rmse: Some(0.06), ..<_>::default() };
+    /// let errors = RevisionErrors { validation_rmse: Some(0.06), ..<_>::default() };
+    /// let revision = Revision { revision: 1, added, errors, ..<_>::default() };
     ///
     /// let behind = r#"[[joint.boom.effect]]
     /// kind = "dead_band"
@@ -70,6 +72,27 @@ impl ModelFile {
     /// As [`revised`](Self::revised).
     pub fn refitted(&self, joint: &str, model: &JointModel) -> Result<Self, ModelError> {
         self.rewritten(joint, model, None)
+    }
+
+    /// This file with what the numbers of `joint` were fitted to, in the place of what it said of
+    /// that.
+    ///
+    /// # Errors
+    /// [`ModelError`] when it has no such joint.
+    pub fn fitted_to(&self, joint: &str, fitted: &Fitted) -> Result<Self, ModelError> {
+        self.edited(joint, |document| {
+            let joints = document.get_mut("joint")?.as_table_like_mut()?;
+            let joint = joints.get_mut(joint)?;
+            let table = fitted.table();
+            let inline = joint.is_inline_table();
+            let item = if inline {
+                toml_edit::value(table.into_inline_table())
+            } else {
+                Item::Table(table)
+            };
+            joint.as_table_like_mut()?.insert("fitted", item);
+            Some(())
+        })
     }
 
     /// A file that knows the effects of this one, and has no joint yet.
@@ -105,6 +128,17 @@ impl ModelFile {
         model: &JointModel,
         revision: Option<&Revision>,
     ) -> Result<Self, ModelError> {
+        let writer = Writer { candidates: &self.candidates };
+        self.edited(joint, |document| writer.joint(document, joint, model, revision))
+    }
+
+    /// This file after an `edit` about `joint`, which gives `None` where the document is not of the
+    /// form that a model file has.
+    fn edited(
+        &self,
+        joint: &str,
+        edit: impl FnOnce(&mut Table) -> Option<()>,
+    ) -> Result<Self, ModelError> {
         let mut document: DocumentMut = self.text.parse().map_err(|error| ModelError::Edit {
             path: self.path.clone(),
             source: Box::new(error),
@@ -113,8 +147,7 @@ impl ModelFile {
             document.insert("schema", toml_edit::value(SCHEMA));
         }
         let form = || ModelError::Form { path: self.path.clone(), joint: joint.to_owned() };
-        let writer = Writer { candidates: &self.candidates };
-        writer.joint(document.as_table_mut(), joint, model, revision).ok_or_else(form)?;
+        edit(document.as_table_mut()).ok_or_else(form)?;
         Self::parse_with(&document.to_string(), &self.path, &self.others)
     }
 }
@@ -214,7 +247,7 @@ fn has_all_of(entry: &dyn TableLike, wanted: &Table) -> bool {
 }
 
 fn entry_of(revision: &Revision) -> Table {
-    let Revision { revision, added, removed, validation_rmse } = revision;
+    let Revision { revision, added, removed, errors } = revision;
     let mut table = Table::new();
     table.insert("revision", toml_edit::value(i64::from(*revision)));
     for (key, id) in [("added", added), ("removed", removed)] {
@@ -222,8 +255,6 @@ fn entry_of(revision: &Revision) -> Table {
             set_text(&mut table, key, id);
         }
     }
-    if let Some(rmse) = validation_rmse {
-        table.insert("validation_rmse", Item::Value(number(*rmse)));
-    }
+    insert_errors(&mut table, errors);
     table
 }

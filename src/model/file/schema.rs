@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
-use super::Revision;
+use super::{Fitted, Revision};
 use crate::effect::{Dimension, Stage};
 use crate::model::Value;
 
@@ -31,6 +31,7 @@ pub(super) struct JointToml {
     pub(super) effect: Vec<EffectToml>,
     #[serde(default)]
     pub(super) history: Vec<Revision>,
+    pub(super) fitted: Option<Fitted>,
 }
 
 pub(super) type Parameters = BTreeMap<String, ParameterToml>;

@@ -6,13 +6,13 @@ use rerun::datatypes::Vec2D;
 use super::bars::{Bars, Columns};
 use super::figure::noise;
 use crate::explain::{Change, Revision};
-use crate::figure::ladder::{self, Rung};
 use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
 use crate::recording::palette::{self, color};
 use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
+use crate::recording::rungs::{self, Rung};
 use crate::report::{ImprovedJoint, change_in_words};
 
 const COLUMNS: Columns = Columns { left: 0.0, names: (300.0, 370.0), right: 630.0 };
@@ -39,7 +39,7 @@ struct Ladder<'r> {
 
 impl<'r> Ladder<'r> {
     fn of(improved: &'r ImprovedJoint<'_>) -> Self {
-        let rungs = ladder::rungs(improved.revisions);
+        let rungs = rungs::rungs(improved.revisions);
         let names: Vec<Vec<String>> = improved.revisions.iter().map(lines).collect();
         let apart = names.iter().map(Vec::len).sum::<usize>() <= MOST_LINES;
         let mut next = 0;
@@ -52,7 +52,7 @@ impl<'r> Ladder<'r> {
         // Behind its number.
         let longest =
             3 + names.iter().flatten().map(|line| line.chars().count()).max().unwrap_or(0);
-        let bars = Bars::new(COLUMNS, (next, longest), ladder::largest(&rungs));
+        let bars = Bars::new(COLUMNS, (next, longest), rungs::largest(&rungs));
         Self { rungs, bars, rows }
     }
 

@@ -6,13 +6,13 @@ use rerun::datatypes::Vec2D;
 use super::bars::{Bars, Columns};
 use super::figure::noise;
 use crate::explain::{Candidate, Revision, Verdict};
-use crate::figure::ladder::judged;
 use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
 use crate::recording::palette::{self, Rgb, color};
 use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
+use crate::recording::rungs::judged;
 use crate::report::{ImprovedJoint, change_in_words};
 
 const COLUMNS: Columns = Columns { left: 1270.0, names: (1570.0, 1660.0), right: 1890.0 };

@@ -7,7 +7,6 @@ use rerun::datatypes::Vec2D;
 
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
-use crate::figure::ladder::judged;
 use crate::recording::canvas::{Plot, SHEET, Span, Strips, simplified, thinned_to};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
@@ -15,6 +14,7 @@ use crate::recording::layout::{JointLayout, TrialLayout};
 use crate::recording::palette;
 use crate::recording::paths::revision::record;
 use crate::recording::rows::Rows;
+use crate::recording::rungs::judged;
 use crate::recording::shaded::{Spans, areas, condition, validation, where_it_fails};
 use crate::recording::sheet::Sheet;
 use crate::report::MANY_TIMES_NOISE;

@@ -7,13 +7,13 @@ use super::record::worst_spans;
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::WorstSegment;
 use crate::explain::{Change, Revision};
-use crate::figure::ladder::judged;
 use crate::fit::Termination;
 use crate::model::Component;
 use crate::recording::error_share::short;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;
+use crate::recording::rungs::judged;
 use crate::report::{ImprovedJoint, MANY_TIMES_NOISE, Passage, Topic, change_in_words};
 use crate::wording::{measure, percent, rounded, unit_suffix, worst_segment_text};
 

@@ -6,7 +6,6 @@ use super::candidate::CandidateJson;
 use super::conclusion::ConclusionJson;
 use super::header::Header;
 use super::joint::JointJson;
-use crate::explain::Verdict;
 use crate::report::conclusion::Conclusion;
 use crate::report::finding::Finding;
 
@@ -56,20 +55,12 @@ impl<'a> FindingJson<'a> {
         let joint = finding.compared.joint;
         let ranking = finding.ranking.iter();
         Self {
-            verdict: verdict_id(finding.verdict),
+            verdict: finding.verdict.id(),
             ranking: ranking.map(|candidate| CandidateJson::new(joint, candidate)).collect(),
             conclusion: ConclusionJson::new(conclusion.headline.clone(), &finding.consequence()),
             in_words: conclusion.sentences(),
             headline: conclusion.headline,
             commands: conclusion.commands,
         }
-    }
-}
-
-fn verdict_id(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Adequate => "adequate",
-        Verdict::MissingEffect => "missing_effect",
-        Verdict::Unexplained => "unexplained",
     }
 }

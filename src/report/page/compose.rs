@@ -42,13 +42,14 @@ impl Report<'_> {
         if let Some(title) = self.heading.title {
             return title.to_owned();
         }
+        let what = if self.models.is_empty() { "Delays" } else { "Delays and models" };
         let files = self.experiment.sources.as_slice();
         let name = |path: &std::path::Path| {
             path.file_name().unwrap_or_default().to_string_lossy().into_owned()
         };
         match files {
-            [one] => format!("Delays in {}", name(&one.path)),
-            _ => format!("Delays in {} files", files.len()),
+            [one] => format!("{what} in {}", name(&one.path)),
+            _ => format!("{what} in {} files", files.len()),
         }
     }
 

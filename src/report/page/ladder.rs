@@ -6,35 +6,33 @@ use super::plot::{PlotError, draw};
 use crate::diagnosis::sensor_noise;
 use crate::figure::Role;
 use crate::figure::Span;
-use crate::figure::ladder::{self, Rung};
 use crate::figure::{Axis, Mark, Panel, Shape};
-use crate::report::{ImprovedJoint, change_in_words};
+use crate::report::ImprovedJoint;
+use crate::report::ladder::LadderRow;
 use crate::units::floor_to_index;
 use crate::wording::{bracketed, number};
 
 /// A bar for the error of each revision, and the noise as a line.
 pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figure, PlotError> {
     let joint = improved.finding.compared.joint;
-    let rungs = ladder::rungs(improved.revisions);
-    let numbered = (improved.first_revision..).zip(&rungs);
-    let name =
-        |(number, rung): (u32, &Rung<'_>)| format!("{number}: {}", change_in_words(rung.revision));
-    let names: Vec<String> = numbered.map(name).collect();
-    let bar = |(row, rung): (u32, &Rung<'_>)| {
-        ((0.0, -f64::from(row) - 0.3), (rung.error, 0.3 - f64::from(row)))
-    };
-    let words = |(row, rung): (u32, &Rung<'_>)| ((rung.error, -f64::from(row)), number(rung.error));
-    let largest = ladder::largest(&rungs).max(f64::MIN_POSITIVE);
+    let ladder = improved.ladder();
+    let name = |row: &LadderRow| format!("{}: {}", row.number, row.change);
+    let names: Vec<String> = ladder.iter().map(name).collect();
+    let errors: Vec<f64> = ladder.iter().map(|row| row.errors.judged().unwrap_or(0.0)).collect();
+    let bar =
+        |(row, error): (u32, &f64)| ((0.0, -f64::from(row) - 0.3), (*error, 0.3 - f64::from(row)));
+    let words = |(row, error): (u32, &f64)| ((*error, -f64::from(row)), number(*error));
+    let largest = errors.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let noise = sensor_noise(&joint.trials);
-    let rows = || (0..).zip(&rungs);
+    let rows = || (0..).zip(&errors);
     // A revision has its colour in all figures, and in the recording.
-    let bars = rows().map(|(row, rung)| {
+    let bars = rows().map(|(row, error)| {
         let role = Role::of_revision(floor_to_index(f64::from(row)));
-        Mark::new(role, Shape::Bars(vec![bar((row, rung))]))
+        Mark::new(role, Shape::Bars(vec![bar((row, error))]))
     });
     let mut marks: Vec<Mark> = bars.collect();
     if let Some(first) = marks.first_mut() {
-        first.name = Some(judged_on(improved).to_owned());
+        first.name = Some(judged_on(&ladder).to_owned());
     }
     marks.push(Mark::new(Role::Ink, Shape::Words(rows().map(words).collect())));
     marks.extend(noise.map(|noise| {
@@ -52,7 +50,7 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figur
     Ok(Figure { file, svg, caption })
 }
 
-fn judged_on(improved: &ImprovedJoint<'_>) -> &'static str {
-    let validated = improved.revisions.iter().all(|one| one.comparison.validation.is_some());
+fn judged_on(ladder: &[LadderRow]) -> &'static str {
+    let validated = ladder.iter().all(|row| row.errors.validation_rmse.is_some());
     if validated { "error on data that were not fitted" } else { "error" }
 }

@@ -8,17 +8,17 @@ use crate::diagnosis::Comparison;
 use crate::diagnosis::sensor_noise;
 use crate::effect::Stage;
 use crate::explain::{Candidate, Revision, Verdict};
-use crate::fit::Split;
+use crate::fit::{Split, Termination};
 use crate::model::Component;
-use crate::report::add::gained;
 use crate::report::compare::errors_note;
 use crate::report::equation::filled_in;
 use crate::report::finding::ranking_table;
+use crate::report::ladder::ladder_table;
 use crate::report::text_table::TextTable;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::{
     capitalized, correlation_sentences, effect_ids, failure_sentences, known_value, listed,
-    measure, parameter_units, parameter_value, remark, with_unit,
+    measure, parameter_units, parameter_value, remark,
 };
 
 /// All that is said of the model of a joint.
@@ -44,8 +44,13 @@ pub(super) fn blocks(
     blocks.extend(conclusion.commands.into_iter().map(Block::Code));
     blocks.push(Block::Code(equations(compared)));
     blocks.push(Block::Table(parameters(compared)));
-    blocks.push(Block::text(format!("The fit: {}.", compared.comparison.termination)));
-    blocks.extend(errors(report, improved, file)?);
+    blocks.push(Block::text(match compared.comparison.termination {
+        Termination::NothingToFit => {
+            "The model as it is in its file; nothing was fitted.".to_owned()
+        }
+        termination => format!("The fit: {termination}."),
+    }));
+    blocks.extend(errors(improved, file)?);
     blocks.extend(beside_the_measurement(report, improved, file)?);
     blocks.extend(failures(improved, file)?);
     blocks.extend(rankings(improved));
@@ -54,7 +59,7 @@ pub(super) fn blocks(
 
 /// What is found, or, where effects were added, what came of that.
 fn lead(improved: &ImprovedJoint<'_>, headline: &str) -> String {
-    if came(improved).is_empty() { format!("{headline}.") } else { sentence(improved) }
+    if improved.came().is_empty() { format!("{headline}.") } else { sentence(improved) }
 }
 
 /// What is said of the model in one sentence.
@@ -63,12 +68,13 @@ pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
     let own = effect_ids(&comparison.fit.model);
     let model = ["integrator"].into_iter().chain(own).collect::<Vec<_>>().join(" + ");
     let (error, rest) = (error_of(improved, comparison), missing(improved));
-    match (improved.revisions.first(), came(improved).as_slice()) {
+    match (improved.ladder().first(), improved.came().as_slice()) {
         (Some(first), came @ [_, others @ ..]) => {
             let (was, it) = if others.is_empty() { ("was", "it") } else { ("were", "them") };
             let names: Vec<String> = came.iter().map(|name| (*name).to_owned()).collect();
             let came = listed(&names, "and");
-            let before = judged_error(improved, &first.comparison);
+            let unit = improved.finding.compared.joint.output_unit.as_deref();
+            let before = first.errors.judged().map_or_else(|| "-".to_owned(), |e| measure(e, unit));
             // What is not shown to be the cause is not said to be.
             let is_cause = improved.finding.verdict != Verdict::Unexplained;
             let what = if is_cause { "missing" } else { "tried" };
@@ -81,16 +87,9 @@ pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
     }
 }
 
-/// Effects that the last revision has and the first has not.
-fn came<'a>(improved: &ImprovedJoint<'a>) -> Vec<&'static str> {
-    let ends = improved.revisions.first().zip(improved.revisions.last());
-    let model = |revision: &'a Revision| &revision.comparison.fit.model;
-    ends.map(|(first, last)| gained(model(first), model(last))).unwrap_or_default()
-}
-
 /// What is still missing.
 fn missing(improved: &ImprovedJoint<'_>) -> String {
-    let more = if improved.revisions.len() > 1 { " more" } else { "" };
+    let more = if improved.ladder().len() > 1 { " more" } else { "" };
     let best = improved.finding.proposed().map(Candidate::name);
     match (improved.finding.verdict, best) {
         (Verdict::Adequate, _) => format!("nothing{more} is missing"),
@@ -179,37 +178,16 @@ fn parameters(compared: &ComparedJoint<'_>) -> TextTable {
 }
 
 /// The ladder of errors; without several revisions, the error alone.
-fn errors(
-    report: &Report<'_>,
-    improved: &ImprovedJoint<'_>,
-    file: &str,
-) -> Result<Vec<Block>, PlotError> {
+fn errors(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, PlotError> {
     let mut blocks = vec![Block::part("Errors")];
-    if improved.revisions.len() > 1 {
+    if improved.ladder().len() > 1 {
         let figure = ladder::figure(improved, format!("{file}-ladder"))?;
         blocks.push(Block::Figures(vec![figure]));
     }
-    blocks.push(Block::Table(improved.ladder()));
+    blocks.push(Block::Table(ladder_table(improved.finding.compared.joint, &improved.ladder())));
     let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
     blocks.push(Block::text(format!("{}.", capitalized(&errors_note(&horizon.to_string())))));
-    blocks.extend(history(report, improved));
     Ok(blocks)
-}
-
-/// Revisions before this report, from the model file.
-fn history(report: &Report<'_>, improved: &ImprovedJoint<'_>) -> Option<Block> {
-    let joint = improved.finding.compared.joint;
-    let entries = report.model.map_or(&[][..], |file| file.history(&joint.name));
-    let mut table = TextTable::new(["revision", "added", "removed", "validation"], &[0, 3]);
-    let dash = |id: &Option<String>| id.clone().unwrap_or_else(|| "-".to_owned());
-    for entry in entries {
-        let unit = joint.output_unit.as_deref();
-        let error = entry.validation_rmse.map_or_else(|| "-".to_owned(), |e| with_unit(e, unit));
-        table.row([entry.revision.to_string(), dash(&entry.added), dash(&entry.removed), error]);
-    }
-    let blocks = vec![Block::Table(table)];
-    let summary = "Earlier revisions, from the model file".to_owned();
-    (!entries.is_empty()).then_some(Block::Details { summary, blocks })
 }
 
 /// What the model simulates, and the residual.

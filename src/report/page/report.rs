@@ -3,7 +3,6 @@
 use crate::delay::Settings;
 use crate::experiment::{Experiment, Joint};
 use crate::fit::Split;
-use crate::model::ModelFile;
 use crate::report::{Against, EstimatedJoint, ImprovedJoint};
 
 /// What a report is about.
@@ -21,8 +20,6 @@ pub(crate) struct Report<'a> {
     pub(crate) models: &'a [ImprovedJoint<'a>],
     /// Other results that the decisions are compared with.
     pub(crate) against: &'a [Against<'a>],
-    /// The model file that they come from.
-    pub(crate) model: Option<&'a ModelFile>,
     /// The model file with what was found, as text.
     pub(crate) revised: Option<&'a str>,
     /// How training and validation were split; as [`Split::of`] says without it.

@@ -116,7 +116,7 @@ fn of_model(
         ),
     };
     let mut history = known.file.history(name).iter().rev();
-    let noise = args.noise.or_else(|| history.find_map(|entry| entry.validation_rmse));
+    let noise = args.noise.or_else(|| history.find_map(|entry| entry.errors.validation_rmse));
     let noise = noise.filter(|noise| *noise > 0.0).context(
         "--noise: the model file has no history with an error, so the noise is not known; give it",
     )?;

@@ -1,0 +1,140 @@
+//! The ladder of errors: a row per revision of a model, those of its history and those made now.
+
+use super::text_table::TextTable;
+use crate::diagnosis::{Comparison, sensor_noise};
+use crate::experiment::Joint;
+use crate::explain::{Change, Revision as Step};
+use crate::model::{Fitted, Revision, RevisionErrors};
+use crate::wording::{self, effect_ids, effects_named, effects_text, with_unit};
+
+/// What the file of a model says of how it came about.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct History<'a> {
+    /// Its revisions.
+    pub revisions: &'a [Revision],
+    /// What its numbers were fitted to.
+    pub fitted: Option<&'a Fitted>,
+}
+
+/// A revision on the ladder.
+#[derive(Clone, Debug)]
+pub(super) struct LadderRow {
+    pub(super) number: u32,
+    /// What it changed; of the first, its effects.
+    pub(super) change: String,
+    pub(super) errors: RevisionErrors,
+}
+
+/// The errors of a model, as the ladder and the history of a model file have them.
+pub(crate) fn errors_of(comparison: &Comparison) -> RevisionErrors {
+    let Comparison { training, validation, raw, free, lack_of_fit, .. } = comparison;
+    let fit = validation.map(|error| error.fit_percent);
+    RevisionErrors {
+        train_rmse: training.map(|error| error.rmse),
+        validation_rmse: validation.map(|error| error.rmse),
+        rmse_raw: raw.judged(),
+        rmse_free: free.judged(),
+        fit_percent: fit.filter(|fit| fit.is_finite()),
+        lack_of_fit: lack_of_fit.map(wording::lack_of_fit),
+    }
+}
+
+/// Error on both parts, raw and of a free run, fit in percent, noise of the sensor and lack of fit,
+/// for a table.
+pub(super) fn figures(joint: &Joint, errors: &RevisionErrors) -> [String; 7] {
+    let dash = || "-".to_owned();
+    let unit = joint.output_unit.as_deref();
+    let output = |value: Option<f64>| value.map_or_else(dash, |value| with_unit(value, unit));
+    [
+        output(errors.train_rmse),
+        output(errors.validation_rmse),
+        output(errors.rmse_raw),
+        output(errors.rmse_free),
+        errors.fit_percent.map_or_else(dash, |fit| format!("{fit:.1} %")),
+        output(sensor_noise(&joint.trials)),
+        errors.lack_of_fit.clone().unwrap_or_else(dash),
+    ]
+}
+
+/// What a revision changed: `+ dead_band`; of the first, the effects that it has.
+pub(crate) fn change_in_words(revision: &Step) -> String {
+    match revision.change {
+        Change::Start => effects_text(&revision.comparison.fit.model),
+        Change::Added(id) => format!("+ {id}"),
+        Change::Removed(id) => format!("− {id}"),
+        Change::Replaced { old, new } => format!("+ {new}, − {old}"),
+    }
+}
+
+impl History<'_> {
+    /// The rows of the ladder: those of the history, where they are known, and those of the
+    /// revisions of the model that it led to, the first of which has number `first`.
+    pub(super) fn rows(&self, first: u32, revisions: &[Step]) -> Vec<LadderRow> {
+        let own = (first..).zip(revisions).map(|(number, revision)| LadderRow {
+            number,
+            change: change_in_words(revision),
+            errors: errors_of(&revision.comparison),
+        });
+        let mut rows = self.earlier(&self.first_effects(revisions));
+        let mut own: Vec<_> = own.collect();
+        // The model that is given is the last revision of its history.
+        let last = rows.pop_if(|row| row.number == first);
+        if let Some((given, last)) = own.first_mut().zip(last) {
+            given.change = last.change;
+        }
+        rows.extend(own);
+        rows
+    }
+
+    /// The rows up to the model that is given, whose history began with these effects.
+    fn earlier(&self, effects: &[&str]) -> Vec<LadderRow> {
+        let Some(first) = self.revisions.first() else { return Vec::new() };
+        let start = self.fitted.and_then(|fitted| fitted.start.clone());
+        let start = start.map(|errors| LadderRow {
+            number: first.revision.saturating_sub(1),
+            change: effects_named(effects),
+            errors,
+        });
+        let row = |revision: &Revision| {
+            let added = revision.added.iter().map(|id| format!("+ {id}"));
+            let removed = revision.removed.iter().map(|id| format!("− {id}"));
+            let change = added.chain(removed).collect::<Vec<_>>().join(", ");
+            LadderRow { number: revision.revision, change, errors: revision.errors.clone() }
+        };
+        start.into_iter().chain(self.revisions.iter().map(row)).collect()
+    }
+
+    /// The effects before the first revision: those of the model that is given, the changes of the
+    /// history undone from the last to the first.
+    pub(super) fn first_effects<'a>(&'a self, revisions: &'a [Step]) -> Vec<&'a str> {
+        let given = revisions.first().map(|first| effect_ids(&first.comparison.fit.model));
+        let mut effects: Vec<&str> = given.unwrap_or_default();
+        for revision in self.revisions.iter().rev() {
+            effects.retain(|id| Some(*id) != revision.added.as_deref());
+            effects.extend(revision.removed.as_deref());
+        }
+        effects
+    }
+}
+
+/// The ladder of errors as a table.
+pub(super) fn ladder_table(joint: &Joint, rows: &[LadderRow]) -> TextTable {
+    let header = [
+        "revision",
+        "change",
+        "training",
+        "validation",
+        "raw",
+        "free run",
+        "fit",
+        "noise",
+        "lack of fit",
+    ];
+    let mut table = TextTable::new(header, &[2, 3, 4, 5, 6, 7]);
+    for LadderRow { number, change, errors } in rows {
+        let [training, validation, raw, free, fit, noise, lack] = figures(joint, errors);
+        let (number, change) = (number.to_string(), change.clone());
+        table.row([number, change, training, validation, raw, free, fit, noise, lack]);
+    }
+    table
+}
