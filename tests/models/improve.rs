@@ -355,7 +355,7 @@ fn the_model_file_says_what_its_numbers_were_fitted_to() {
     let file = ModelFile::read(&desk.folder.path().join("boom.toml")).unwrap();
     let (boom, fitted) = (&json["joints"][0], file.fitted("boom").unwrap());
     let hash = Sha256::digest(std::fs::read(desk.folder.path().join("log.csv")).unwrap());
-    let hash: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
+    let hash = base16ct::lower::encode_string(&hash);
     let logs: Vec<_> = fitted.logs.iter().map(|log| (log.file.as_str(), &log.sha256)).collect();
     assert_eq!(logs, [("log.csv", &hash)]);
     assert_eq!(json!(fitted.verdict), boom["verdict"]);
