@@ -36,6 +36,7 @@ fn knee() -> Component {
         summary: None,
         stage: Stage::Input,
         expression: "if(signal > start, start + slope * (signal - start), signal)".to_owned(),
+        states: Vec::new(),
         parameters: vec![OwnParameter::new("start", 0.5), OwnParameter::new("slope", 0.8)],
     });
     Component::new(own.unwrap(), vec![0.5.into(), 0.8.into()]).unwrap()

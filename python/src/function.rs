@@ -8,6 +8,7 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use tauscope::effect::{
@@ -28,6 +29,10 @@ struct Called {
     arguments: Vec<Argument>,
     /// Where a fit of each parameter starts.
     starts: Vec<f64>,
+    /// The least and the largest value with which it is called, of each parameter.
+    limits: Vec<(f64, f64)>,
+    /// Where its states start; as the signal where there is no number.
+    states: Vec<Option<f64>>,
     nests: bool,
     /// The first exception that it raised; it is not called any more then.
     raised: Mutex<Option<PyErr>>,
@@ -40,6 +45,8 @@ enum Argument {
     Signal(Signal),
     /// The parameter with this index.
     Parameter(usize),
+    /// The state with this index.
+    State(usize),
 }
 
 /// What a function may see.
@@ -82,7 +89,8 @@ type Given = (String, f64, Option<f64>, Option<f64>, f64);
 #[pymethods]
 impl Function {
     /// The effect `id` of `stage` that calls `function` with the arguments of these names, those
-    /// of `parameters` among them.
+    /// of `parameters` and `states` among them. A state starts as the number behind its name, or as
+    /// the signal.
     #[new]
     fn new(
         id: &str,
@@ -90,6 +98,7 @@ impl Function {
         function: Py<PyAny>,
         arguments: Vec<String>,
         parameters: Vec<Given>,
+        states: Vec<(String, Option<f64>)>,
     ) -> PyResult<Self> {
         let refused = |why: String| TauscopeError::new_err(format!("effect `{id}`: {why}"));
         let known = Stage::ALL.into_iter().find(|known| known.id() == stage);
@@ -100,13 +109,30 @@ impl Function {
         if tauscope::effect::by_id(id).is_some() {
             return Err(refused("the catalogue has one of this name; choose another".to_owned()));
         }
-        let arguments = names.iter().map(|name| argument(name, stage, &parameters));
+        if stage == Stage::Transport && !states.is_empty() {
+            return Err(refused("in the stage `transport` there are no states".to_owned()));
+        }
+        let arguments = names.iter().map(|name| argument(name, stage, &parameters, &states));
         let arguments = arguments.collect::<Result<Vec<_>, _>>().map_err(refused)?;
         let starts = parameters.iter().map(|(_, value, ..)| *value).collect();
-        let spec: &'static Spec = Box::leak(Box::new(spec(id, stage, &names, &parameters)));
+        let spec = spec(id, stage, &names, &parameters).memory(states.len());
+        let spec: &'static Spec = Box::leak(Box::new(spec));
+        let limit =
+            |(_, _, min, max, _): &Given| (min.unwrap_or(-UNLIMITED), max.unwrap_or(UNLIMITED));
+        let limits = parameters.iter().map(limit).collect();
+        let states = states.into_iter().map(|(_, start)| start).collect();
         let (raised, has_raised) = (Mutex::new(None), AtomicBool::new(false));
-        let mut called =
-            Called { spec, function, arguments, starts, nests: true, raised, has_raised };
+        let mut called = Called {
+            spec,
+            function,
+            arguments,
+            starts,
+            limits,
+            states,
+            nests: true,
+            raised,
+            has_raised,
+        };
         called.nests = called.is_neutral_where_it_should_be();
         let called: &'static Called = Box::leak(Box::new(called));
         called.raised().map_or(Ok(Self(called)), Err)
@@ -136,19 +162,29 @@ impl Function {
 }
 
 /// What the argument `name` is to be.
-fn argument(name: &str, stage: Stage, parameters: &[Given]) -> Result<Argument, String> {
+fn argument(
+    name: &str,
+    stage: Stage,
+    parameters: &[Given],
+    states: &[(String, Option<f64>)],
+) -> Result<Argument, String> {
     let signals = if stage == Stage::Transport { &CHANGE[..] } else { &MOMENT[..] };
     let signal = signals.iter().find(|(known, _)| *known == name);
     let parameter = parameters.iter().position(|(known, ..)| known == name);
-    match (signal, parameter) {
-        (Some((_, signal)), None) => Ok(Argument::Signal(*signal)),
-        (None, Some(index)) => Ok(Argument::Parameter(index)),
-        (Some(_), Some(_)) => Err(format!("`{name}` is a signal, and no name for a parameter")),
-        (None, None) => {
+    let remembered = states.iter().position(|(known, _)| known == name);
+    match (signal, parameter, remembered) {
+        (Some((_, signal)), None, None) => Ok(Argument::Signal(*signal)),
+        (None, Some(index), None) => Ok(Argument::Parameter(index)),
+        (None, None, Some(index)) => Ok(Argument::State(index)),
+        (Some(_), ..) => {
+            Err(format!("`{name}` is a signal, and no name for a parameter or a state"))
+        }
+        (None, Some(_), Some(_)) => Err(format!("`{name}` is a parameter and a state")),
+        (None, None, None) => {
             let known: Vec<_> = signals.iter().map(|(known, _)| *known).collect();
             Err(format!(
-                "its argument `{name}` is neither one of the signals {} nor a parameter with a \
-                 value",
+                "its argument `{name}` is neither one of the signals {} nor a state nor a parameter \
+                 with a value",
                 known.join(", ")
             ))
         }
@@ -176,22 +212,52 @@ fn spec(id: &str, stage: Stage, arguments: &[&str], parameters: &[Given]) -> Spe
 }
 
 impl Called {
-    /// What the function gives, or `unchanged` where that is no finite number.
-    fn call(&self, unchanged: f64, parameters: &[f64], signal: impl Fn(Signal) -> f64) -> f64 {
+    /// What the function gives, or `unchanged` where that is no finite number; the states of `memory`
+    /// become those that it gives behind it.
+    fn call(
+        &self,
+        unchanged: f64,
+        (parameters, memory): (&[f64], &mut [f64]),
+        signal: impl Fn(Signal) -> f64,
+    ) -> f64 {
         if self.has_raised.load(Ordering::Relaxed) {
             return unchanged;
         }
         let value = |argument: &Argument| match argument {
             Argument::Signal(of) => signal(*of),
-            Argument::Parameter(index) => parameters.get(*index).copied().unwrap_or_default(),
+            Argument::Parameter(index) => {
+                let value = parameters.get(*index).copied().unwrap_or_default();
+                self.limits.get(*index).map_or(value, |(low, high)| value.clamp(*low, *high))
+            }
+            Argument::State(index) => memory.get(*index).copied().unwrap_or_default(),
         };
         let called = Python::attach(|py| {
             let arguments = PyTuple::new(py, self.arguments.iter().map(value))?;
-            self.function.call1(py, arguments)?.extract::<f64>(py)
+            let given = self.function.call1(py, arguments)?;
+            if self.states.is_empty() {
+                return Ok((given.extract::<f64>(py)?, Vec::new()));
+            }
+            let mut given: Vec<f64> = given.extract(py)?;
+            if given.len() != 1 + self.states.len() {
+                let (id, count) = (self.spec.id, self.states.len());
+                return Err(PyTypeError::new_err(format!(
+                    "effect `{id}`: its function is to return the signal and {count} states, and \
+                     returns {} numbers",
+                    given.len()
+                )));
+            }
+            let states = given.split_off(1);
+            Ok((given.first().copied().unwrap_or(f64::NAN), states))
         });
         match called {
-            Ok(value) if value.is_finite() => value,
-            Ok(_) => unchanged,
+            Ok((value, states)) => {
+                for (own, next) in
+                    memory.iter_mut().zip(states).filter(|(_, next)| next.is_finite())
+                {
+                    *own = next;
+                }
+                if value.is_finite() { value } else { unchanged }
+            }
             Err(error) => {
                 let mut raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
                 raised.get_or_insert(error);
@@ -212,6 +278,11 @@ impl Called {
         /// Part of the signal, or of 1, that rounding may make.
         const TOLERANCE: f64 = 1e-9;
         let neutral = self.spec.neutral();
+        let within = |(value, (low, high)): (&f64, &(f64, f64))| (*low..=*high).contains(value);
+        if !neutral.iter().zip(&self.limits).all(within) {
+            return false;
+        }
+        let mut memory = vec![0.0; self.states.len()];
         [0.0, 0.01, -0.7, 3.0, -45.0, 1000.0].into_iter().zip(1..).all(|(signal, k)| {
             let (position, time_s) = (17.0 * f64::from(k) - 50.0, 3.0 * f64::from(k));
             let velocity = 0.5 * signal;
@@ -219,7 +290,7 @@ impl Called {
             let change = InputChange { before: position, after: signal, held_s: at.dt_s, time_s };
             let (expected, found) = match self.spec.stage {
                 Stage::Transport => (0.0, self.extra_delay_s(&neutral, &change)),
-                _ => (signal, self.step(&neutral, &mut [], &at)),
+                _ => (signal, self.step(&neutral, &mut memory, &at)),
             };
             (found - expected).abs() <= TOLERANCE * expected.abs().max(1.0)
         })
@@ -241,11 +312,17 @@ impl Effect for Called {
         self.spec
     }
 
-    fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
+    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
+        for (state, start) in memory.iter_mut().zip(&self.states) {
+            *state = start.unwrap_or(at.signal);
+        }
+    }
+
+    fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
         if self.spec.stage == Stage::Transport {
             return at.signal;
         }
-        self.call(at.signal, parameters, |signal| match signal {
+        self.call(at.signal, (parameters, memory), |signal| match signal {
             Signal::Incoming => at.signal,
             Signal::Position => at.position,
             Signal::Velocity => at.velocity,
@@ -261,7 +338,7 @@ impl Effect for Called {
         if self.spec.stage != Stage::Transport {
             return 0.0;
         }
-        self.call(0.0, parameters, |signal| match signal {
+        self.call(0.0, (parameters, &mut []), |signal| match signal {
             Signal::Before => change.before,
             Signal::After => change.after,
             Signal::Held => change.held_s,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -13,7 +14,11 @@ Parameter = float | Mapping[str, Any]
 
 
 def own_function(
-    name: str, stage: str, function: Callable[..., float], parameters: Mapping[str, Parameter]
+    name: str,
+    stage: str,
+    function: Callable[..., Any],
+    states: Mapping[str, str | float],
+    parameters: Mapping[str, Parameter],
 ) -> tuple[_tauscope.Function, dict[str, Parameter]]:
     """The effect, and its parameters: those that are given, and the function's own defaults."""
     given: dict[str, Parameter] = dict(parameters)
@@ -37,7 +42,16 @@ def own_function(
         parameter: {key: value for key, value in table.items() if key in kept}
         for parameter, table in tables.items()
     }
-    return _tauscope.Function(name, stage, function, names, native), {**values}
+    starts = [(state, _start(name, state, start)) for state, start in states.items()]
+    return _tauscope.Function(name, stage, function, names, native, starts), {**values}
+
+
+def _start(name: str, state: str, start: str | float) -> float | None:
+    if start == "signal":
+        return None
+    if isinstance(start, str):
+        raise TypeError(f'effect `{name}`: state `{state}` starts at a number, or as "signal"')
+    return float(start)
 
 
 def _table(value: Parameter) -> dict[str, Any]:
@@ -58,5 +72,5 @@ def _written(value: Any) -> str:
     if isinstance(value, Mapping):
         return "{ " + written(value) + " }"
     if isinstance(value, (bool, str)):
-        return str(value).lower() if isinstance(value, bool) else f'"{value}"'
+        return str(value).lower() if isinstance(value, bool) else json.dumps(value)
     return repr(float(value))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -111,8 +111,9 @@ class Model:
         joint: str | None = None,
         *,
         expression: str | None = None,
-        function: Callable[..., float] | None = None,
+        function: Callable[..., Any] | None = None,
         stage: str = "input",
+        states: Mapping[str, Any] | None = None,
         **parameters: Parameter,
     ) -> Model:
         """This model with another effect behind those it has; neutral where no value is given.
@@ -126,19 +127,30 @@ class Model:
         ``position``, ``velocity``, ``time``, ``dt``, ``others``, ``radians``; of the transport
         stage ``before``, ``after``, ``held``, ``time``. It gets numbers in the units of the log
         and seconds, and gives the signal behind the effect; of the transport stage the seconds by
-        which a change of the input arrives later. It has no memory, and is called for every
-        sample of every simulation, or, if it takes ``signal`` alone, for every level of the
-        input.
+        which a change of the input arrives later. It is called for every sample of every
+        simulation, or, if it takes ``signal`` alone, for every level of the input; and never with
+        a parameter below its ``min`` or above its ``max``.
+
+        ``states`` are numbers that the effect remembers. Of an expression each has the expression
+        of its next value, or a dictionary with ``start`` and ``next``. Of a function each is one of
+        its arguments and has its start, a number or ``"signal"``; the function returns the signal
+        and the next value of each state, in their order.
 
         >>> model = Model.integrator(gain=10.0, delay=0.0)
         >>> model = model.with_effect("weak", function=lambda signal, a: signal * (1 - a), a=0.5)
         >>> model.predict([1.0, 1.0, 1.0], sample_period=0.1).tolist()
         [0.0, 0.5, 1.0]
+        >>> def fading(signal, seen, a):
+        ...     return signal * (1 - a * seen), min(seen + abs(signal), 1.0)
+        >>> plain = Model.integrator(gain=10.0, delay=0.0)
+        >>> model = plain.with_effect("fading", function=fading, states={"seen": 0.0}, a=0.5)
+        >>> model.predict([1.0, 1.0, 1.0], sample_period=0.1).tolist()
+        [0.0, 1.0, 1.5]
         """
         lines = [f"\n[[joint.{json.dumps(self._joint(joint))}.effect]]"]
         functions, given = self.functions, {**parameters}
         if function is not None:
-            own, given = own_function(kind, stage, function, parameters)
+            own, given = own_function(kind, stage, function, states or {}, parameters)
             functions = (*(each for each in functions if each.id != kind), own)
         if expression is None:
             lines.append(f"kind = {json.dumps(kind)}")
@@ -146,6 +158,8 @@ class Model:
             lines.append('kind = "expression"')
             header = {"id": kind, "stage": stage, "expression": expression}
             lines.extend(f"{key} = {json.dumps(value)}" for key, value in header.items())
+            if states:
+                lines.append(f"states = {{ {written(states)} }}")
         lines.append(f"parameters = {{ {written(given)} }}")
         text = self.text.rstrip("\n") + "\n".join(["", *lines]) + "\n"
         return Model(text, self.name, functions)

@@ -24,6 +24,7 @@ class Function:
         function: Callable[..., float],
         arguments: list[str],
         parameters: list[tuple[str, float, float | None, float | None, float]],
+        states: list[tuple[str, float | None]],
     ) -> Function: ...
     @property
     def id(self) -> str: ...

@@ -1,6 +1,7 @@
 //! Arguments, printing and exit status; no mathematics.
 //!
 //! - `program`: the commands by name, and the exit status
+//! - `importer`: the program as a viewer calls it, to open a log
 //! - `command`: each command, one file or folder
 //! - `each_log`: a command on every log of a folder
 //! - `run`: what commands on logs share: read, estimate, use threads, report
@@ -18,6 +19,7 @@ mod console;
 mod each_log;
 mod exit;
 mod failure;
+mod importer;
 mod output;
 mod program;
 mod run;
@@ -25,4 +27,5 @@ mod typed;
 mod viewer;
 
 pub use console::Hosting;
-pub use program::{CommandOption, Refused, options_of, read_within, run, run_within};
+pub use importer::run;
+pub use program::{CommandOption, Refused, options_of, read_within, run_within};

@@ -1,29 +1,39 @@
 //! The program: its commands by name, and the exit status.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::io;
 use std::panic::AssertUnwindSafe;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::Context as _;
-use clap::{CommandFactory as _, Parser, Subcommand};
+use clap::{Arg, CommandFactory as _, Parser, Subcommand};
 
 use crate::cli::args::DataArgs;
 use crate::cli::command::{
     add, columns, compare, completions, design, doctor, effects, estimate, explain, export,
-    improve, man, merge, report, simulate, sweep,
+    importer, improve, man, merge, report, simulate, sweep,
 };
 use crate::cli::console::{Ended, Host, Hosting, message};
 use crate::cli::each_log::end_with_parent;
 use crate::cli::exit::Completion;
 use crate::cli::failure::said;
 use crate::cli::output::meet_file_limits;
-use crate::experiment::{Experiment, ReadError};
+use crate::experiment::{Experiment, ReadError, is_named_like_a_log};
 
-/// Estimate the variable delay of hydraulic joints, and record every decision.
+/// Estimate the variable delay of hydraulic joints, record every decision, and find the physics that
+/// a model lacks.
+///
+/// `tauscope LOG.csv` reads a log, estimates the delays of its joints and says which physical effects
+/// a model of each needs; `-o` writes report and recording beside the log.
 #[derive(Debug, Parser)]
-#[command(name = "tauscope", version, max_term_width = 100)]
+#[command(
+    name = "tauscope",
+    version,
+    max_term_width = 100,
+    override_usage = "tauscope <LOG>... [-o [FILE]]\n       tauscope <COMMAND> [OPTIONS]"
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -40,11 +50,23 @@ enum Command {
     Merge(merge::Args),
     Columns(columns::Args),
     Report(Box<report::Args>),
+    /// Say what was measured, the delays, what a model lacks, and what to do next
+    ///
+    /// It is done where a log stands in the place of a command. Options are those of `report`.
+    #[command(
+        hide = true,
+        about,
+        long_about,
+        override_usage = "tauscope <LOG>... [-o [FILE]] [OPTIONS]",
+        mut_arg("report", first_look_output)
+    )]
+    FirstLook(Box<report::Args>),
     Effects(effects::Args),
     Export(export::Args),
     Simulate(Box<simulate::Args>),
     Design(Box<design::Args>),
     Doctor(doctor::Args),
+    Importer(importer::Args),
     Completions(completions::Args),
     Man(man::Args),
 }
@@ -52,10 +74,10 @@ enum Command {
 /// Runs the command that the arguments name.
 ///
 /// Exit status: 0 all done; 1 some joints or files failed; 2 nothing usable.
-pub fn run() -> ExitCode {
+pub(super) fn run() -> ExitCode {
     end_with_parent();
     meet_file_limits();
-    let outcome = match Cli::try_parse() {
+    let outcome = match Cli::try_parse_from(with_command(std::env::args_os().collect())) {
         Ok(cli) => perform(cli.command),
         Err(fault) if fault.use_stderr() => fault.exit(),
         // Help and the version are results, which may be lost like others.
@@ -73,6 +95,28 @@ pub fn run() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// The output of a first look: beside the log where it has no name, and nowhere unless it is asked
+/// for.
+fn first_look_output(output: Arg) -> Arg {
+    output.required(false).num_args(0..=1).default_missing_value(report::BESIDE_THE_LOG)
+}
+
+/// The words as they were typed; a log in the place of a command gets one.
+fn with_command(mut words: Vec<OsString>) -> Vec<OsString> {
+    if words.get(1).is_some_and(|word| is_log(word)) {
+        words.insert(1, "first-look".into());
+    }
+    words
+}
+
+/// Whether a word names a log, and neither a command nor an option.
+fn is_log(word: &OsStr) -> bool {
+    let text = word.to_string_lossy();
+    let is_command = text == "help" || Cli::command().find_subcommand(&*text).is_some();
+    let is_named_so = || is_named_like_a_log(&text) || Path::new(word).exists();
+    !text.starts_with('-') && !is_command && is_named_so()
 }
 
 /// Why a command that a program runs inside itself has no results.
@@ -175,7 +219,7 @@ pub fn options_of(command: &str) -> Option<Vec<CommandOption>> {
         "read" => Reading::command(),
         _ => Cli::command().find_subcommand(command)?.clone(),
     };
-    let option = |argument: &clap::Arg| {
+    let option = |argument: &Arg| {
         let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
         let action = argument.get_action();
         Some(CommandOption {
@@ -200,11 +244,13 @@ fn perform(command: Command) -> anyhow::Result<Completion> {
         Command::Merge(args) => merge::run(&args),
         Command::Columns(args) => columns::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::FirstLook(mut args) => report::first_look(&mut args),
         Command::Effects(args) => effects::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Design(args) => design::run(&args),
         Command::Doctor(args) => doctor::run(&args),
+        Command::Importer(args) => importer::run(&args),
         Command::Completions(args) => completions::run(&args, Cli::command()),
         Command::Man(args) => man::run(&args, Cli::command()),
     }

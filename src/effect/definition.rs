@@ -11,10 +11,31 @@ pub struct Definition {
     pub summary: Option<String>,
     /// Where it acts.
     pub stage: Stage,
-    /// The signal behind it, as a function of signals and parameters.
+    /// The signal behind it, as a function of signals, parameters and states.
     pub expression: String,
+    /// What it remembers from moment to moment.
+    pub states: Vec<OwnState>,
     /// Its parameters.
     pub parameters: Vec<OwnParameter>,
+}
+
+/// A number that a [`Definition`] remembers: a state of a discrete-time system.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OwnState {
+    /// Its name in the expressions.
+    pub name: String,
+    /// What it is where the signal was held for long, as a function of signals and parameters.
+    pub start: String,
+    /// What it is at the next moment, as a function of signals, parameters and all states as they
+    /// are.
+    pub next: String,
+}
+
+impl OwnState {
+    /// A state that follows the signal: it is the signal itself where that was held for long.
+    pub fn new(name: &str, next: &str) -> Self {
+        Self { name: name.to_owned(), start: "signal".to_owned(), next: next.to_owned() }
+    }
 }
 
 /// A parameter of a [`Definition`].

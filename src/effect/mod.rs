@@ -77,7 +77,7 @@ pub use backlash::Backlash;
 pub use coulomb_friction::CoulombFriction;
 pub use creep::Creep;
 pub use dead_band::DeadBand;
-pub use definition::{Definition, OwnParameter};
+pub use definition::{Definition, OwnParameter, OwnState};
 pub use dimension::Dimension;
 pub use direction_gain::DirectionGain;
 pub use end_stop::EndStop;

@@ -104,7 +104,7 @@ impl fmt::Display for Termination {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Converged => "converged",
-            Self::NoDescent => "stopped at a corner of the error; another start may end lower",
+            Self::NoDescent => "stopped at a kink of the error, where no step lowers it; another start may end lower",
             Self::NothingToFit => "nothing to fit",
             Self::OutOfPatience => "stopped after too many simulations",
             Self::Numerical => "the simulation gave no numbers",

@@ -163,6 +163,7 @@ fn row(compared: &ComparedJoint<'_>) -> [String; 9] {
 pub(super) fn errors_note(horizon: &str) -> String {
     format!(
         "root-mean-square errors, {horizon}; training and validation without the mean of each run, \
-         raw with it (validation, from the measured output), free run from the start of each trial"
+         raw with it (validation, from the measured output), free run from the start of each trial; \
+         a parameter is given ± its standard error"
     )
 }

@@ -96,7 +96,7 @@ impl Consequence<'_> {
         let found = self.attribution.iter().flat_map(|known| &known.found);
         found.filter(|one| !one.alternatives.is_empty()).map(|one| {
             let others = one.alternatives.join(" or ");
-            format!("In the place of {}, {others} leaves as little.", one.effect)
+            format!("In place of {}, {others} fits about as well.", one.effect)
         })
     }
 

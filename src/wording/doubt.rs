@@ -71,13 +71,13 @@ pub(crate) fn doubt_in_short(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
 /// A condition that holds by little.
 fn by_little(condition: Condition) -> String {
     let words = match condition {
-        Condition::BeforeInput => "hardly behind the input step",
-        Condition::SlopeChange => "the slope hardly changes enough",
-        Condition::ShortHold => "the input is held hardly long enough",
+        Condition::BeforeInput => "the breakpoint is close to the input step",
+        Condition::SlopeChange => "the change of slope is close to its limit",
+        Condition::ShortHold => "the hold is close to the shortest allowed",
         Condition::OutputLimit => "the output is near its limit",
         Condition::Sse => "the squared error is near its limit",
-        Condition::AtRest => "the joint hardly leaves its rest",
-        Condition::NothingHappened => "noise might look so",
+        Condition::AtRest => "the motion is close to that of a joint at rest",
+        Condition::NothingHappened => "noise alone could explain it",
         Condition::FirstOrLast | Condition::TooShort | Condition::Reviewer => {
             return format!("{condition} is near its limit");
         }

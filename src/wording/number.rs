@@ -69,6 +69,13 @@ pub(crate) fn measure(value: f64, unit: Option<&str>) -> String {
     rounded(value) + &unit_suffix(unit)
 }
 
+/// The least and the largest of `values`: `-2 to 2 V`.
+pub(crate) fn range_text(values: impl Iterator<Item = f64>, unit: Option<&str>) -> String {
+    let ends = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+    format!("{} to {}", rounded(low), measure(high, unit))
+}
+
 /// A value to the digits that its standard error leaves: `0.612 ± 0.021`.
 pub(crate) fn with_error(value: f64, std_error: f64) -> String {
     let known = std_error.is_finite() && std_error > 0.0;

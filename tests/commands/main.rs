@@ -11,6 +11,7 @@ mod ease;
 mod examples;
 mod extremes;
 mod faults;
+mod first_look;
 mod folders;
 mod follow;
 mod json_fields;

@@ -86,6 +86,13 @@ expression = "signal * (1 - a * others) + (b + tanh(time / 50)) * sin(position *
 parameters = { a = 0.2, b = 0.3, out = 0.01 }
 [[joint.boom.effect]]
 kind = "expression"
+id = "slow"
+stage = "dynamics"
+expression = "for + 0.1 * level"
+states = { for = "for + (signal - for) * (1 - exp(-dt / lag))", level = { start = "0", next = "level * exp(-dt) + dt * abs(for)" } }
+parameters = { lag = 0.2 }
+[[joint.boom.effect]]
+kind = "expression"
 id = "late"
 stage = "transport"
 expression = "x * (after < before) + 0.02 * exp(-held) + sqrt(before) * floor(x) - ln(time) * 0"

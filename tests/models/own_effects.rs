@@ -111,6 +111,25 @@ fn an_expression_of_an_effect_of_the_catalogue_is_that_effect() {
     }
 }
 
+#[test]
+fn an_expression_with_states_is_a_dynamic_effect_and_is_fitted() {
+    let lag =
+        "states = { before = \"now\", now = \"now + (signal - now) * (1 - exp(-dt / lag))\" }\n";
+    let mean = "signal + (before - signal) * lag / dt * (1 - exp(-dt / lag))";
+    let with = |value: &str| own("slow", "dynamics", mean, value) + lag;
+    let theirs = simulated(&model(&catalogue("actuator_lag", "time_constant = 0.12")));
+    let ours = simulated(&model(&with("lag = { value = 0.12, min = 0.001 }")));
+    assert!(theirs.iter().zip(&ours).all(|(a, b)| (a - b).abs() < 1e-9));
+
+    let made = trial();
+    let trial = Trial::new("made", 0.0, made.period(), made.input().to_vec(), theirs).unwrap();
+    let joint = Joint::new("boom", vec![trial]);
+    let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::FreeRun);
+    let start = model(&with("lag = { value = 0.03, min = 0.001 }"));
+    let fitted = fit(&record, &start, &record.range(20.0)).unwrap();
+    assert!((fitted.parameters[2].value - 0.12).abs() < 1e-6, "{:?}", fitted.parameters);
+}
+
 /// A flow that grows less above `start`, with the bounds of its parameters.
 const KNEE: &str = "if(signal > start, start + slope * (signal - start), signal)";
 const KNEE_PARAMETERS: &str = "start = { value = 1.2, min = 0.0, max = 5.0, dimension = \"input\" }, \
@@ -236,7 +255,7 @@ fn what_is_wrong_with_a_definition_is_said() {
         ),
         (
             joint_text(&own("mine", "input", "signal", "time = 1.0")),
-            "parameter `time` has a name that is",
+            "`time` is a name that is taken",
         ),
         (
             joint_text(&own("mine", "input", "signal + k", "k = { value = 2, max = 1 }")),
@@ -267,7 +286,7 @@ fn what_is_wrong_with_a_definition_is_said() {
             "effect `mine` has no `stage`: input, transport, dynamics, load or output",
         ),
         (joint_text("[[joint.boom.effect]]\nkind = \"expression\""), "has no `id`"),
-        (joint_text(&own("mine", "input", "signal", k)), "parameter `k` is not in the expression"),
+        (joint_text(&own("mine", "input", "signal", k)), "`k` is in no expression"),
         (joint_text(&own("mine", "engine", "signal", k)), "unknown variant `engine`"),
     ]);
 }

@@ -161,6 +161,7 @@ fn a_candidate_is_named_and_another_definition_written_out() {
         summary: Some("a \"bend\"".to_owned()),
         stage: Stage::Output,
         expression: "signal + size * sin(signal * radians)".to_owned(),
+        states: Vec::new(),
         parameters: vec![OwnParameter {
             start: None,
             min: Some(0.0),
@@ -300,6 +301,7 @@ fn own_effects() -> [&'static dyn Effect; 2] {
             summary: None,
             stage: Stage::Load,
             expression: expression.to_owned(),
+            states: Vec::new(),
             parameters: vec![OwnParameter { start: None, ..parameter }],
         })
     };

@@ -142,6 +142,7 @@ pub fn expression(bytes: &[u8]) -> bool {
         summary: None,
         stage,
         expression: expression.to_owned(),
+        states: Vec::new(),
         parameters: parameters.map(|name| OwnParameter::new(name, 0.5)).collect(),
     });
     let Ok(effect) = defined else { return false };

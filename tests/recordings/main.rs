@@ -10,6 +10,7 @@ mod delay;
 )]
 mod desk;
 mod differences;
+mod importer;
 mod live;
 mod models;
 mod pictures;

@@ -110,6 +110,11 @@ impl DataArgs {
         (files, unlisted.iter().map(|failure| said(&failure.error)).collect())
     }
 
+    /// The logs and folders as they are named.
+    pub(crate) fn given(&self) -> &[PathBuf] {
+        &self.data
+    }
+
     /// A note on each folder that has logs in folders of its own, which are left out.
     pub(crate) fn left_out(&self) -> Vec<String> {
         notes_on_subfolders(&self.data)

@@ -47,7 +47,8 @@ pub(crate) fn run(args: &Args, program: Command) -> anyhow::Result<Completion> {
 fn pages(program: Command) -> Vec<Command> {
     let mut program = program.disable_help_subcommand(true);
     program.build();
-    let commands: Vec<_> = program.get_subcommands().cloned().collect();
+    let shown = program.get_subcommands().filter(|command| !command.is_hide_set());
+    let commands: Vec<_> = shown.cloned().collect();
     std::iter::once(program).chain(commands).collect()
 }
 

@@ -10,6 +10,7 @@ pub(crate) mod effects;
 pub(crate) mod estimate;
 pub(crate) mod explain;
 pub(crate) mod export;
+pub(crate) mod importer;
 pub(crate) mod improve;
 pub(crate) mod man;
 pub(crate) mod merge;

@@ -32,7 +32,7 @@ pub(crate) struct StudyContext<'a> {
     pub(crate) estimates: &'a Estimates,
     /// The joints that are not asked for.
     pub(crate) others: &'a [Other<'a>],
-    settings: &'a Settings,
+    pub(crate) settings: &'a Settings,
 }
 
 impl<'a, T: Send> Study<'a, T> {
@@ -119,6 +119,14 @@ impl<'a> StudyContext<'a> {
             revisions,
             detail: Detail::Full,
         })
+    }
+}
+
+impl<'a, T, E> Study<'a, Result<T, E>> {
+    /// The study, where its work has not failed.
+    pub(crate) fn transpose(self) -> Result<Study<'a, T>, E> {
+        let Self { session, estimates, settings, result } = self;
+        Ok(Study { session, estimates, settings, result: result? })
     }
 }
 

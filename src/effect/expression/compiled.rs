@@ -2,13 +2,16 @@
 
 use super::super::interned::{Interned, part_of_interned, text_of_interned};
 use super::super::{
-    Definition, Effect, Equations, InputChange, Moment, OwnParameter, Parameter, RecordRange, Spec,
-    Stage, UNLIMITED, by_id, contract,
+    Definition, Effect, Equations, InputChange, Moment, OwnParameter, OwnState, Parameter,
+    RecordRange, Spec, Stage, UNLIMITED, by_id, contract,
 };
 use super::DefinitionError;
-use super::grammar::{self, Names};
+use super::grammar::{self, Names, SyntaxError};
 use super::signals::{POSITION, of_change, of_moment, signals};
 use super::tree::{Name, Node, Scope};
+
+/// The most states of an effect: with more it is a model of its own.
+const MOST_STATES: usize = 8;
 
 /// The word for it in a model file.
 pub(crate) const KIND: &str = "expression";
@@ -19,7 +22,17 @@ struct Expression {
     definition: Definition,
     spec: &'static Spec,
     node: Node,
+    states: Vec<State>,
+    /// Names of the states.
+    memory: &'static [&'static str],
     nests: bool,
+}
+
+/// The expressions of a state.
+#[derive(Debug)]
+struct State {
+    start: Node,
+    next: Node,
 }
 
 /// The effect that `definition` describes.
@@ -38,6 +51,7 @@ struct Expression {
 ///     summary: None,
 ///     stage: Stage::Load,
 ///     expression: "signal / (1 + loss * abs(signal))".to_owned(),
+///     states: Vec::new(),
 ///     parameters: vec![OwnParameter { min: Some(0.0), ..OwnParameter::new("loss", 0.1) }],
 /// })?;
 /// assert_eq!(hose.spec().id, "hose");
@@ -59,16 +73,27 @@ impl Expression {
             return Err(fault);
         }
         let parameters: Vec<_> = definition.parameters.iter().map(|p| p.name.as_str()).collect();
-        let names = Names::new(signals, &parameters);
+        let states: Vec<_> = definition.states.iter().map(|state| state.name.as_str()).collect();
+        let names = Names { signals, parameters: &parameters, memory: &states, locals: &[] };
         let node = grammar::parse(&definition.expression, names)?;
-        let is_unused = |index: usize| {
-            !node.has(&|node| matches!(node, Node::Named(Name::Parameter(p)) if *p == index))
-        };
-        if let Some((_, name)) = (0..).zip(&parameters).find(|(index, _)| is_unused(*index)) {
-            return Err(DefinitionError::Unused { parameter: (*name).to_owned() });
+        let parsed = definition.states.iter().map(|OwnState { start, next, .. }| {
+            let start = grammar::parse(start, Names { memory: &[], ..names })?;
+            Ok(State { start, next: grammar::parse(next, names)? })
+        });
+        let parsed: Vec<State> = parsed.collect::<Result<_, SyntaxError>>()?;
+        let named = (0..).zip(&parameters).map(|(index, name)| (Name::Parameter(index), name));
+        let named =
+            named.chain((0..).zip(&states).map(|(index, name)| (Name::Memory(index), name)));
+        for (known, name) in named {
+            let is_it = |node: &Node| matches!(node, Node::Named(used) if *used == known);
+            if !nodes(&node, &parsed).any(|node| node.has(&is_it)) {
+                return Err(DefinitionError::Unused { name: (*name).to_owned() });
+            }
         }
         let spec = part_of_interned(specified(&definition));
-        let mut new = Self { definition, spec, node, nests: true };
+        let memory = states.iter().map(|name| text_of_interned(*name)).collect::<Vec<_>>();
+        let memory = part_of_interned(memory);
+        let mut new = Self { definition, spec, node, states: parsed, memory, nests: true };
         if let Some(fault) = new.neutral_fault() {
             if new.definition.parameters.iter().any(|parameter| parameter.neutral.is_some()) {
                 return Err(fault);
@@ -79,8 +104,8 @@ impl Expression {
     }
 
     /// The value of the expression, or what it must be to change nothing.
-    fn or_else(&self, unchanged: f64, signals: &[f64], parameters: &[f64]) -> f64 {
-        let value = self.node.value(&Scope { signals, parameters, ..Scope::default() });
+    fn or_else(&self, unchanged: f64, scope: &Scope<'_>) -> f64 {
+        let value = self.node.value(scope);
         if value.is_finite() { value } else { unchanged }
     }
 
@@ -89,10 +114,11 @@ impl Expression {
         /// Part of the signal, or of 1, that rounding may make.
         const TOLERANCE: f64 = 1e-9;
         let neutral = self.spec.neutral();
+        let mut memory = vec![0.0; self.states.len()];
         samples().find_map(|sample| {
             let (signal, found) = match self.spec.stage {
                 Stage::Transport => (0.0, self.extra_delay_s(&neutral, &change(&sample))),
-                _ => (sample.signal, self.step(&neutral, &mut [], &sample)),
+                _ => (sample.signal, self.step(&neutral, &mut memory, &sample)),
             };
             let is_same = (found - signal).abs() <= TOLERANCE * signal.abs().max(1.0);
             (!is_same).then_some(DefinitionError::NotNeutral { signal, found })
@@ -105,27 +131,59 @@ impl Effect for Expression {
         self.spec
     }
 
-    fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
+    fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
+        let signals = of_moment(at);
+        let scope = Scope { signals: &signals, parameters, ..Scope::default() };
+        for (state, own) in memory.iter_mut().zip(&self.states) {
+            *state = finite_or(own.start.value(&scope), 0.0);
+        }
+    }
+
+    fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
         if self.spec.stage == Stage::Transport {
             return at.signal;
         }
-        self.or_else(at.signal, &of_moment(at), parameters)
+        let signals = of_moment(at);
+        if !self.states.is_empty() {
+            let mut before = [0.0; MOST_STATES];
+            for (before, state) in before.iter_mut().zip(memory.iter()) {
+                *before = *state;
+            }
+            let scope =
+                Scope { signals: &signals, parameters, memory: &before, ..Scope::default() };
+            for (state, own) in memory.iter_mut().zip(&self.states) {
+                *state = finite_or(own.next.value(&scope), *state);
+            }
+        }
+        let scope = Scope { signals: &signals, parameters, memory, ..Scope::default() };
+        self.or_else(at.signal, &scope)
     }
 
     fn extra_delay_s(&self, parameters: &[f64], change: &InputChange) -> f64 {
         if self.spec.stage != Stage::Transport {
             return 0.0;
         }
-        self.or_else(0.0, &of_change(change), parameters)
+        let signals = of_change(change);
+        self.or_else(0.0, &Scope { signals: &signals, parameters, ..Scope::default() })
     }
 
     fn equations(&self) -> Option<Equations> {
         let unchanged = if self.spec.stage == Stage::Transport { "0" } else { "signal" };
-        // Capital letters: its parameters have none.
-        Some(Equations::new(format!(
-            "VALUE = {}\nOUT = if(is_finite(VALUE), VALUE, {unchanged})",
-            self.definition.expression
-        )))
+        let Definition { states, expression, .. } = &self.definition;
+        // Capital letters: its parameters have none. All states change together.
+        let finite = |name: &str, other: &str| format!("if(is_finite({name}), {name}, {other})");
+        let next =
+            states.iter().map(|OwnState { name, next, .. }| format!("NEXT_{name} = {next}\n"));
+        let becomes = states.iter().map(|OwnState { name, .. }| {
+            format!("{name} = {}\n", finite(&format!("NEXT_{name}"), name))
+        });
+        let settle = states.iter().map(|OwnState { name, start, .. }| {
+            format!("START_{name} = {start}\n{name} = {}\n", finite(&format!("START_{name}"), "0"))
+        });
+        let (settle, states): (String, String) = (settle.collect(), next.chain(becomes).collect());
+        let out = finite("VALUE", unchanged);
+        let equations = Equations::new(format!("{states}VALUE = {expression}\nOUT = {out}"));
+        Some(equations.remembering(self.memory, text_of_interned(settle)))
     }
 
     fn nests(&self) -> bool {
@@ -136,10 +194,10 @@ impl Effect for Expression {
         let names = signals(self.spec.stage);
         let is_position = |index: usize| names.get(index) == Some(&POSITION);
         let by_stage = matches!(self.spec.stage, Stage::Load | Stage::Output);
-        by_stage
-            || self
-                .node
-                .has(&|node| matches!(node, Node::Named(Name::Signal(p)) if is_position(*p)))
+        let has = |node: &Node| {
+            node.has(&|node| matches!(node, Node::Named(Name::Signal(p)) if is_position(*p)))
+        };
+        by_stage || nodes(&self.node, &self.states).any(has)
     }
 
     fn definition(&self) -> Option<&Definition> {
@@ -201,21 +259,39 @@ impl OwnParameter {
     }
 }
 
+/// All expressions of an effect.
+fn nodes<'a>(node: &'a Node, states: &'a [State]) -> impl Iterator<Item = &'a Node> {
+    let of_states = states.iter().flat_map(|State { start, next }| [start, next]);
+    std::iter::once(node).chain(of_states)
+}
+
+fn finite_or(value: f64, other: f64) -> f64 {
+    if value.is_finite() { value } else { other }
+}
+
 fn check_names(definition: &Definition, signals: &[&str]) -> Result<(), DefinitionError> {
-    let Definition { id, parameters, .. } = definition;
-    let mut names = std::iter::once(id).chain(parameters.iter().map(|each| &each.name));
+    let Definition { id, parameters, states, .. } = definition;
+    let own = parameters.iter().map(|each| &each.name);
+    let own: Vec<&String> = own.chain(states.iter().map(|each| &each.name)).collect();
+    let mut names = std::iter::once(id).chain(own.iter().copied());
     if let Some(name) = names.find(|name| !contract::is_snake_case(name)) {
         return Err(DefinitionError::Name { name: name.clone() });
     }
     if by_id(id).is_some() || id == KIND {
         return Err(DefinitionError::TakenId { id: id.clone() });
     }
-    for (index, OwnParameter { name, .. }) in parameters.iter().enumerate() {
-        let mut before = parameters.iter().take(index);
+    for (index, name) in own.iter().enumerate() {
+        let mut before = own.iter().take(index);
         let is_taken = signals.contains(&name.as_str()) || grammar::is_taken(name);
-        if is_taken || before.any(|other| other.name == *name) {
-            return Err(DefinitionError::TakenName { parameter: name.clone() });
+        if is_taken || before.any(|other| other == name) {
+            return Err(DefinitionError::TakenName { name: (*name).clone() });
         }
+    }
+    if definition.stage == Stage::Transport && !states.is_empty() {
+        return Err(DefinitionError::States);
+    }
+    if states.len() > MOST_STATES {
+        return Err(DefinitionError::TooManyStates { states: states.len(), most: MOST_STATES });
     }
     Ok(())
 }
@@ -225,8 +301,12 @@ fn specified(definition: &Definition) -> Spec {
     let parameters: Vec<_> = definition.parameters.iter().map(OwnParameter::specified).collect();
     let summary = definition.summary.as_deref().unwrap_or("an effect of one's own");
     let text = text_of_interned;
+    let states =
+        definition.states.iter().map(|state| format!("; next {} = {}", state.name, state.next));
+    let states: String = states.collect();
     Spec::new(text(definition.id.as_str()), definition.stage, text(summary))
-        .equation(text_of_interned(format!("{behind} = {}", definition.expression)))
+        .equation(text_of_interned(format!("{behind} = {}{states}", definition.expression)))
+        .memory(definition.states.len())
         .source("the model file")
         .parameters(part_of_interned(parameters))
 }
@@ -263,7 +343,8 @@ mod tests {
 
     fn definition(stage: Stage, expression: &str, parameters: &[OwnParameter]) -> Definition {
         let (id, parameters) = ("own".to_owned(), parameters.to_vec());
-        Definition { id, summary: None, stage, expression: expression.to_owned(), parameters }
+        let (expression, states) = (expression.to_owned(), Vec::new());
+        Definition { id, summary: None, stage, expression, states, parameters }
     }
 
     fn own(expression: &str, parameters: &[OwnParameter]) -> &'static dyn Effect {
@@ -380,10 +461,10 @@ mod tests {
         assert!(error(id("My knee")).contains("not in snake case"));
         for name in ["signal", "sqrt", "pi", "if"] {
             let given = definition(Stage::Load, "1", &[OwnParameter::new(name, 1.0)]);
-            assert!(error(given).contains(&format!("parameter `{name}` has a name that is taken")));
+            assert!(error(given).contains(&format!("`{name}` is a name that is taken")));
         }
         let twice = [OwnParameter::new("k", 1.0), OwnParameter::new("k", 2.0)];
-        assert!(error(definition(Stage::Load, "1", &twice)).contains("`k` has a name"));
+        assert!(error(definition(Stage::Load, "1", &twice)).contains("`k` is a name"));
         // `before` is a signal of another stage, and `signal` none of the transport's.
         assert!(
             define(definition(Stage::Load, "before", &[OwnParameter::new("before", 1.0)])).is_ok()
@@ -418,7 +499,59 @@ mod tests {
     fn a_parameter_without_a_use_is_refused() {
         let k = OwnParameter::new("k", 1.0);
         let error = define(definition(Stage::Load, "if(signal > 0, signal, -signal)", &[k]));
-        assert!(matches!(error, Err(DefinitionError::Unused { parameter }) if parameter == "k"));
+        assert!(matches!(error, Err(DefinitionError::Unused { name }) if name == "k"));
+    }
+
+    /// A first-order lag, sampled at the ends of intervals.
+    fn lag() -> Definition {
+        let next = "x + (signal - x) * (1 - exp(-dt / lag))";
+        let states = vec![OwnState::new("x", next)];
+        Definition { states, ..definition(Stage::Dynamics, "x", &[OwnParameter::new("lag", 0.1)]) }
+    }
+
+    #[test]
+    fn a_state_goes_on_from_moment_to_moment() {
+        let lag = define(lag()).unwrap();
+        assert!(lag.nests(), "without a lag it follows at once");
+        let mut memory = vec![0.0; lag.spec().memory];
+        lag.settle(&[0.05], &mut memory, &moment(2.0));
+        let outputs: Vec<f64> =
+            (0..4).map(|_| lag.step(&[0.05], &mut memory, &moment(3.0))).collect();
+        let expected: Vec<f64> = (1..5).map(|k| 3.0 - (-0.2 * f64::from(k)).exp()).collect();
+        assert_close(&outputs, &expected);
+    }
+
+    #[test]
+    fn states_change_together() {
+        let state = |name: &str, start: &str, next: &str| OwnState {
+            start: start.to_owned(),
+            ..OwnState::new(name, next)
+        };
+        let states = vec![state("a", "1", "b"), state("b", "2", "a")];
+        let swap = Definition { states, ..definition(Stage::Input, "signal * (a - b)", &[]) };
+        let swap = define(swap).unwrap();
+        let mut memory = vec![0.0; 2];
+        swap.settle(&[], &mut memory, &moment(1.0));
+        let outputs: Vec<f64> = (0..3).map(|_| swap.step(&[], &mut memory, &moment(1.0))).collect();
+        assert_close(&outputs, &[1.0, -1.0, 1.0]);
+    }
+
+    #[test]
+    fn states_that_make_no_sense_are_refused() {
+        let error = |definition: Definition| define(definition).unwrap_err().to_string();
+        let with = |states: Vec<OwnState>| Definition { states, ..lag() };
+        assert!(error(with(Vec::new())).contains("cannot be computed"), "`x` is not known");
+        let named = OwnState::new("lag", "lag");
+        assert!(error(with(vec![named])).contains("`lag` is a name that is taken"));
+        let unused = [lag().states, vec![OwnState::new("y", "signal")]].concat();
+        assert!(error(with(unused)).contains("`y` is in no expression"));
+        let transport = Definition { stage: Stage::Transport, ..lag() };
+        assert!(error(transport).contains("no states"));
+        let many: Vec<_> = (0..9).map(|k| OwnState::new(&format!("s{k}"), "signal")).collect();
+        assert!(error(with(many)).contains("9 states; 8 are the most"));
+        // A start knows no other state.
+        let circular = OwnState { start: "x".to_owned(), ..OwnState::new("x", "signal") };
+        assert!(error(with(vec![circular])).contains("cannot be computed"));
     }
 
     #[test]

@@ -18,12 +18,12 @@ pub enum DefinitionError {
         /// The id.
         id: String,
     },
-    /// A parameter has the name of a signal, a function or a constant, or of another
-    /// parameter.
-    #[error("parameter `{parameter}` has a name that is taken: rename it")]
+    /// A parameter or a state has the name of a signal, a function or a constant, or of another
+    /// parameter or state.
+    #[error("`{name}` is a name that is taken: rename the parameter or the state")]
     TakenName {
-        /// The parameter.
-        parameter: String,
+        /// The name.
+        name: String,
     },
     /// Numbers of a parameter do not go together.
     #[error(
@@ -45,11 +45,24 @@ pub enum DefinitionError {
     /// The expression cannot be computed.
     #[error("the expression cannot be computed")]
     Syntax(#[from] SyntaxError),
-    /// The expression does not depend on a parameter.
-    #[error("parameter `{parameter}` is not in the expression: use it, or take it out")]
+    /// No expression depends on a parameter or a state.
+    #[error("`{name}` is in no expression: use it, or take it out")]
     Unused {
-        /// The parameter.
-        parameter: String,
+        /// The parameter or the state.
+        name: String,
+    },
+    /// An effect on the delay has states.
+    #[error(
+        "an effect of stage `transport` has no states: it is asked once at each step of the input"
+    )]
+    States,
+    /// It has too many states.
+    #[error("{states} states; {most} are the most")]
+    TooManyStates {
+        /// How many it has.
+        states: usize,
+        /// How many it may have.
+        most: usize,
     },
     /// The neutral values that are given are not neutral.
     #[error(

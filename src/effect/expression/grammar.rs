@@ -133,11 +133,6 @@ pub(super) struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    /// Those of an expression of one line, without memory.
-    pub(super) fn new(signals: &'a [&'static str], parameters: &'a [&'a str]) -> Self {
-        Self { signals, parameters, memory: &[], locals: &[] }
-    }
-
     fn all(&self) -> impl Iterator<Item = &'a str> {
         let given = self.signals.iter().chain(self.parameters);
         given.chain(self.memory).chain(self.locals).copied()

@@ -20,7 +20,8 @@
 //! a change of the input arrives later, 0 being neutral. Where the result is not a finite
 //! number, the effect does nothing.
 //!
-//! An expression has no memory. It is compiled once and takes 20 to 40 ns to compute.
+//! An effect may have states, which go on from moment to moment: see
+//! [`OwnState`](super::OwnState). An expression is compiled once and takes 20 to 40 ns to compute.
 //!
 //! Without a value for each parameter at which it changes nothing, models with and without
 //! the effect do not nest; [`Effect::nests`](crate::effect::Effect::nests) says so.

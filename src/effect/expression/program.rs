@@ -78,10 +78,13 @@ impl Program {
 mod tests {
     use proptest::prelude::*;
 
+    use super::super::define;
     use super::super::signals::{of_change, of_moment};
     use super::super::tree::Scope;
     use super::*;
-    use crate::effect::{Effect, InputChange, Moment, REGISTRY};
+    use crate::effect::{
+        Definition, Effect, InputChange, Moment, OwnParameter, OwnState, REGISTRY, Stage,
+    };
 
     /// The equations of an effect, ready to run.
     struct Runner {
@@ -134,6 +137,22 @@ mod tests {
         effect.spec().parameters.iter().zip(parts).map(of).collect()
     }
 
+    /// An effect of one's own that remembers two numbers.
+    fn with_states() -> &'static dyn Effect {
+        let start = "abs(signal)".to_owned();
+        let sum = OwnState { start, ..OwnState::new("sum", "sum + rate * abs(x) * dt") };
+        let states = vec![sum, OwnState::new("x", "x + (signal - x) * min(1, dt / (rate + sum))")];
+        define(Definition {
+            id: "own_states".to_owned(),
+            summary: None,
+            stage: Stage::Dynamics,
+            expression: "x / (1 + rate * sum)".to_owned(),
+            states,
+            parameters: vec![OwnParameter::new("rate", 0.5)],
+        })
+        .unwrap()
+    }
+
     fn close(a: f64, b: f64) -> bool {
         (a - b).abs() <= 1e-10 * a.abs().max(b.abs()).max(1.0)
     }
@@ -147,9 +166,9 @@ mod tests {
             signals in proptest::collection::vec((-4.0..4.0, -50.0..50.0, -9.0..9.0, 0.0..1.0), 12),
             dt_s in prop_oneof![Just(0.01), Just(1e-4), 0.001..0.3],
         ) {
-            for effect in REGISTRY {
-                let parameters = parameters(*effect, &parts);
-                let mut runner = Runner::new(*effect);
+            for effect in REGISTRY.iter().copied().chain([with_states()]) {
+                let parameters = parameters(effect, &parts);
+                let mut runner = Runner::new(effect);
                 let mut memory = vec![0.0; effect.spec().memory];
                 let at = |signal, position, velocity, others, time_s| Moment {
                     signal, position, velocity, time_s, dt_s, others,

@@ -23,6 +23,6 @@ mod text;
 mod xlsx;
 
 pub(super) use date::date_of_seconds;
-pub(super) use registry::{endings, is_named_like_a_log, open};
-pub(crate) use registry::{format_names, line_end_of};
+pub(super) use registry::{endings, open};
+pub(crate) use registry::{format_names, is_named_like_a_log, line_end_of};
 pub(super) use text::text_of;

@@ -236,7 +236,7 @@ impl Format {
 }
 
 /// Whether a file's name, in lower case, is that of a log.
-pub(in crate::experiment) fn is_named_like_a_log(name: &str) -> bool {
+pub(crate) fn is_named_like_a_log(name: &str) -> bool {
     FORMATS.iter().any(|format| format.ends(name))
 }
 

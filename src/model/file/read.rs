@@ -39,8 +39,7 @@ fn check_size(
     effects: &[EffectToml],
 ) -> Result<(), ModelError> {
     let count = effects.len();
-    let characters: usize =
-        effects.iter().filter_map(|it| it.expression.as_ref()).map(String::len).sum();
+    let characters: usize = effects.iter().map(EffectToml::characters).sum();
     let problem = match (count > MOST_EFFECTS, characters > MOST_CHARACTERS) {
         (false, false) => return Ok(()),
         (true, _) => format!("{count} effects; {MOST_EFFECTS} are the most"),
@@ -101,11 +100,13 @@ impl Own<'_> {
             own_parameter(name, given, start)
         });
         let (summary, parameters) = (given.summary.clone(), parameters.collect());
+        let states = given.states.iter().map(|(name, state)| state.of_name(name)).collect();
         let defined = expression::define(Definition {
             id: id.clone(),
             summary,
             stage,
             expression,
+            states,
             parameters,
         });
         defined.map_err(|source| {
@@ -211,10 +212,11 @@ impl JointReader<'_> {
 
     /// The effect of the catalogue, or the candidate, of this kind.
     fn known_effect(&self, given: &EffectToml) -> Result<&'static dyn Effect, ModelError> {
-        let EffectToml { kind, id, summary, stage, expression, parameters } = given;
-        if id.is_some() || summary.is_some() || stage.is_some() || expression.is_some() {
-            let problem = "has a definition already: `id`, `summary`, `stage` and `expression` \
-                           belong to kind = \"expression\"";
+        let EffectToml { kind, id, summary, stage, expression, states, parameters } = given;
+        let is_defined = id.is_some() || summary.is_some() || stage.is_some() || !states.is_empty();
+        if is_defined || expression.is_some() {
+            let problem = "has a definition already: `id`, `summary`, `stage`, `expression` and \
+                           `states` belong to kind = \"expression\"";
             return Err(self.own().error(kind, problem));
         }
         let is_own = |given: TableToml| given.neutral.is_some() || given.dimension.is_some();

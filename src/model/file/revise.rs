@@ -3,7 +3,7 @@
 //! What a user wrote stays as it is: comments, order, how a number is written that has not
 //! changed. Only what the model says otherwise is replaced.
 
-use toml_edit::{DocumentMut, Item, Table, TableLike};
+use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike};
 
 use super::edit::{entries, is_empty, or_new, push, retain, set_text};
 use super::fitted::insert_errors;
@@ -11,7 +11,7 @@ use super::parameter::{write_component, write_parameters};
 use super::schema::SCHEMA;
 use super::{Fitted, ModelError, ModelFile, Revision};
 use crate::effect::expression::KIND;
-use crate::effect::{Definition, Effect};
+use crate::effect::{Definition, Effect, OwnState};
 use crate::model::{Component, JointModel};
 
 impl ModelFile {
@@ -226,7 +226,7 @@ impl Writer<'_> {
         let is_candidate = self.candidates.iter().any(|each| std::ptr::eq(each.spec(), spec));
         match effect.definition().filter(|_| !is_candidate) {
             None => set_text(&mut table, "kind", spec.id),
-            Some(Definition { id, summary, stage, expression, .. }) => {
+            Some(Definition { id, summary, stage, expression, states, .. }) => {
                 set_text(&mut table, "kind", KIND);
                 set_text(&mut table, "id", id);
                 if let Some(summary) = summary {
@@ -234,10 +234,22 @@ impl Writer<'_> {
                 }
                 set_text(&mut table, "stage", stage.id());
                 set_text(&mut table, "expression", expression);
+                if !states.is_empty() {
+                    table.insert("states", toml_edit::value(states_table(states)));
+                }
             }
         }
         table
     }
+}
+
+/// The states of a definition, as they are written.
+fn states_table(states: &[OwnState]) -> InlineTable {
+    let table = |OwnState { name, start, next }: &OwnState| {
+        let fields = [("start", start.as_str()), ("next", next.as_str())];
+        (name.clone(), fields.into_iter().collect::<InlineTable>())
+    };
+    states.iter().map(table).collect()
 }
 
 fn has_all_of(entry: &dyn TableLike, wanted: &Table) -> bool {

@@ -6,7 +6,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
 use super::{Fitted, Revision};
-use crate::effect::{Dimension, Stage};
+use crate::effect::{Dimension, OwnState, Stage};
 use crate::model::Value;
 
 /// The schema of a model file.
@@ -40,14 +40,49 @@ pub(super) type Parameters = BTreeMap<String, ParameterToml>;
 #[serde(deny_unknown_fields)]
 pub(super) struct EffectToml {
     pub(super) kind: String,
-    /// This and the next three are for expressions only.
+    /// This and the next four are for expressions only.
     pub(super) id: Option<String>,
     pub(super) summary: Option<String>,
     #[serde(default, deserialize_with = "stage")]
     pub(super) stage: Option<Stage>,
     pub(super) expression: Option<String>,
     #[serde(default)]
+    pub(super) states: BTreeMap<String, StateToml>,
+    #[serde(default)]
     pub(super) parameters: Parameters,
+}
+
+/// A state of an expression: what it is next, and where it starts.
+#[derive(Clone, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected an expression, or a table like { start = \"signal\", next = \"…\" }"
+)]
+pub(super) enum StateToml {
+    Next(String),
+    Table { start: String, next: String },
+}
+
+impl StateToml {
+    pub(super) fn of_name(&self, name: &str) -> OwnState {
+        match self {
+            Self::Next(next) => OwnState::new(name, next),
+            Self::Table { start, next } => {
+                OwnState { start: start.clone(), ..OwnState::new(name, next) }
+            }
+        }
+    }
+}
+
+impl EffectToml {
+    /// The characters of its expressions.
+    pub(super) fn characters(&self) -> usize {
+        let states = self.states.values().map(|state| match state {
+            StateToml::Next(next) => next.len(),
+            StateToml::Table { start, next } => start.len() + next.len(),
+        });
+        self.expression.as_ref().map_or(0, String::len) + states.sum::<usize>()
+    }
 }
 
 #[derive(Clone, Copy, Deserialize)]

@@ -7,7 +7,7 @@ use crate::experiment::Trial;
 use crate::fit::{Status, is_rounding};
 use crate::report::consequence::times_as_large;
 use crate::report::finding::Finding;
-use crate::wording::{measure, p_text, percent, rounded};
+use crate::wording::{measure, p_text, percent, range_text, rounded};
 
 impl Finding<'_> {
     pub(super) fn adequate_headline(&self) -> String {
@@ -93,8 +93,8 @@ impl Finding<'_> {
     fn limits(&self) -> String {
         let input = self.joint().trials.iter().flat_map(Trial::input);
         let output = self.joint().trials.iter().flat_map(Trial::output);
-        let input = span(input.copied(), self.joint().input_unit.as_deref());
-        let output = span(output.copied(), self.joint().output_unit.as_deref());
+        let input = range_text(input.copied(), self.joint().input_unit.as_deref());
+        let output = range_text(output.copied(), self.joint().output_unit.as_deref());
         format!("This holds where the record has been: input {input}, output {output}.")
     }
 
@@ -106,11 +106,4 @@ impl Finding<'_> {
         let names: Vec<&str> = open.map(|parameter| parameter.name.as_str()).collect();
         (!names.is_empty()).then(|| format!("It does not determine {}.", names.join(", ")))
     }
-}
-
-/// `-2 to 2 V`.
-fn span(values: impl Iterator<Item = f64>, unit: Option<&str>) -> String {
-    let ends = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), ends);
-    format!("{} to {}", rounded(low), measure(high, unit))
 }

@@ -47,8 +47,8 @@ impl Finding<'_> {
         let has_no_other = found.iter().all(|one| one.alternatives.is_empty());
         let alone = match found.len() {
             _ if !has_no_other => "",
-            1 => "; nothing that was tried leaves as little in its place",
-            _ => "; nothing that was tried leaves as little in the place of one of them",
+            1 => "; no other effect that was tried fits as well in its place",
+            _ => "; no other effect that was tried fits as well in place of one of them",
         };
         format!("{names}: {explained}{alone}")
     }

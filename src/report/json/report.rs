@@ -12,7 +12,7 @@ use crate::report::page::Report;
 pub(crate) struct ReportJson<'a> {
     #[serde(flatten)]
     header: Header,
-    report: String,
+    report: Option<String>,
     recording: Option<String>,
     joints: Vec<SentenceJson<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -30,7 +30,11 @@ struct SentenceJson<'a> {
 
 impl<'a> ReportJson<'a> {
     /// What was written where, and what is said of each joint.
-    pub(crate) fn new(report: &'a Report<'_>, path: String, recording: Option<String>) -> Self {
+    pub(crate) fn new(
+        report: &'a Report<'_>,
+        path: Option<String>,
+        recording: Option<String>,
+    ) -> Self {
         let joints = report.sentences().into_iter();
         Self {
             header: Header::of("tauscope/report/1"),

@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use super::check::Check;
-use crate::cli::viewer::{NEWEST, PORT, VERSION, is_listening, on_path};
+use crate::cli::viewer::{NEWEST, PORT, VERSION, installed, is_listening, on_path};
 
 /// Longest time that a program may take to report its version.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -16,9 +16,18 @@ fn remedy() -> String {
     format!("pip install rerun-sdk=={VERSION}")
 }
 
-/// The viewer, and whether one is running.
+/// The viewer, whether one is running, and whether it opens logs.
 pub(crate) fn check() -> Vec<Check> {
-    vec![viewer(), running()]
+    vec![viewer(), running(), importer()]
+}
+
+fn importer() -> Check {
+    const NAME: &str = "importer";
+    if let Some(place) = installed() {
+        return Check::ok(NAME, format!("{}: `rerun LOG.csv` opens a log", place.display()));
+    }
+    let found = "`rerun LOG.csv` does not open logs";
+    Check::note(NAME, found, "`tauscope importer --install` lets it")
 }
 
 fn viewer() -> Check {

@@ -1,0 +1,121 @@
+//! The arguments of `tauscope report`.
+
+use std::path::PathBuf;
+
+use clap::Args as ClapArgs;
+
+use super::target::{OutputParts, Target};
+use crate::cli::args::{
+    AgainstArgs, AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, ReviewArgs, RunArgs,
+};
+use crate::cli::viewer::StreamArgs;
+use crate::explain::MAX_EFFECTS;
+use crate::report::Heading;
+
+/// Write a report: one page with figures and numbers to attach to an experiment
+///
+/// Per joint: the record, single decisions, delays, the table of decisions; with a model
+/// also what it simulates, where it fails, and what it lacks. The page needs no network.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    pub(super) data: DataArgs,
+
+    #[command(flatten)]
+    pub(super) algorithm: AlgorithmArgs,
+
+    #[command(flatten)]
+    pub(super) review: ReviewArgs,
+
+    #[command(flatten)]
+    pub(super) against: AgainstArgs,
+
+    #[command(flatten)]
+    pub(super) model: ModelArgs,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+/// Which model is reported.
+#[derive(ClapArgs, Debug)]
+pub(super) struct ModelArgs {
+    /// Report this model, too (TOML, schema `tauscope/model/1`). One that `improve` made from
+    /// these logs is shown as it is, with the ladder of its history; any other is fitted,
+    /// starting at its values. Joints that it has not start as plain integrators
+    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    pub(super) model: Option<PathBuf>,
+
+    /// Add to the model what it lacks, and report the ladder of errors. Without a model
+    /// each joint starts as a plain integrator; no model file is written
+    #[arg(long, help_heading = "Model")]
+    pub(super) improve: bool,
+
+    #[command(flatten)]
+    pub(super) effects: EffectArgs,
+
+    /// How many effects `--improve` adds at most
+    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, help_heading = "Model")]
+    pub(super) max_effects: usize,
+
+    #[command(flatten)]
+    pub(super) protocol: ProtocolArgs,
+}
+
+/// What is written where.
+#[derive(ClapArgs, Debug)]
+#[command(next_help_heading = "Output")]
+pub(super) struct OutputArgs {
+    /// The report: a page, or Markdown with its drawings in a folder `FILE_files` beside it.
+    /// The recording goes beside it as `FILE.rrd`
+    #[arg(short = 'o', long = "output", value_name = "FILE.html|FILE.md", required = true)]
+    pub(super) report: Option<PathBuf>,
+
+    /// Put the recording into the page, if it has no more than 8 MiB
+    #[arg(long, conflicts_with = "no_recording")]
+    pub(super) embed: bool,
+
+    /// Write no recording
+    #[arg(long)]
+    pub(super) no_recording: bool,
+
+    /// Write a page beside the report, `FILE_review.html`, on which a person goes through the
+    /// decisions, the most doubtful first, and saves a review
+    #[arg(long)]
+    pub(super) interactive: bool,
+
+    /// The title of the report, instead of the log's name
+    #[arg(long, value_name = "TEXT")]
+    pub(super) title: Option<String>,
+
+    /// Whose report it is, written below the title
+    #[arg(long, value_name = "NAME")]
+    pub(super) author: Option<String>,
+
+    /// The date, written below the title as it is given
+    #[arg(long, value_name = "TEXT")]
+    pub(super) date: Option<String>,
+
+    #[command(flatten)]
+    pub(super) stream: StreamArgs,
+
+    #[command(flatten)]
+    pub(super) run: RunArgs,
+}
+
+impl OutputArgs {
+    pub(super) fn heading(&self) -> Heading<'_> {
+        let Self { title, author, date, .. } = self;
+        Heading { title: title.as_deref(), author: author.as_deref(), date: date.as_deref() }
+    }
+
+    /// Where the results go; nowhere where no file is named.
+    pub(super) fn target(&self) -> anyhow::Result<Option<Target>> {
+        let parts = OutputParts {
+            embedded: self.embed,
+            recorded: !self.no_recording,
+            reviewed: self.interactive,
+        };
+        self.report.as_deref().map(|path| Target::of(path, parts)).transpose()
+    }
+}

@@ -1,0 +1,68 @@
+//! What `tauscope LOG` prints: what was measured, its delays, what a model lacks, what to do next.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use super::args::Args;
+use super::target::Target;
+use crate::cli::args::{DataArgs, Format};
+use crate::cli::console;
+use crate::cli::run::{StudyContext, estimated};
+use crate::cli::typed::quoted;
+use crate::report::{Report, estimate_table, extent_table, improve_text};
+
+/// Prints what was measured and its delays, as soon as they are known: models take longer.
+pub(super) fn show_delays(args: &Args, context: StudyContext<'_>) -> anyhow::Result<()> {
+    if args.output.run.format == Format::Json {
+        return Ok(());
+    }
+    let joints = estimated(context.experiment(), context.estimates);
+    let extent = extent_table(context.joints);
+    console::print(&format!("{extent}\n{}\n", estimate_table(&joints, context.settings)))
+}
+
+/// What is to be said of the models, and the commands that lead on.
+pub(super) fn rest(args: &Args, report: &Report<'_>, target: Option<&Target>) -> String {
+    let mut text = String::new();
+    if !report.models.is_empty() {
+        text += &improve_text(report.models);
+        text.push('\n');
+    }
+    let steps = next_steps(&args.data, target);
+    let width = steps.iter().map(|(command, _)| command.len()).max().unwrap_or(0);
+    text += "what next:\n";
+    for (command, what) in steps {
+        writeln!(text, "  {command:width$}  {what}").unwrap_or_default();
+    }
+    text
+}
+
+/// Commands, and what each of them does.
+fn next_steps(data: &DataArgs, target: Option<&Target>) -> Vec<(String, &'static str)> {
+    let typed = quoted(&data.typed(None));
+    let mut steps = Vec::new();
+    match target {
+        None => steps.push((
+            format!("tauscope {typed} -o"),
+            "the report and the recording, as files beside the log",
+        )),
+        Some(target) => {
+            let path = |path: &PathBuf| quoted(&[path.display().to_string()]);
+            let recording = target.recording.as_ref().map(path);
+            steps.extend(
+                recording.map(|path| {
+                    (format!("rerun {path}"), "every decision, candidate by candidate")
+                }),
+            );
+        }
+    }
+    steps.push((
+        format!("tauscope improve {typed} --write model.toml"),
+        "the model as a file, to be used and changed",
+    ));
+    steps.push((
+        format!("tauscope estimate {typed} --decisions decisions.csv"),
+        "every decision as a table",
+    ));
+    steps
+}

@@ -1,0 +1,125 @@
+//! The files of a report: page or Markdown, recording, review page.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+
+use crate::cli::output::{check_outputs, write_file};
+use crate::report::Document;
+
+/// Where the report and its recording go.
+pub(super) struct Target {
+    pub(super) path: PathBuf,
+    kind: Kind,
+    pub(super) recording: Option<PathBuf>,
+    /// The page to review the decisions on.
+    pub(super) review: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Page,
+    Markdown,
+}
+
+/// What is made beside the report itself.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OutputParts {
+    /// The recording is put into the page.
+    pub(super) embedded: bool,
+    /// There is a recording.
+    pub(super) recorded: bool,
+    /// There is a page to review the decisions on.
+    pub(super) reviewed: bool,
+}
+
+impl Target {
+    /// The files that `path` stands for. Into the page goes the recording where it is to be `embedded`.
+    pub(super) fn of(
+        path: &Path,
+        OutputParts { embedded, recorded, reviewed }: OutputParts,
+    ) -> anyhow::Result<Self> {
+        let kind = match path.extension().and_then(OsStr::to_str) {
+            Some("html" | "htm") => Kind::Page,
+            Some("md") => Kind::Markdown,
+            _ => bail!("{}: a report is called FILE.html or FILE.md", path.display()),
+        };
+        let has_recordings = cfg!(feature = "rrd");
+        if embedded && kind == Kind::Markdown {
+            bail!("--embed needs a page: Markdown cannot hold a file; use `-o FILE.html`");
+        }
+        if embedded && !has_recordings {
+            bail!("this program was built without recordings: build it with feature `rrd`");
+        }
+        let recording = (has_recordings && recorded).then(|| path.with_extension("rrd"));
+        let review = reviewed.then(|| beside(path, "_review.html"));
+        Ok(Self { path: path.to_owned(), kind, recording, review })
+    }
+
+    /// Refuses what cannot be written.
+    pub(super) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
+        let outputs = [self.path.as_path()].into_iter().chain(self.recording.as_deref());
+        let outputs = outputs.chain(self.review.as_deref());
+        check_outputs(&outputs.collect::<Vec<_>>(), inputs)?;
+        let folder = self.folder();
+        if self.kind == Kind::Markdown && folder.exists() && !folder.is_dir() {
+            bail!("{}: the drawings need a folder of this name", folder.display());
+        }
+        let folder = folder.canonicalize().unwrap_or(folder);
+        let inside =
+            |input: &&PathBuf| input.canonicalize().is_ok_and(|input| input.starts_with(&folder));
+        if let Some(input) = inputs.iter().find(inside) {
+            bail!(
+                "{}: a file that is read lies in the folder of the drawings; give the report another \
+                 name",
+                input.display()
+            );
+        }
+        Ok(())
+    }
+
+    /// Where the drawings of Markdown go.
+    fn folder(&self) -> PathBuf {
+        beside(&self.path, "_files")
+    }
+
+    pub(super) fn write(&self, document: &Document) -> anyhow::Result<()> {
+        let text = match self.kind {
+            Kind::Page => document.html(),
+            Kind::Markdown => {
+                let folder = self.folder();
+                let markdown = document.markdown(&file_name(&folder));
+                fs::create_dir_all(&folder)
+                    .with_context(|| format!("{}: cannot be made", folder.display()))?;
+                for (name, drawing) in &markdown.files {
+                    let place = folder.join(name);
+                    // It may lead to a log.
+                    if place.is_symlink() {
+                        let place = place.display();
+                        bail!("{place}: a link, and drawings are files of their own; remove it");
+                    }
+                    write_text(&place, drawing)?;
+                }
+                markdown.text
+            }
+        };
+        write_text(&self.path, &text)
+    }
+}
+
+/// The name of `path` with another ending.
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!("{stem}{ending}"))
+}
+
+pub(super) fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
+    write_file(path, |file| Ok(file.write_all(text.as_bytes())?))
+}
+
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}

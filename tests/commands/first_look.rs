@@ -1,0 +1,65 @@
+//! `tauscope LOG`, without a command: what a new user sees first.
+
+use crate::desk::{Desk, banded};
+
+fn printed(desk: &Desk, arguments: &str, status: i32) -> String {
+    let output = desk.run(arguments);
+    assert_eq!(output.status.code(), Some(status), "{output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn a_log_alone_says_what_was_measured_the_delays_what_is_missing_and_what_is_next() {
+    let desk = Desk::with(vec![banded("boom")]);
+    let text = printed(&desk, "log.csv --effects dead_band,actuator_lag", 0);
+    let places = ["duration", "delay min", "1          + dead_band", "what next:"];
+    let places = places.map(|part| text.find(part).unwrap_or_else(|| panic!("no {part}: {text}")));
+    assert!(places.is_sorted(), "{places:?}");
+    // What stands there is what the commands print by themselves.
+    let estimate = printed(&desk, "estimate log.csv", 0);
+    assert!(text.contains(estimate.trim()), "{text}");
+    let improve = "improve log.csv --write other.toml --quiet --effects dead_band,actuator_lag";
+    assert!(text.contains(printed(&desk, improve, 0).trim()), "{text}");
+    // Nothing is written unless it is asked for.
+    let written = |name: &str| desk.has(name);
+    assert!(!["log.html", "log.rrd", "model.toml"].into_iter().any(written));
+}
+
+#[test]
+fn the_files_go_beside_the_log_or_where_they_are_named() {
+    let desk = Desk::with(vec![banded("boom")]);
+    let recorded = cfg!(feature = "rrd");
+    let text = printed(&desk, "log.csv --effects dead_band -q -o", 0);
+    assert_eq!((desk.has("log.html"), desk.has("log.rrd")), (true, recorded));
+    assert_eq!(text.contains("rerun log.rrd"), recorded, "{text}");
+    printed(&desk, "log.csv --effects dead_band -q -o second", 0);
+    assert_eq!((desk.has("second.html"), desk.has("second.rrd")), (true, recorded));
+    printed(&desk, "log.csv --effects dead_band -q -o third.rrd", 0);
+    assert_eq!((desk.has("third.html"), desk.has("third.rrd")), (true, recorded));
+}
+
+#[test]
+fn the_commands_that_are_next_can_be_run() {
+    let desk = Desk::with(vec![banded("boom"), banded("arm")]);
+    let text = printed(&desk, "log.csv --joint arm --effects dead_band -q", 0);
+    let (_, next) = text.split_once("what next:\n").unwrap();
+    let commands = next.lines().filter_map(|line| line.trim().strip_prefix("tauscope "));
+    let commands: Vec<_> = commands.map(|line| line.split("  ").next().unwrap()).collect();
+    assert_eq!(commands.len(), 3, "{next}");
+    for command in commands {
+        assert!(command.contains("--joint arm"), "{command}");
+        printed(&desk, &format!("{command} -q"), 0);
+    }
+    assert!(desk.has("model.toml") && desk.has("decisions.csv") && desk.has("log.html"));
+}
+
+#[test]
+fn what_is_no_log_and_no_command_is_said() {
+    let desk = Desk::with(vec![banded("boom")]);
+    assert!(desk.refusal("nothing.csv").contains("nothing.csv: cannot be read"));
+    assert!(desk.refusal("estmate log.csv").contains("'estimate'"));
+    desk.write("notes", "no log\n");
+    assert!(desk.refusal("notes").contains("notes"));
+    let help = printed(&desk, "--help", 0);
+    assert!(help.contains("tauscope <LOG>...") && !help.contains("first-look"), "{help}");
+}
