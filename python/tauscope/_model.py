@@ -140,12 +140,13 @@ class Model:
         >>> model = model.with_effect("weak", function=lambda signal, a: signal * (1 - a), a=0.5)
         >>> model.predict([1.0, 1.0, 1.0], sample_period=0.1).tolist()
         [0.0, 0.5, 1.0]
-        >>> def fading(signal, seen, a):
-        ...     return signal * (1 - a * seen), min(seen + abs(signal), 1.0)
-        >>> plain = Model.integrator(gain=10.0, delay=0.0)
-        >>> model = plain.with_effect("fading", function=fading, states={"seen": 0.0}, a=0.5)
-        >>> model.predict([1.0, 1.0, 1.0], sample_period=0.1).tolist()
-        [0.0, 1.0, 1.5]
+        >>> def halfway(signal, x):
+        ...     x = x + 0.5 * (signal - x)
+        ...     return x, x
+        >>> model = Model.integrator(gain=10.0, delay=0.0)
+        >>> model = model.with_effect("halfway", function=halfway, states={"x": "signal"})
+        >>> model.predict([0.0, 1.0, 1.0, 1.0], sample_period=0.1).tolist()
+        [0.0, 0.0, 0.5, 1.25]
         """
         lines = [f"\n[[joint.{json.dumps(self._joint(joint))}.effect]]"]
         functions, given = self.functions, {**parameters}

@@ -21,14 +21,14 @@ def test_the_page_runs_from_the_data_frame_to_the_model(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "data").symlink_to(ROOT / "data")
-    first, second, third = blocks()
+    first, *rest = blocks()
     if not tauscope.HAS_RECORDINGS:
         first = "\n".join(line for line in first.splitlines() if ".rrd" not in line)
     names: dict[str, object] = {}
     exec(first, names)
     names["u"] = [0.0, 1.0, 1.0, 0.0]
-    exec(second, names)
-    exec(third, names)
+    for block in rest:
+        exec(block, names)
     assert (tmp_path / "model.toml").exists() and (tmp_path / "boom.fmu").exists()
 
 

@@ -124,3 +124,60 @@ def test_a_function_with_other_arguments_is_refused() -> None:
         PLAIN.with_effect("dead_band", function=lambda signal: signal)
     with pytest.raises(tauscope.TauscopeError, match="stage"):
         PLAIN.with_effect("own", function=lambda signal: signal, stage="sensor")
+
+
+def test_a_function_with_states_is_what_the_expression_is() -> None:
+    expected = PLAIN.with_effect(
+        "slow",
+        stage="dynamics",
+        expression="x / (1 + 0.1 * used)",
+        states={
+            "x": "x + (signal - x) * min(dt / lag, 1)",
+            "used": {"start": "0", "next": "used + abs(signal) * dt"},
+        },
+        lag=0.2,
+    )
+
+    def slow(
+        signal: float, dt: float, x: float, used: float, lag: float
+    ) -> tuple[float, float, float]:
+        x, used = x + (signal - x) * min(dt / max(lag, 1e-9), 1.0), used + abs(signal) * dt
+        return x / (1 + 0.1 * used), x, used
+
+    found = PLAIN.with_effect(
+        "slow", stage="dynamics", function=slow, states={"x": "signal", "used": 0.0}, lag=0.2
+    )
+    y = found.simulate(U, 0.01)
+    np.testing.assert_allclose(y, expected.simulate(U, 0.01), rtol=1e-12, atol=1e-12)
+    assert not np.allclose(y, PLAIN.simulate(U, 0.01))
+
+
+def test_states_that_do_not_fit_are_refused() -> None:
+    def one(signal: float, x: float) -> float:
+        return signal + x
+
+    with pytest.raises(TypeError):
+        PLAIN.with_effect("one", function=one, states={"x": 0.0})
+    with pytest.raises(TypeError, match="starts at a number"):
+        PLAIN.with_effect("one", function=one, states={"x": "zero"})
+    with pytest.raises(tauscope.TauscopeError, match="there are no states"):
+        PLAIN.with_effect("one", stage="transport", function=one, states={"x": 0.0})
+    with pytest.raises(TypeError, match="is to return the signal and 1 states"):
+        PLAIN.with_effect("one", function=lambda signal, x: (signal, x, x), states={"x": 0.0})
+
+
+def test_a_function_is_not_called_beyond_the_bounds_of_its_parameters() -> None:
+    seen: list[float] = []
+
+    def root(signal: float, a: float) -> float:
+        seen.append(a)
+        return float(signal * np.sqrt(a - 1.0))
+
+    rng = np.random.default_rng(3)
+    u = np.repeat(rng.uniform(-2, 2, 60), 50)
+    y = Model.integrator(10.0, 0.05).simulate(u, 0.01) + rng.normal(0, 0.02, len(u))
+    start = Model.integrator(5.0, 0.1).with_effect(
+        "root", stage="load", function=root, a={"value": 1.5, "min": 1.0, "max": 3.0}
+    )
+    start.fit((u, y), sample_period=0.01)
+    assert seen and min(seen) >= 1.0 and max(seen) <= 3.0
