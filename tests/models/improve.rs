@@ -359,6 +359,9 @@ fn the_model_file_says_what_its_numbers_were_fitted_to() {
     let logs: Vec<_> = fitted.logs.iter().map(|log| (log.file.as_str(), &log.sha256)).collect();
     assert_eq!(logs, [("log.csv", &hash)]);
     assert_eq!(json!(fitted.verdict), boom["verdict"]);
+    assert_eq!(fitted.output_unit.as_deref(), Some("deg"));
+    assert!(desk.run("export boom.toml -o boom.py").status.success());
+    assert!(desk.read("boom.py").contains("deg/s/V"), "the units are those of the log");
     let start = fitted.start.as_ref().unwrap();
     assert_eq!(json!(start.train_rmse), boom["revisions"][0]["error"]["train"]["rmse"]);
     let parameters = boom["parameters"].as_object().unwrap();

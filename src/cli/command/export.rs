@@ -14,7 +14,7 @@ use crate::cli::exit::Completion;
 use crate::cli::output::{check_outputs, write_file};
 use crate::experiment::{did_you_mean, nearest_name};
 use crate::export::{Export, File, Language, Units, by_ending, endings};
-use crate::model::{Component, JointModel, ModelFile};
+use crate::model::{Component, Fitted, JointModel, ModelFile};
 
 /// Write a joint's model as source code that stands alone, or as an FMU
 ///
@@ -29,8 +29,12 @@ pub(crate) struct Args {
     model: PathBuf,
 
     /// What is written; its functions have its name
-    #[arg(value_name = "FILE")]
-    file: PathBuf,
+    #[arg(value_name = "FILE", required_unless_present = "output", conflicts_with = "output")]
+    file: Option<PathBuf>,
+
+    /// What is written, as an option
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
 
     /// The joint, where the model file has several
     #[arg(long, value_name = "NAME")]
@@ -41,12 +45,12 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LABEL")]
     trial: Option<String>,
 
-    /// Unit of the input, as in the log
+    /// Unit of the input [default: that of the log which the model was fitted to]
     #[arg(long, value_name = "UNIT")]
     input_unit: Option<String>,
 
-    /// Unit of the output, as in the log: `rad`, `mrad` and `rev` are angles of their own,
-    /// and all others are taken for degrees where gravity acts [default: degrees]
+    /// Unit of the output: `rad`, `mrad` and `rev` are angles of their own, and all others are
+    /// taken for degrees where gravity acts [default: that of the log, or degrees]
     #[arg(long, value_name = "UNIT")]
     output_unit: Option<String>,
 
@@ -56,15 +60,16 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
-    let (language, name) = language(&args.file)?;
+    let target = args.file.as_deref().or(args.output.as_deref()).unwrap_or(Path::new(""));
+    let (language, name) = language(target)?;
     let model = read_model(&args.model)?;
     let joint = joint(&model, args.joint.as_deref()).with_context(|| shown(&args.model))?;
-    let paths = |file: &File| args.file.with_extension(file.ending);
-    let planned: Vec<PathBuf> = planned(language, &args.file);
+    let paths = |file: &File| target.with_extension(file.ending);
+    let planned: Vec<PathBuf> = planned(language, target);
     let planned: Vec<&Path> = planned.iter().map(PathBuf::as_path).collect();
     check_outputs(&planned, std::slice::from_ref(&args.model))?;
     let export = exported(args, &model, joint)?;
-    let files = language.files(&export, name).with_context(|| shown(&args.file))?;
+    let files = language.files(&export, name).with_context(|| shown(target))?;
     for file in &files {
         let path = paths(file);
         write_file(&path, |output| Ok(output.write_all(&file.content)?))?;
@@ -121,7 +126,12 @@ fn exported(args: &Args, model: &ModelFile, joint: &str) -> anyhow::Result<Expor
         "made by tauscope {} export from {name}, joint {joint}, revision {revision}",
         env!("CARGO_PKG_VERSION")
     );
-    let units = Units { input: args.input_unit.clone(), output: args.output_unit.clone() };
+    let fitted = model.fitted(joint);
+    let known =
+        |unit: fn(&Fitted) -> &Option<String>| fitted.and_then(|fitted| unit(fitted).clone());
+    let input = args.input_unit.clone().or_else(|| known(|fitted| &fitted.input_unit));
+    let output = args.output_unit.clone().or_else(|| known(|fitted| &fitted.output_unit));
+    let units = Units { input, output };
     let place = || format!("{}: joint `{joint}`", args.model.display());
     let of = in_trial(of, args.trial.as_deref()).with_context(place)?;
     Export::new(joint, &of, units, &[origin]).with_context(place)

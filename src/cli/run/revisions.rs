@@ -157,6 +157,8 @@ pub(crate) fn with_fit(
     });
     let fitted = Fitted {
         logs: log_hashes(sources),
+        input_unit: joint.input_unit.clone(),
+        output_unit: joint.output_unit.clone(),
         sensor_noise: comparison.sensor_noise,
         verdict: verdict.map(|verdict| verdict.id().to_owned()),
         start: known.or_else(|| first.filter(|_| begins).map(errors_of)),

@@ -15,6 +15,10 @@ use super::revision::RevisionErrors;
 pub struct Fitted {
     /// The logs that the model was fitted to.
     pub logs: Vec<LogHash>,
+    /// Unit of the input, where the logs state it.
+    pub input_unit: Option<String>,
+    /// Unit of the output, likewise.
+    pub output_unit: Option<String>,
     /// Standard deviation of the noise of the sensor, in output units.
     pub sensor_noise: Option<f64>,
     /// The verdict on the model, an id as in JSON.
@@ -55,6 +59,11 @@ impl Fitted {
             fields.into_iter().collect::<InlineTable>()
         });
         table.insert("logs", toml_edit::value(logs.collect::<Array>()));
+        for (key, unit) in [("input_unit", &self.input_unit), ("output_unit", &self.output_unit)] {
+            if let Some(unit) = unit {
+                set_text(&mut table, key, unit);
+            }
+        }
         insert_number(&mut table, "sensor_noise", self.sensor_noise);
         if let Some(verdict) = &self.verdict {
             set_text(&mut table, "verdict", verdict);
