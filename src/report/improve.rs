@@ -45,6 +45,13 @@ impl<'a> ImprovedJoint<'a> {
         Self { finding, revisions, first_revision, history, interrupted, reached_limit }
     }
 
+    /// That somebody stopped it, which then has ended it, and no limit.
+    #[must_use]
+    pub(crate) fn stopped(self) -> Self {
+        let interrupted = self.finding.verdict != Verdict::Adequate;
+        Self { interrupted, reached_limit: false, ..self }
+    }
+
     /// The revisions with their numbers.
     pub fn numbered(&self) -> impl Iterator<Item = (u32, &'a Revision)> {
         (self.first_revision..).zip(self.revisions)

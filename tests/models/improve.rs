@@ -181,10 +181,10 @@ mod interrupted {
     }
 
     impl AtWork {
-        fn at(desk: &Desk) -> Self {
+        fn at(desk: &Desk, command: &str) -> Self {
             // One joint after the other, so that there is enough to do when it is interrupted.
-            let arguments = "improve log.csv --format json --threads 1";
-            let mut command = desk.command(&format!("{arguments} {FEW},gravity_load,flow_curve"));
+            let few = format!("--threads 1 {FEW},gravity_load,flow_curve");
+            let mut command = desk.command(&format!("{command} {few}"));
             let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
             let told = BufReader::new(child.stderr.take().unwrap());
             let mut program = Self { child, told };
@@ -210,7 +210,7 @@ mod interrupted {
     #[test]
     fn once_it_keeps_the_revisions_so_far() {
         let desk = Desk::with(vec![slow("boom"), slow("arm")]);
-        let mut program = AtWork::at(&desk);
+        let mut program = AtWork::at(&desk, "improve log.csv --format json");
         program.interrupt();
         program.wait_for("stopping: after this revision");
         let mut rest = String::new();
@@ -226,9 +226,23 @@ mod interrupted {
     }
 
     #[test]
+    fn a_report_has_the_revisions_so_far() {
+        let desk = Desk::with(vec![slow("boom"), slow("arm")]);
+        let mut program = AtWork::at(&desk, "log.csv -o page.html");
+        program.interrupt();
+        program.wait_for("stopping: after this revision");
+        let mut rest = String::new();
+        program.told.read_to_string(&mut rest).unwrap();
+        let output = program.child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{rest}");
+        assert!(String::from_utf8_lossy(&output.stdout).contains("(stopped before the end)"));
+        assert!(desk.read("page.html").contains("(stopped before the end)"));
+    }
+
+    #[test]
     fn twice_it_ends_at_once() {
         let desk = Desk::with(vec![slow("boom"), slow("arm")]);
-        let mut program = AtWork::at(&desk);
+        let mut program = AtWork::at(&desk, "improve log.csv --format json");
         program.interrupt();
         program.wait_for("stopping: ");
         program.interrupt();

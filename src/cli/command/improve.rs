@@ -13,7 +13,7 @@ use clap::Args as ClapArgs;
 use crate::cli::args::{
     DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, name_of, note_missing,
 };
-use crate::cli::console::{Interrupt, message};
+use crate::cli::console::{Interrupt, STOPPING, message};
 use crate::cli::each_log::{Each, FolderArgs};
 use crate::cli::exit::Completion;
 use crate::cli::output::check_outputs;
@@ -113,9 +113,6 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     args.end(&study, (&file, &name))
 }
 
-/// What is said when somebody presses Ctrl-C.
-const STOPPING: &str = "after this revision; Ctrl-C again ends at once, without results";
-
 impl Args {
     /// Says and writes what came of each joint.
     fn end(
@@ -130,10 +127,8 @@ impl Args {
             let stopped = stopped.get(index).is_some_and(|stopped| *stopped);
             let add_arguments = arguments.get(index)?;
             let found = (improvement, estimate_at(&study.estimates, index));
-            let mut improved = improved(file, name, joint, found, add_arguments)?;
-            improved.interrupted = stopped && improved.finding.verdict != Verdict::Adequate;
-            improved.reached_limit &= !stopped;
-            Some(improved)
+            let improved = improved(file, name, joint, found, add_arguments)?;
+            Some(if stopped { improved.stopped() } else { improved })
         };
         let (improved, failures) = outcomes(study.experiment(), results, improved)?;
         let improved: Vec<_> = improved.into_iter().flatten().collect();

@@ -10,6 +10,9 @@ use super::terminal::message;
 /// Exit status of a program that was ended by an interrupt, as shells have it.
 const ENDED: i32 = 130;
 
+/// What is said to somebody who stops the improvement of models.
+pub(crate) const STOPPING: &str = "after this revision; Ctrl-C again ends at once, without results";
+
 /// Whether Ctrl-C was pressed since somebody watched.
 static PRESSED: AtomicBool = AtomicBool::new(false);
 

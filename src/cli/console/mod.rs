@@ -7,6 +7,6 @@ mod terminal;
 
 pub use host::Hosting;
 pub(crate) use host::{Ended, Host};
-pub(crate) use interrupt::Interrupt;
+pub(crate) use interrupt::{Interrupt, STOPPING};
 pub(crate) use progress::{Bar, Verbosity};
 pub(crate) use terminal::{Tone, has_colors, message, print, print_json, print_with, toned, warn};

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::args::Args;
 use super::target::Target;
 use crate::cli::args::{DataArgs, Format};
-use crate::cli::console;
+use crate::cli::console::{self, Verbosity};
 use crate::cli::run::{StudyContext, estimated};
 use crate::cli::typed::quoted;
 use crate::report::{Report, estimate_table, extent_table, improve_text};
@@ -18,7 +18,14 @@ pub(super) fn show_delays(args: &Args, context: StudyContext<'_>) -> anyhow::Res
     }
     let joints = estimated(context.experiment(), context.estimates);
     let extent = extent_table(context.joints);
-    console::print(&format!("{extent}\n{}\n", estimate_table(&joints, context.settings)))
+    console::print(&format!("{extent}\n{}\n", estimate_table(&joints, context.settings)))?;
+    if context.verbosity() == Verbosity::Normal {
+        console::message(
+            "improving",
+            "looks for what a model lacks; Ctrl-C ends it with what was found",
+        );
+    }
+    Ok(())
 }
 
 /// What is to be said of the models, and the commands that lead on.

@@ -23,7 +23,7 @@ use args::ModelArgs;
 use target::{Target, file_name, write_text};
 
 use crate::cli::args::{name_of, note_missing, read_model};
-use crate::cli::console::{Bar, Verbosity, message};
+use crate::cli::console::{Bar, Interrupt, STOPPING, Verbosity, message};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, said};
 use crate::cli::run::{
@@ -115,18 +115,19 @@ impl ModelArgs {
         file: &ModelFile,
         context: StudyContext<'_>,
         options: &Options,
-    ) -> Option<OfJoints<Improvement>> {
+    ) -> Option<Improved> {
         let (joints, estimates) = (context.joints, context.estimates);
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
         let protocol = self.protocol.with(Mode::FitOrIntegrator);
         if self.improve {
             let bar = context.bar("improving");
-            let progress = Progress::new(file, joints, context.verbosity(), None);
+            let interrupt = Some(Interrupt::watch(STOPPING));
+            let progress = Progress::new(file, joints, context.verbosity(), interrupt);
             let done = |index, revision: &Revision| progress.done(index, revision);
             let protocol = protocol.watched(&bar).beside(context.others);
-            return Some(improve_joints(
-                joints, estimates, starts, protocol, options, done, &Threads,
-            ));
+            let improved =
+                improve_joints(joints, estimates, starts, protocol, options, done, &Threads);
+            return Some((improved, progress.stopped()));
         }
         self.model.as_ref()?;
         let bar = context.bar("explaining");
@@ -135,7 +136,8 @@ impl ModelArgs {
         let explained =
             explain_unknown_joints(joints, estimates, starts, known, protocol, options, &Threads);
         let one = |found: Option<Result<_, _>>| Some(found?.map(as_it_is));
-        Some(explained.into_iter().map(one).collect())
+        let stopped = vec![false; joints.len()];
+        Some((explained.into_iter().map(one).collect(), stopped))
     }
 }
 
@@ -158,11 +160,14 @@ fn as_it_is(explanation: Explanation) -> Improvement {
     Improvement { revisions, verdict, attribution }
 }
 
+/// The models of all joints, and which of them somebody stopped.
+type Improved = (OfJoints<Improvement>, Vec<bool>);
+
 /// What is asked, and what came of it.
 struct Reported<'a> {
     args: &'a Args,
     file: &'a ModelFile,
-    study: &'a Study<'a, Option<OfJoints<Improvement>>>,
+    study: &'a Study<'a, Option<Improved>>,
     shown: Shown,
 }
 
@@ -184,12 +189,16 @@ impl Reported<'_> {
         let arguments = add_arguments(&args.data, protocol, &model, &experiment.joints);
         let mut models = Vec::new();
         let joints_of_models = experiment.joints.iter().zip(&arguments);
-        let results = study.result.iter().flatten().enumerate();
-        for ((joint, arguments), (index, result)) in joints_of_models.zip(results) {
+        let results =
+            study.result.iter().flat_map(|(results, stopped)| results.iter().zip(stopped));
+        for ((joint, arguments), (index, (result, stopped))) in
+            joints_of_models.zip(results.enumerate())
+        {
             match result {
                 Some(Ok(found)) => {
                     let delays = estimate_at(&study.estimates, index);
-                    models.extend(improved(file, &name, joint, (found, delays), arguments));
+                    let improved = improved(file, &name, joint, (found, delays), arguments);
+                    models.extend(improved.map(|it| if *stopped { it.stopped() } else { it }));
                 }
                 Some(Err(error)) => {
                     failures.push(format!("joint `{}`: no model: {}", joint.name, said(error)));
@@ -249,7 +258,9 @@ impl Reported<'_> {
             Shown::Sentences => report_text(&report),
             Shown::Everything => first_look::rest(args, &report, target),
         };
-        study.end(failures, text, json)
+        let completion = study.end(failures, text, json)?;
+        let is_whole = models.iter().all(|joint| !joint.interrupted);
+        Ok(if is_whole { completion } else { Completion::Partial })
     }
 
     /// Writes the recording; its bytes, where they are to be in the page.
