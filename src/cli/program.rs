@@ -103,20 +103,33 @@ fn first_look_output(output: Arg) -> Arg {
     output.required(false).num_args(0..=1).default_missing_value(report::BESIDE_THE_LOG)
 }
 
-/// The words as they were typed; a log in the place of a command gets one.
+/// The words as they were typed; where a log stands in the place of a command, also behind options,
+/// they get one.
 fn with_command(mut words: Vec<OsString>) -> Vec<OsString> {
-    if words.get(1).is_some_and(|word| is_log(word)) {
+    let own = words.get(1..).unwrap_or_default();
+    let begins_with_option =
+        own.first().is_some_and(|word| word.to_string_lossy().starts_with('-'));
+    let is_first_look = if begins_with_option {
+        own.iter().any(|word| is_log(word)) && !own.iter().any(|word| is_command(word))
+    } else {
+        own.first().is_some_and(|word| is_log(word))
+    };
+    if is_first_look {
         words.insert(1, "first-look".into());
     }
     words
 }
 
+fn is_command(word: &OsStr) -> bool {
+    let text = word.to_string_lossy();
+    text == "help" || Cli::command().find_subcommand(&*text).is_some()
+}
+
 /// Whether a word names a log, and neither a command nor an option.
 fn is_log(word: &OsStr) -> bool {
     let text = word.to_string_lossy();
-    let is_command = text == "help" || Cli::command().find_subcommand(&*text).is_some();
     let is_named_so = || is_named_like_a_log(&text) || Path::new(word).exists();
-    !text.starts_with('-') && !is_command && is_named_so()
+    !text.starts_with('-') && !is_command(word) && is_named_so()
 }
 
 /// Why a command that a program runs inside itself has no results.

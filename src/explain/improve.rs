@@ -40,7 +40,7 @@ pub fn improve(
     let first = Step::new(record, Change::Start, fit);
     let mut revisions = Vec::new();
     let mut visit = |step: &Step| {
-        let Step { change, fit, lack_of_fit, mut ranking } = step.clone();
+        let Step { change, fit, lack_of_fit, mut ranking, .. } = step.clone();
         separate(record, &mut ranking, workers);
         let comparison = compare_knowing(record, fit, lack_of_fit);
         let revision = Revision { change, comparison, ranking: in_order(ranking) };

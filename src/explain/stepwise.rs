@@ -20,7 +20,7 @@ use super::revision::Change;
 use super::verdict::Verdict;
 use super::workers::Workers;
 use crate::delay::are_strokes;
-use crate::diagnosis::{LackOfFit, lack_of, sensor_noise};
+use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, LackOfFit, lack_of, sensor_noise};
 use crate::fit::{Fit, FitRecord, fit_to_compare};
 
 /// A model on the way.
@@ -29,23 +29,31 @@ pub(super) struct Step {
     pub(super) change: Change,
     pub(super) fit: Fit,
     pub(super) lack_of_fit: Option<LackOfFit>,
+    /// Whether the error is far beyond the noise of the sensor, which no test has to show.
+    is_large: bool,
     /// The candidates for what comes next, best first; none where none was looked for.
     pub(super) ranking: Vec<Candidate>,
 }
 
 impl Step {
     pub(super) fn new(record: &FitRecord<'_>, change: Change, fit: Fit) -> Self {
-        Self { change, lack_of_fit: lack_of(record, &fit), fit, ranking: Vec::new() }
+        let noise = sensor_noise(&record.measured().trials);
+        let error = ErrorFigures::of_record(record, &fit.evaluation);
+        let is_beyond = |(error, noise): (ErrorFigures, f64)| error.rmse > BEYOND_NOISE * noise;
+        let is_large = error.zip(noise).is_some_and(is_beyond) && !record.is_exact(&fit.evaluation);
+        let lack_of_fit = lack_of(record, &fit);
+        Self { change, lack_of_fit, is_large, fit, ranking: Vec::new() }
     }
 
-    /// Whether no lack of fit is shown.
+    /// Whether no lack of fit is shown; where there are too few samples to test for one, whether the
+    /// error is not far beyond the noise.
     fn is_adequate(&self) -> bool {
-        self.lack_of_fit.is_none_or(|test| test.adequate)
+        self.lack_of_fit.map_or(!self.is_large, |test| test.adequate)
     }
 
     /// Whether nothing can be missing: the residual is hardly more than the noise.
     fn is_at_the_noise(&self) -> bool {
-        self.lack_of_fit.is_none_or(|test| test.adequate && test.is_near_noise())
+        self.lack_of_fit.map_or(!self.is_large, |test| test.adequate && test.is_near_noise())
     }
 
     /// Ranks what may be missing, where that is not done; whether anything is. The first of

@@ -34,6 +34,11 @@ fn the_files_go_beside_the_log_or_where_they_are_named() {
     assert_eq!(text.contains("rerun log.rrd"), recorded, "{text}");
     printed(&desk, "log.csv --effects dead_band -q -o second", 0);
     assert_eq!((desk.has("second.html"), desk.has("second.rrd")), (true, recorded));
+    printed(&desk, "-q -o second.html log.csv --effects dead_band", 0);
+    let log = desk.read("log.csv");
+    desk.write("other.csv", &log);
+    assert!(desk.refusal("log.csv other.csv -o").contains("2 logs the report needs a name"));
+    assert_eq!(desk.read("log.csv"), log);
     printed(&desk, "log.csv --effects dead_band -q -o third.rrd", 0);
     assert_eq!((desk.has("third.html"), desk.has("third.rrd")), (true, recorded));
 }

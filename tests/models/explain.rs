@@ -1,5 +1,7 @@
 //! `tauscope explain` as a user sees it.
 
+use std::fmt::Write as _;
+
 use crate::desk::{Desk, assert_fields, banded, fields, joint, number};
 use serde_json::json;
 use tauscope::synthetic::{DelayLaw, JointSpec};
@@ -190,4 +192,32 @@ fn the_model_and_the_best_candidate_are_recorded() {
     let models = desk.recorded_models("explain log.csv --effects dead_band");
     assert_eq!(models, ["integrator", "with dead_band"]);
     assert_eq!(desk.recorded_revisions(), 1);
+}
+
+/// Forty trials too short for the test of lack of fit, of a joint whose speed depends on its angle.
+fn short_trials() -> String {
+    let mut log = "trial,time_s,a.input [V],a.output [deg]\n".to_owned();
+    for trial in 0_u32..40 {
+        let mut y = 0.5 * f64::from(trial * 7919 % 41);
+        let level = [-2.0, -1.0, 1.0, 2.0][(trial * 31 % 4) as usize];
+        for k in 0..11 {
+            let input = if k < 7 { 0.0 } else { level };
+            let noise = 0.01 * (f64::from((trial * 8 + k) * 7919 % 1009) / 504.5 - 1.0);
+            let time = 0.05 * f64::from(k);
+            writeln!(log, "{trial},{time:.3},{input},{:.4}", y + noise).unwrap();
+            y += 0.05 * 12.0 * input * (1.0 - 0.6 * (0.3 * y).cos());
+        }
+    }
+    log
+}
+
+#[test]
+fn what_cannot_be_tested_is_not_adequate_far_beyond_the_noise() {
+    let desk = Desk::of_log(&short_trials());
+    let json = desk.json("explain log.csv", 0);
+    let joint = &json["joints"][0];
+    assert!(joint["lack_of_fit"].is_null(), "it was to have too few samples: {joint}");
+    let error = number(&joint["error"]["validation"]["rmse"]);
+    assert!(error > 10.0 * number(&joint["error"]["sensor_noise"]), "{joint}");
+    assert_ne!(joint["verdict"], "adequate");
 }

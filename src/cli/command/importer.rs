@@ -30,13 +30,14 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     if args.install {
         let link = install(args.folder.as_deref())?;
-        let found = installed().is_some_and(|found| is_same(&found, &link));
-        let place = link.display();
-        if !found {
-            let folder = link.parent().unwrap_or(Path::new(".")).display();
-            console::message("note", &format!("{folder} is not on PATH, where viewers look"));
-        }
-        console::print(&format!("{place}: `rerun LOG.csv` opens the recording of a log\n"))?;
+        let is_found = installed().is_some_and(|found| is_same(&found, &link));
+        let folder = link.parent().unwrap_or(Path::new(".")).display();
+        let said = if is_found {
+            "`rerun LOG.csv` opens the recording of a log".to_owned()
+        } else {
+            format!("put {folder} on PATH, where viewers look, and `rerun LOG.csv` opens a log")
+        };
+        console::print(&format!("{}: {said}\n", link.display()))?;
         return Ok(Completion::Whole);
     }
     if let Some(place) = installed() {

@@ -55,6 +55,7 @@ fn next_steps(data: &DataArgs, target: Option<&Target>) -> Vec<(String, &'static
         )),
         Some(target) => {
             let path = |path: &PathBuf| quoted(&[path.display().to_string()]);
+            steps.push((path(&target.path), "the report, to be opened in a browser"));
             let recording = target.recording.as_ref().map(path);
             steps.extend(
                 recording.map(|path| {

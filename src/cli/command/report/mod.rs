@@ -17,7 +17,7 @@ use crate::report::{
     EstimatedJoint, ImprovedJoint, RecordingFile, Report, ReportJson, report_text, review_page,
 };
 use crate::study::{Known, Mode, OfJoints, explain_unknown_joints, improve_joints};
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 pub(crate) use args::Args;
 use args::ModelArgs;
 use target::{Target, file_name, write_text};
@@ -47,9 +47,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
 pub(crate) fn first_look(args: &mut Args) -> anyhow::Result<Completion> {
     args.model.improve |= args.model.model.is_none();
     if let Some(path) = &mut args.output.report {
-        let log = args.data.given().first();
-        let named = if path == Path::new(BESIDE_THE_LOG) { log.cloned() } else { None };
-        let named = named.unwrap_or_else(|| path.clone());
+        let named = match args.data.given() {
+            _ if path != Path::new(BESIDE_THE_LOG) => path.clone(),
+            [log] => log.clone(),
+            logs => bail!("-o: of {} logs the report needs a name: `-o FILE`", logs.len()),
+        };
         let ending = named.extension().and_then(OsStr::to_str);
         let is_page = matches!(ending, Some("html" | "htm" | "md"));
         *path = if is_page { named } else { named.with_extension("html") };
