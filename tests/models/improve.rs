@@ -201,6 +201,17 @@ mod interrupted {
             }
         }
 
+        /// What it prints after it was interrupted once, and ended by itself.
+        fn interrupted(mut self) -> String {
+            self.interrupt();
+            self.wait_for("stopping: after this revision");
+            let mut rest = String::new();
+            self.told.read_to_string(&mut rest).unwrap();
+            let output = self.child.wait_with_output().unwrap();
+            assert_eq!(output.status.code(), Some(1), "{rest}");
+            String::from_utf8(output.stdout).unwrap()
+        }
+
         fn interrupt(&self) {
             let pid = self.child.id().to_string();
             assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
@@ -210,14 +221,8 @@ mod interrupted {
     #[test]
     fn once_it_keeps_the_revisions_so_far() {
         let desk = Desk::with(vec![slow("boom"), slow("arm")]);
-        let mut program = AtWork::at(&desk, "improve log.csv --format json");
-        program.interrupt();
-        program.wait_for("stopping: after this revision");
-        let mut rest = String::new();
-        program.told.read_to_string(&mut rest).unwrap();
-        let output = program.child.wait_with_output().unwrap();
-        assert_eq!(output.status.code(), Some(1), "{rest}");
-        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let printed = AtWork::at(&desk, "improve log.csv --format json").interrupted();
+        let json: Value = serde_json::from_str(&printed).unwrap();
         let [boom, arm] = &json["joints"].as_array().unwrap()[..] else { panic!("{json}") };
         assert_history_is_that_of(&desk, "model.toml", boom);
         assert_history_is_that_of(&desk, "model.toml", arm);
@@ -228,14 +233,8 @@ mod interrupted {
     #[test]
     fn a_report_has_the_revisions_so_far() {
         let desk = Desk::with(vec![slow("boom"), slow("arm")]);
-        let mut program = AtWork::at(&desk, "log.csv -o page.html");
-        program.interrupt();
-        program.wait_for("stopping: after this revision");
-        let mut rest = String::new();
-        program.told.read_to_string(&mut rest).unwrap();
-        let output = program.child.wait_with_output().unwrap();
-        assert_eq!(output.status.code(), Some(1), "{rest}");
-        assert!(String::from_utf8_lossy(&output.stdout).contains("(stopped before the end)"));
+        let printed = AtWork::at(&desk, "log.csv -o page.html").interrupted();
+        assert!(printed.contains("(stopped before the end)"), "{printed}");
         assert!(desk.read("page.html").contains("(stopped before the end)"));
     }
 
@@ -392,4 +391,11 @@ fn the_model_file_says_what_its_numbers_were_fitted_to() {
     assert_eq!(grown.start, fitted.start);
     assert!(grown.parameters.contains_key("actuator_lag.time_constant"), "{grown:?}");
     assert_eq!(grown.verdict, None, "what is still missing was not looked for");
+    // What was before a history without errors is not known.
+    let older = "schema = \"tauscope/model/1\"\n[joint.boom]\nstructure = \"integrator\"\n\
+                 parameters = { gain = 9.0, delay = 0.1 }\n[[joint.boom.history]]\nrevision = 1\n";
+    desk.write("older.toml", older);
+    desk.run("add dead_band log.csv --model older.toml --quiet");
+    let file = ModelFile::read(&desk.folder.path().join("older.toml")).unwrap();
+    assert_eq!((file.history("boom").len(), &file.fitted("boom").unwrap().start), (2, &None));
 }

@@ -139,5 +139,5 @@ fn with_revision(
     let file = file.revised(&added.joint.name, &after.fit.model, &entry)?;
     let [_, compared] = added.compared();
     // What the model still lacks was not looked for.
-    with_fit(&file, &compared, Some(before), None, sources)
+    with_fit(&file, &compared, Some((added.revision - 1, before)), None, sources)
 }

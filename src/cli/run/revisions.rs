@@ -129,26 +129,27 @@ fn revised_for(
         file = file.refitted(joint.name(), &compared.comparison.fit.model)?;
     }
     if is_new || joint.revisions.len() > 1 {
-        let first = joint.revisions.first().map(|first| &first.comparison);
+        let first = joint.numbered().next().map(|(number, first)| (number, &first.comparison));
         file = with_fit(&file, &compared, first, Some(joint.finding.verdict), sources)?;
     }
     Ok(file)
 }
 
-/// `file` with what the model of a joint was fitted to; `first` is the model before its first
-/// revision of this work.
+/// `file` with what the model of a joint was fitted to; `first` is the model that this work began
+/// with, and the number of that revision.
 pub(crate) fn with_fit(
     file: &ModelFile,
     compared: &ComparedJoint<'_>,
-    first: Option<&Comparison>,
+    first: Option<(u32, &Comparison)>,
     verdict: Option<Verdict>,
     sources: &[Source],
 ) -> anyhow::Result<ModelFile> {
     let ComparedJoint { joint, comparison, .. } = compared;
     let known = file.fitted(&joint.name).and_then(|fitted| fitted.start.clone());
-    let history = file.history(&joint.name);
-    // The errors before a history that began elsewhere are not known.
-    let begins = history.first().is_none_or(|entry| history.len() == 1 || entry.revision == 1);
+    // The errors before a history that this work only goes on with are not known.
+    let oldest = file.history(&joint.name).first();
+    let begins = |number: u32| oldest.is_none_or(|entry| entry.revision == number + 1);
+    let start = first.filter(|(number, _)| begins(*number)).map(|(_, first)| errors_of(first));
     let fit = &comparison.fit;
     let units = parameter_units(joint, &fit.model);
     let parameters = fit.parameters.iter().zip(units).map(|(parameter, unit)| {
@@ -161,7 +162,7 @@ pub(crate) fn with_fit(
         output_unit: joint.output_unit.clone(),
         sensor_noise: comparison.sensor_noise,
         verdict: verdict.map(|verdict| verdict.id().to_owned()),
-        start: known.or_else(|| first.filter(|_| begins).map(errors_of)),
+        start: known.or(start),
         parameters: parameters.collect(),
     };
     Ok(file.fitted_to(&joint.name, &fitted)?)
