@@ -25,7 +25,7 @@
 //! knows how a delay is estimated.
 //!
 //! A joint with a [`CylinderSpec`] moves by the physics of valve, oil and linkage instead:
-//! see `docs/cylinder.md`.
+//! see `docs/simulating.md`.
 //!
 //! The random numbers of a joint come from the seed and its place in the file, apart
 //! for input, delays and noise: other noise leaves the input as it was.

@@ -7,7 +7,7 @@
 //!
 //! Seven differential equations in SI units, written from physics: nothing here is an
 //! equation of the models that are fitted, so that they can be judged by it. The
-//! equations, their numbers and sources are in `docs/cylinder.md`.
+//! equations, their numbers and sources are in `docs/simulating.md`.
 
 mod check;
 mod linkage;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// A hydraulic cylinder that moves a joint: the table `cylinder` of a plant file.
 ///
 /// What is left out makes the boom of an excavator of some eight tonnes. All keys, with
-/// their equations and sources, are in `docs/cylinder.md`. Pressures are above that of the
+/// their equations and sources, are in `docs/simulating.md`. Pressures are above that of the
 /// air, 1 bar = 100 kPa.
 ///
 /// # Examples
