@@ -238,6 +238,10 @@ fn residual_record(
         let number = u32::try_from(index).ok()?;
         let Simulated { output, velocity, acting } = simulated;
         drop(output);
+        let mut residual = residual;
+        for gap in trial.unlogged() {
+            residual[gap.clone()].fill(0.0);
+        }
         let first = samples.residual.len();
         let period = trial.period().seconds();
         let levels = levels(&acting);

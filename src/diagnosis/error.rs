@@ -10,7 +10,7 @@ pub struct ErrorFigures {
     /// between restarts starts where its own error is least.
     pub rmse: f64,
     /// `100 · (1 − ‖y − ŷ‖ / ‖y − mean(y)‖)`: 100 for a perfect model, 0 for one that is
-    /// no better than the mean of each window; −∞ of an output that stands still.
+    /// no better than the mean of each run; −∞ of an output that stands still.
     pub fit_percent: f64,
     /// Largest residual, output units.
     pub max: f64,
@@ -38,20 +38,23 @@ impl ErrorFigures {
         windows: impl Iterator<Item = &'w Window>,
     ) -> Option<Self> {
         let (mut samples, mut squares, mut spread, mut max) = (0_usize, 0.0, 0.0, 0.0_f64);
-        for window in windows {
-            let residuals = all.get(window.trial)?.get(window.start..window.end)?;
-            let measured = record.joint().trials.get(window.trial)?.output();
-            let measured = measured.get(window.start..window.end)?;
-            let weights = record.weights_of(window.trial);
-            let counts =
-                |k: usize| weights.is_none_or(|all| all.get(window.start + k) != Some(&0.0));
-            for residual in residuals.iter().enumerate().filter(|(k, _)| counts(*k)).map(|(_, r)| r)
-            {
-                samples += 1;
-                squares += residual * residual;
-                max = max.max(residual.abs());
+        let windows: Vec<&Window> = windows.collect();
+        for run in windows.chunk_by(|a, b| a.trial == b.trial && !b.restarts) {
+            let mut measured = Vec::new();
+            for window in run {
+                let residuals = all.get(window.trial)?.get(window.start..window.end)?;
+                let output = record.joint().trials.get(window.trial)?.output();
+                let weights = record.weights_of(window.trial);
+                let counts =
+                    |k: &usize| weights.is_none_or(|all| all.get(window.start + k) != Some(&0.0));
+                for k in (0..residuals.len()).filter(counts) {
+                    samples += 1;
+                    squares += residuals[k] * residuals[k];
+                    max = max.max(residuals[k].abs());
+                    measured.push(output[window.start + k]);
+                }
             }
-            let mean = measured.iter().sum::<f64>() / measured.len() as f64;
+            let mean = measured.iter().sum::<f64>() / measured.len().max(1) as f64;
             spread += measured.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>();
         }
         // Of an output that stands still nothing but rounding is left behind its mean.

@@ -21,7 +21,7 @@ pub(crate) fn longest_gap_s(trials: &[Trial]) -> Option<f64> {
 
 /// The longest gap that is filled so that its steps get delays, seconds. Chosen: a gap that is longer
 /// parts two experiments.
-pub(crate) const LONGEST_JOINED_S: f64 = 2.0;
+const LONGEST_JOINED_S: f64 = 2.0;
 
 /// The longest gap of a joint whose input changes in gaps and nowhere else: a logger that pauses
 /// while the valve is switched leaves no step in any trial. `None` where a gap is longer than the

@@ -20,10 +20,6 @@ pub struct Repair {
     /// depends on the whole log, which may still grow.
     #[serde(skip)]
     pub as_it_stands: bool,
-    /// Fill the gaps in which all steps of a joint lie, so that delays count from their ends. What
-    /// is filled is no motion that a model should follow.
-    #[serde(skip)]
-    pub joins_steps: bool,
 }
 
 /// Largest difference of a time step from the median, as a part of it, that still
@@ -45,7 +41,7 @@ impl Repair {
 
     /// Whether nothing was asked for, so that what suits the log is done.
     pub(super) fn is_free(self) -> bool {
-        let Self { resample, fill_s, as_it_stands, joins_steps: _ } = self;
+        let Self { resample, fill_s, as_it_stands } = self;
         resample.is_none() && fill_s.is_none() && !as_it_stands
     }
 }

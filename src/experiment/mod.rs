@@ -44,7 +44,7 @@ pub use conditions::conditions;
 pub(crate) use conditions::has_word;
 pub use error::ReadError;
 pub(crate) use format::{format_names, is_named_like_a_log, line_end_of};
-pub(crate) use gaps::{LONGEST_JOINED_S, longest_gap_s};
+pub(crate) use gaps::longest_gap_s;
 pub use grid::Repair;
 pub use handed::{HandedColumn, HandedLog, HandedValues};
 pub use joint::{Joint, Signal};

@@ -340,15 +340,27 @@ fn note_on_further_joint(head: &Head, layout: &Layout) -> Option<String> {
 /// data.
 fn laid_out_foreign(head: &Head, options: &ReadOptions) -> Result<(Layout, Experiment), ReadError> {
     let unusable = match ColumnMap::kept_beside(&head.path) {
-        Ok(Some((file, kept))) => return laid_out_as_kept(head, &file, kept, options),
+        Ok(Some((file, kept))) => match laid_out_as_kept(head, &file, kept, options) {
+            // It was kept for another log of the folder.
+            Err(ReadError::MissingColumn { column, .. }) => {
+                let file = file.display();
+                Some(format!("`{file}` names the column `{column}`, which this log lacks"))
+            }
+            Err(error) => Some(format!("`{}`: {error}", file.display())),
+            laid_out => return laid_out,
+        },
         Ok(None) => None,
-        Err(error) => Some(error),
+        Err(error) => Some(error.to_string()),
     };
+    let unusable = unusable.map(|why| format!("the mapping beside it is not used: {why}"));
     let survey = Survey::of(&head.path, options.memory)?;
-    let (layout, mut found) = laid_out_by_names(head, &survey, options)?;
-    found.notes.extend(unusable.map(|error| {
-        format!("{}: the mapping beside it is not used: {error}", head.path.display())
-    }));
+    let (layout, mut found) = laid_out_by_names(head, &survey, options).map_err(|mut error| {
+        if let (ReadError::NoJoints { available, .. }, Some(why)) = (&mut error, &unusable) {
+            *available += &format!("; {why}");
+        }
+        error
+    })?;
+    found.notes.extend(unusable.map(|why| format!("{}: {why}", head.path.display())));
     Ok((layout, found))
 }
 
@@ -370,6 +382,10 @@ fn laid_out_as_kept(
         estimate: given.estimate.clone(),
     };
     let (layout, mut found) = laid_out(head, &ReadOptions { columns, ..options.clone() })?;
+    // Joints whose columns the log lacks are no reason to leave out the others.
+    if let (true, Some(_)) = (layout.joints.is_empty(), found.failures.first()) {
+        return Err(found.failures.remove(0).error);
+    }
     let settings = if kept.estimate.is_empty() {
         ""
     } else {

@@ -24,7 +24,7 @@ use super::determined::is_determined;
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
 use super::limiting_case::limiting_case;
-use super::misfit::{CONSEQUENCE, Errors, Misfit};
+use super::misfit::{CONSEQUENCE, Errors, Misfit, generalizes};
 use super::options::Options;
 use super::outcome::FitOutcome;
 use super::removal::{changed, fitted_with, replacements};
@@ -128,7 +128,7 @@ impl Grown<'_, '_> {
         let fewer = exchanged.iter().filter(|(_, fit)| count(fit) < count(self.whole));
         let as_little = fewer.filter(|(change, fit)| {
             self.leaves_as_little(fit)
-                && self.misfit.generalizes(own, fit.errors)
+                && generalizes(own, fit.errors)
                 && (is_as_likely(fit) || self.is_to_limiting_case(*change))
         });
         as_little.min_by_key(|(_, fit)| count(fit))

@@ -10,7 +10,7 @@ use super::determined::{implausible, is_determined, is_reached};
 use super::judgement::{Judgement, Refusal};
 use super::likeness::are_distinguished;
 use super::limiting_case::limiting_case_of;
-use super::misfit::{CONSEQUENCE, Errors, Misfit};
+use super::misfit::{CONSEQUENCE, Errors, Misfit, generalizes};
 use super::options::Options;
 use crate::fit::{Fit, FitRecord};
 
@@ -46,7 +46,7 @@ impl<'a, 'r> Judge<'a, 'r> {
                 || candidate.determines_as_much_as(self.base) && candidate.is_distinct());
         let range = self.record.range_for(&candidate.fit.model);
         let implausible = candidate.added().find_map(|one| implausible(one, &range));
-        let generalises = self.misfit.generalizes(self.own, candidate.fit.errors);
+        let generalises = generalizes(self.own, candidate.fit.errors);
         let mut judgement = Judgement {
             evidence: candidate.evidence,
             determined,

@@ -109,12 +109,8 @@ fn attributed(
     let mut whole = all.whole.clone();
     loop {
         let grown = Grown { whole: &whole, ..*all };
-        let own = Errors::of(all.record, &whole);
         let mut left_out = grown.left_out(workers);
-        let may_go = |least: &LeftOut| {
-            let is_refinement = !all.options.keeps_refinements && grown.is_refinement(least);
-            is_refinement && all.misfit.generalizes(own, least.fit.errors)
-        };
+        let may_go = |least: &LeftOut| !all.options.keeps_refinements && grown.is_refinement(least);
         // The least comes last.
         let least = left_out.iter().rposition(may_go).map(|index| left_out.remove(index));
         let (change, fit) = if let Some(least) = least {

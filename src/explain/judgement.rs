@@ -89,6 +89,23 @@ impl Judgement {
         }
     }
 
+    /// What speaks against the effect, in two or three words; nothing where it is added.
+    #[cfg(feature = "rrd")]
+    pub(crate) fn refusal_in_short(&self) -> Option<String> {
+        Some(match self.refusal.as_ref()? {
+            Refusal::NotSignificant => "may be chance".to_owned(),
+            Refusal::Undetermined => "not determined".to_owned(),
+            Refusal::Implausible(name) => format!("{name} not plausible"),
+            Refusal::LikeAnother => "not distinguished".to_owned(),
+            Refusal::LimitingCase(case) => format!("no more than {}", case.effects.join(", ")),
+            Refusal::DoesNotGeneralise => "does not generalise".to_owned(),
+            Refusal::NoConsequence => "no consequence".to_owned(),
+            Refusal::Behind(_) => "less likely".to_owned(),
+            Refusal::NotTheWhole => "still fails with it".to_owned(),
+            Refusal::NothingMissing => "nothing is missing".to_owned(),
+        })
+    }
+
     /// Whether the effect is added, or proposed.
     pub fn is_added(&self) -> bool {
         self.refusal.is_none()

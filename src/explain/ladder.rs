@@ -12,7 +12,7 @@
 //! Journal of Aerospace Engineering 7 (linkages of excavators).
 
 use super::eligible::{could_be_missing, is_due};
-use super::misfit::{Errors, Misfit};
+use super::misfit::{Errors, Misfit, generalizes};
 use super::options::Options;
 use super::revision::Change;
 use super::stepwise::Step;
@@ -50,7 +50,7 @@ pub(super) fn climbed(
             continue;
         };
         let (own, with_effect) = (Errors::of(record, &step.fit), Errors::of(record, &fit));
-        if !misfit.generalizes(own, with_effect) {
+        if !generalizes(own, with_effect) {
             continue;
         }
         // A finer form is worth its parameters or not; whether an effect is, is seen at the end.

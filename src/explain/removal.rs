@@ -7,7 +7,7 @@ use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
 use super::likeness::{are_distinguished, looks_like};
 use super::limiting_case::limiting_case_of;
-use super::misfit::{Errors, Misfit};
+use super::misfit::{Errors, Misfit, generalizes};
 use super::options::Options;
 use super::outcome::FitOutcome;
 use super::revision::Change;
@@ -107,8 +107,8 @@ impl Removal<'_> {
         let of_whole = noise.evidence(record, whole);
         let judged = tried.into_iter().filter_map(|(change, fit)| {
             let evidence = noise.evidence(record, &fit.on(record));
-            let does_harm = of_whole.is_nearer_over_windows(&evidence, HARM)
-                || !self.misfit.generalizes(own, fit.errors);
+            let does_harm =
+                of_whole.is_nearer_over_windows(&evidence, HARM) || !generalizes(own, fit.errors);
             // More parameters in the place of an effect are worth as much as a further effect.
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements

@@ -13,7 +13,7 @@
 
 use super::eligible::could_be_missing;
 use super::evidence::NoiseMemory;
-use super::misfit::{Errors, Misfit};
+use super::misfit::{Errors, Misfit, generalizes};
 use super::options::Options;
 use super::revision::Change;
 use super::stepwise::Step;
@@ -89,7 +89,7 @@ fn climbed(
         let with = fit.model.with(Component::neutral(*effect));
         let Ok(next) = fit_to_compare(record, &with, &record.range_for(&with)) else { continue };
         let (before, after) = (Errors::of(record, &fit), Errors::of(record, &next));
-        if misfit.generalizes(before, after) && misfit.has_consequence(before, after) {
+        if generalizes(before, after) && misfit.has_consequence(before, after) {
             let change = Change::between(&fit.model, &next.model, effect.spec().id);
             steps.push(Step::new(record, change, next.clone()));
             fit = next;

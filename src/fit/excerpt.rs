@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     fn window(trial: usize, start: usize, end: usize) -> Window {
-        Window { trial, start, end, part: Part::Training }
+        Window { trial, start, end, part: Part::Training, restarts: true }
     }
 
     #[test]

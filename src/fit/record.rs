@@ -242,6 +242,7 @@ impl<'a> FitRecord<'a> {
             start: 0,
             end: trial.len(),
             part: Part::Training,
+            restarts: true,
         });
         let free = Self { windows: whole.collect(), speeds_measured: false, ..self.clone() };
         raw_residuals(&free.runs(model))

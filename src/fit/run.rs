@@ -30,14 +30,23 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// The outputs that were measured where the windows start.
-    fn measured_starts(&self) -> Vec<f64> {
-        let measured = self.trial.output();
-        let start = |w: &Window| measured[w.start];
-        self.windows.iter().map(start).collect()
+    /// The windows between two restarts.
+    fn between_restarts(&self) -> impl Iterator<Item = &[Window]> {
+        self.windows.chunk_by(|_, next| !next.restarts)
     }
 
-    /// The measured outputs where the windows start, each the mean of the samples around it, of as
+    /// The window at each restart.
+    fn first_windows(&self) -> impl Iterator<Item = &Window> {
+        self.between_restarts().filter_map(|windows| windows.first())
+    }
+
+    /// The outputs that were measured at the restarts.
+    fn measured_starts(&self) -> Vec<f64> {
+        let measured = self.trial.output();
+        self.first_windows().map(|window| measured[window.start]).collect()
+    }
+
+    /// The measured outputs at the restarts, each the mean of the samples around it, of as
     /// many on either side, four at most.
     fn smoothed_starts(&self) -> Vec<f64> {
         /// Samples on either side: a third of the noise is left, and of a straight motion nothing
@@ -49,15 +58,16 @@ impl Run<'_> {
             let around = &measured[window.start - side..=window.start + side];
             around.iter().sum::<f64>() / around.len() as f64
         };
-        self.windows.iter().map(start).collect()
+        self.first_windows().map(start).collect()
     }
 
     /// What is `simulated`, less what its starts are wrong by.
     fn shifted(&self, mut simulated: Simulated, slope: Option<&[f64]>) -> Simulated {
         let shifts = self.shifts(&simulated.output, slope);
-        for (window, shift) in self.windows.iter().zip(shifts) {
-            let values = &mut simulated.output[window.start..window.end];
-            for (index, value) in (window.start..).zip(values) {
+        for (windows, shift) in self.between_restarts().zip(shifts) {
+            let (Some(first), Some(last)) = (windows.first(), windows.last()) else { continue };
+            let values = &mut simulated.output[first.start..last.end];
+            for (index, value) in (first.start..).zip(values) {
                 *value += shift * slope.map_or(1.0, |g| g[index]);
             }
         }
@@ -93,7 +103,7 @@ impl Run<'_> {
                 .then(|| speed::measured(self.trial, window.start))
                 .flatten(),
         };
-        self.windows.iter().zip(starts).map(restart).collect()
+        self.first_windows().zip(starts).map(restart).collect()
     }
 
     /// The ranges of this run, which is that at `index`, from the `starts` of its windows.
@@ -148,12 +158,12 @@ impl Run<'_> {
         sample as f64 * self.trial.period().seconds()
     }
 
-    /// By how much the start of each window is wrong: `Σ w g r / Σ w g²`, with the slope
-    /// `g` of the output to it (1 where there is none).
+    /// By how much the start behind each restart is wrong: `Σ w g r / Σ w g²` over the samples of its
+    /// windows, with the slope `g` of the output to it (1 where there is none).
     fn shifts(&self, simulated: &[f64], slope: Option<&[f64]>) -> Vec<f64> {
-        let shift = |window: &Window| {
+        let shift = |windows: &[Window]| {
             let (mut with, mut square) = (0.0, f64::MIN_POSITIVE);
-            for index in window.start..window.end {
+            for index in windows.iter().flat_map(|window| window.start..window.end) {
                 let at = |values: &[f64]| values[index];
                 let (g, w) = (slope.map_or(1.0, at), self.weights.map_or(1.0, at));
                 with += w * g * (at(self.trial.output()) - at(simulated));
@@ -161,11 +171,11 @@ impl Run<'_> {
             }
             with / square
         };
-        self.windows.iter().map(shift).collect()
+        self.between_restarts().map(shift).collect()
     }
 }
 
-/// For each run the outputs at the start of the windows that make their squared error least, and the
+/// For each run the outputs at the restarts that make their squared error least, and the
 /// slope of the simulated output to them, where it is not 1.
 ///
 /// Without a slope the measured outputs will do: what they are wrong by is the same at all samples

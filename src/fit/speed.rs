@@ -119,7 +119,13 @@ mod tests {
 
     #[test]
     fn noise_decides() {
-        let window = Window { trial: 0, start: 20, end: 50, part: super::super::Part::Training };
+        let window = Window {
+            trial: 0,
+            start: 20,
+            end: 50,
+            part: super::super::Part::Training,
+            restarts: true,
+        };
         let noisy = |size: f64| trial(|t| 3.0 * t + size * (97.0 * t).sin());
         assert!(are_measured(&[noisy(0.001)], &[window]));
         assert!(!are_measured(&[noisy(0.3)], &[window]));

@@ -58,8 +58,10 @@ mod tests {
     use super::*;
 
     fn windows(trials: usize, each: usize) -> Vec<Window> {
-        let window =
-            |trial, k| Window { trial, start: 100 * k, end: 100 * (k + 1), part: Part::Training };
+        let window = |trial, k| {
+            let (start, end) = (100 * k, 100 * (k + 1));
+            Window { trial, start, end, part: Part::Training, restarts: true }
+        };
         (0..trials).flat_map(|trial| (0..each).map(move |k| window(trial, k))).collect()
     }
 
@@ -80,7 +82,7 @@ mod tests {
     #[test]
     fn a_window_of_a_free_run_is_kept_whole() {
         let part = Part::Training;
-        let run = [Window { trial: 0, start: 0, end: 100_000, part }];
+        let run = [Window { trial: 0, start: 0, end: 100_000, part, restarts: true }];
         assert_eq!(thinned(&run), run);
     }
 

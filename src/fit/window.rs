@@ -13,7 +13,7 @@ pub enum Horizon {
     /// A free run where the output follows its input itself, as a speed, a pressure or a servo's
     /// position does, and forgets where it began; else from step to step of the input.
     Auto,
-    /// Never: each part of a trial is one run.
+    /// Never: each trial is one run.
     #[default]
     FreeRun,
     /// At every step of the input, and in between so that no run is longer than 2 s, or 200 samples
@@ -61,11 +61,17 @@ pub enum Split {
 }
 
 impl Split {
-    /// By trial where there are enough of them, else by blocks of each.
+    /// By trial where there are enough of them, else by blocks of each; by trial, too, where each is
+    /// too short for blocks: the end of a trial alone may hold a level that its beginning never has.
     pub fn of(joint: &Joint) -> Self {
         /// Trials from which a third of them is a fair sample.
         const ENOUGH: usize = 6;
-        if joint.trials.len() >= ENOUGH { Self::Trials } else { Self::Blocks }
+        /// Trials of which a third is one.
+        const FEWEST: usize = 3;
+        let trials = &joint.trials;
+        let are_short = || trials.iter().all(|trial| blocks(trial).is_none());
+        let by_trial = trials.len() >= ENOUGH || trials.len() >= FEWEST && are_short();
+        if by_trial { Self::Trials } else { Self::Blocks }
     }
 
     /// The stretches of `trial`, which has this place among the labels: the index behind the last
@@ -139,12 +145,16 @@ pub struct Window {
     pub end: usize,
     /// What it is for.
     pub part: Part,
+    /// Whether the simulation is set to the measured output at its start; else it goes on from the window
+    /// before.
+    pub restarts: bool,
 }
 
 /// Fewest samples of a window: its offset is taken from them.
 const SHORTEST_WINDOW: usize = 10;
 
-/// The windows of one trial, which has this place among the labels.
+/// The windows of one trial, which has this place among the labels. What was filled in while nothing was
+/// logged is in none of them.
 pub(super) fn cut(
     trial: &Trial,
     index: usize,
@@ -152,12 +162,22 @@ pub(super) fn cut(
     horizon: Horizon,
 ) -> Vec<Window> {
     let stretches = merged(split.stretches(trial, place));
-    let must: Vec<usize> = stretches.iter().map(|(end, _)| *end).collect();
+    let gaps = trial.unlogged();
+    let mut must: Vec<usize> = stretches.iter().map(|(end, _)| *end).collect();
+    must.extend(gaps.iter().flat_map(|gap| [gap.start, gap.end]));
     let part = |start: usize| stretches.iter().find(|(end, _)| start < *end).map(|(_, part)| *part);
     let ends = window_ends(borders(trial, horizon), &must);
     let starts = std::iter::once(0).chain(ends.iter().copied());
-    let window = |(start, end)| Some(Window { trial: index, start, end, part: part(start)? });
-    starts.zip(ends.iter().copied()).filter_map(window).collect()
+    let is_logged = |start: &usize| !gaps.iter().any(|gap| gap.contains(start));
+    // In a free run parts that are fitted and parts that are not take turns, and the simulation goes on:
+    // a start of its own in each would leave only the motion within a part to be explained.
+    let restarts = |start| start == 0 || horizon != Horizon::FreeRun;
+    let window = |(start, end)| {
+        let (trial, restarts) = (index, restarts(start));
+        Some(Window { trial, start, end, part: part(start)?, restarts })
+    };
+    let logged = starts.zip(ends.iter().copied()).filter(|(start, _)| is_logged(start));
+    logged.filter_map(window).collect()
 }
 
 /// Stretches of which no two neighbours are for the same, without empty ones.
@@ -262,7 +282,12 @@ pub(super) fn shorter(window: Window, changes: usize) -> Vec<Window> {
     let samples = window.end - window.start;
     let parts = (changes / CHANGES).min(samples / SHORTEST).max(1);
     let border = |part: usize| window.start + samples * part / parts;
-    let part = |part| Window { start: border(part), end: border(part + 1), ..window };
+    let part = |part| Window {
+        start: border(part),
+        end: border(part + 1),
+        restarts: window.restarts || part > 0,
+        ..window
+    };
     (0..parts).map(part).collect()
 }
 
@@ -317,6 +342,17 @@ mod tests {
         let short = trial.part(0, 1100).unwrap();
         let windows = cut(&short, 0, (Split::Blocks, 0), Horizon::FreeRun);
         assert_eq!(windows.iter().map(|window| window.end).collect::<Vec<_>>(), [770, 1100]);
+    }
+
+    #[test]
+    fn what_was_not_logged_is_in_no_window() {
+        let input: Vec<f64> = (0..600).map(|k| if k < 400 { 1.0 } else { -1.0 }).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("a", 0.0, period, input, vec![0.0; 600]).unwrap();
+        let trial = trial.with_unlogged(std::iter::once(250..400).collect());
+        let windows = cut(&trial, 0, (Split::Time(0.8), 0), Horizon::Steps);
+        let spans: Vec<_> = windows.iter().map(|window| (window.start, window.end)).collect();
+        assert_eq!(spans, [(0, 200), (200, 250), (400, 480), (480, 600)]);
     }
 
     #[test]

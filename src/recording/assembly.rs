@@ -13,10 +13,11 @@ use super::layout::{JointLayout, TrialStarts};
 use super::paths::{self, against, at, drawing, joint_root, map};
 use super::recorded::Recording;
 use super::{
-    about, decisions, delay_state, difference, doubt, model, overview, place, revision,
+    about, decisions, delay_state, difference, doubt, headline, model, overview, place, revision,
     segment_view, signals, verdict, views,
 };
 use crate::report::{EstimatedJoint, ImprovedJoint, settings_in_short};
+use crate::units::signed;
 
 impl<'a> Recording<'a> {
     /// Each joint and where it lies on the timelines.
@@ -34,8 +35,14 @@ impl<'a> Recording<'a> {
         let revisions = revisions.map(|(first, last)| (before(first, last), last));
         // Which one is the first is not known when the decisions are sent, and they are sent once.
         let revisions = revisions.filter(|_| growth == Growth::Finished);
-        let layout =
-            move |joint| (joint, JointLayout::of(joint, &starts, (self.detail, revisions)));
+        let decisions = self.joints.iter().flat_map(|joint| joint.estimate.estimated());
+        let decisions = decisions.flat_map(|trial| &trial.decisions);
+        let most = decisions.map(|decision| signed(decision.candidates.len())).max().unwrap_or(0);
+        // With a tick for the segment alone, and one for its verdict.
+        let first_tick = -1 - most;
+        let layout = move |joint| {
+            (joint, JointLayout::of(joint, &starts, (self.detail, revisions), first_tick))
+        };
         self.joints.iter().copied().map(layout)
     }
 }
@@ -94,6 +101,7 @@ fn add_joint(
     let joint = estimated.joint;
     let root = joint_root(&joint.name);
     place::add(chunks, &root, layout)?;
+    headline::add(chunks, &root, estimated, (layout, recording.sources))?;
     signals::add(chunks, &root, joint, layout)?;
     decisions::add(chunks, &root, joint, layout)?;
     verdict::add(chunks, &root, estimated, layout, others)?;
@@ -126,8 +134,9 @@ fn first_sample(layout: &JointLayout<'_>) -> Option<Moment> {
     steps.all(|step| step > first.sample).then_some(first)
 }
 
-/// Shows the most different or most doubtful decision before the first tick, where the viewer
-/// opens, on the timeline of revisions, and at the `first_sample` where it opens on `time`.
+/// Shows the most different or most doubtful decision where the viewer opens: on the timeline of
+/// decisions before the first step, with its candidates behind it; on that of revisions; and at the
+/// `first_sample` where it opens on `time`.
 fn open_on_the_first(
     chunks: &mut Chunks,
     root: &EntityPath,
@@ -153,6 +162,11 @@ fn open_on_the_first(
     };
     for (path, component) in shown {
         chunks.repeat((&at(root, path), component), segment.opening, &index)?;
+    }
+    let candidates = segment.opening + 1..=segment.verdict();
+    for path in [drawing::CANDIDATE, drawing::CANDIDATE_MARK] {
+        let path = at(root, &format!("{}/{path}", drawing::ROOT));
+        chunks.replay(&path, candidates.clone(), layout.first.tick + 1)?;
     }
     Ok(())
 }

@@ -96,6 +96,26 @@ impl Plot {
         [Vec2D::new(self.left, self.y(y)), Vec2D::new(self.right, self.y(y))]
     }
 
+    /// The part of a line between two places that is in the plot: none of it lies on the frame.
+    pub(super) fn clipped(&self, [from, to]: [Place; 2]) -> Option<[Vec2D; 2]> {
+        let parts = |place: Place| (self.x.part(place.0), self.y.part(place.1));
+        let ((x0, y0), (x1, y1)) = (parts(from), parts(to));
+        let (mut start, mut end) = (0.0_f64, 1.0_f64);
+        // Liang and Barsky, "A new concept and method for line clipping", 1984.
+        for (way, room) in [(x0 - x1, x0), (x1 - x0, 1.0 - x0), (y0 - y1, y0), (y1 - y0, 1.0 - y0)]
+        {
+            if way < 0.0 {
+                start = start.max(room / way);
+            } else if way > 0.0 {
+                end = end.min(room / way);
+            } else if room < 0.0 {
+                return None;
+            }
+        }
+        let at = |t: f64| self.at(from.0 + t * (to.0 - from.0), from.1 + t * (to.1 - from.1));
+        (start < end).then(|| [at(start), at(end)])
+    }
+
     pub(super) fn frame(&self) -> Vec<Vec2D> {
         let corner = |x, y| Vec2D::new(x, y);
         vec![
@@ -240,6 +260,20 @@ mod tests {
         }
         labels.keep_apart(30.0);
         assert_eq!(labels.texts, ["10", "0", "-20"]);
+    }
+
+    #[test]
+    fn a_line_is_drawn_as_far_as_it_is_in_its_plot() {
+        let unit = Span::new(0.0, 1.0);
+        let plot = Plot::within((0.0, 100.0), 0.0..=100.0, unit, unit);
+        let whole = plot.clipped([(0.2, 0.2), (0.8, 0.4)]).unwrap();
+        assert_eq!(whole, [Vec2D::new(20.0, 80.0), Vec2D::new(80.0, 60.0)]);
+        let steep = plot.clipped([(0.5, -1.0), (0.5, 3.0)]).unwrap();
+        assert_eq!(steep, [Vec2D::new(50.0, 100.0), Vec2D::new(50.0, 0.0)]);
+        let leaves = plot.clipped([(0.5, 0.5), (1.5, 1.5)]).unwrap();
+        assert_eq!(leaves[1], Vec2D::new(100.0, 0.0));
+        assert_eq!(plot.clipped([(0.0, 1.2), (1.0, 1.1)]), None);
+        assert_eq!(plot.clipped([(1.2, 0.0), (1.4, 1.0)]), None);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! an id is a namespace (one per joint), a tag of the recording, and a counter: viewers keep
 //! state by id, so no two recordings share any.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use rerun::external::arrow::array::{
@@ -39,9 +40,12 @@ pub(super) struct Index {
     difference: Vec<i64>,
 }
 
-/// What a recording opens on, beside its decisions.
+/// What a recording opens on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Opening {
+    /// Its first tick on the timeline of decisions: up to 0 lie the candidates of the decision that is
+    /// shown first, so that the right arrow goes through them.
+    pub(super) tick: i64,
     /// The first revision of any model, or of several the tick before it.
     pub(super) revision: Option<i64>,
     /// Whether there are other results to compare with.
@@ -110,7 +114,12 @@ impl Index {
     /// One row before all others, on the timelines of decisions and, where it is opened on, of
     /// revisions or of differences alone.
     pub(super) fn before_all(opening: Opening) -> Self {
-        Self { decision: vec![0], ..Self::default() }.opened(opening)
+        Self { decision: vec![opening.tick], ..Self::default() }.opened(opening)
+    }
+
+    /// One row at a tick of the timeline of decisions, and on no other.
+    fn at_tick(tick: i64) -> Self {
+        Self { decision: vec![tick], ..Self::default() }
     }
 
     /// This row at the first sample of the record, too.
@@ -120,7 +129,7 @@ impl Index {
 
     /// One row on every timeline, at its first tick or before it; `start` is the first sample.
     pub(super) fn everywhere(start: Moment, opening: Opening) -> Self {
-        let start = Moment { decision: 0, ..start };
+        let start = Moment { decision: opening.tick, ..start };
         Self { doubt: vec![1], ..std::iter::once(start).collect() }.opened(opening)
     }
 
@@ -129,7 +138,7 @@ impl Index {
         Self { segment: vec![1], doubt: vec![1], ..Self::default() }.opened(opening)
     }
 
-    fn opened(self, Opening { revision, is_compared }: Opening) -> Self {
+    fn opened(self, Opening { revision, is_compared, .. }: Opening) -> Self {
         let difference = if is_compared { vec![1; self.len()] } else { Vec::new() };
         Self { difference, ..self.at_revision(revision) }
     }
@@ -253,28 +262,43 @@ impl Chunks {
         decision: i64,
         index: &Index,
     ) -> Result<(), RecordError> {
-        let shown = |chunk: &&Chunk| chunk.entity_path().starts_with(root);
         let rows: Vec<_> = self
-            .made
-            .iter()
-            .filter(shown)
-            .filter_map(|chunk| {
-                let ticks = chunk.timelines().get(&"decision".into())?.times_raw();
+            .below(root)
+            .filter_map(|(chunk, ticks)| {
                 let row = ticks.iter().rposition(|tick| *tick <= decision)?;
-                let columns = chunk.components().0.values();
-                let named =
-                    columns.filter(|c| c.descriptor.component.as_str().starts_with(component));
-                let slice = named.map(|column| {
-                    let (list, name) = (column.list_array.slice(row, 1), column.descriptor.clone());
-                    SerializedComponentColumn::new(list, name)
-                });
-                Some((chunk.entity_path().clone(), slice.collect::<Vec<_>>()))
+                Some((chunk.entity_path().clone(), cells(chunk, row, component)))
             })
             .collect();
         for (entity, columns) in rows.into_iter().filter(|(_, columns)| !columns.is_empty()) {
             self.push(entity, index.clone(), columns)?;
         }
         Ok(())
+    }
+
+    /// Adds once more, from the tick `from` on, the rows that the entities below `root` have at `ticks`
+    /// of decisions, on that timeline alone.
+    pub(super) fn replay(
+        &mut self,
+        root: &EntityPath,
+        ticks: RangeInclusive<i64>,
+        from: i64,
+    ) -> Result<(), RecordError> {
+        let mut rows = Vec::new();
+        for (chunk, at) in self.below(root) {
+            for (row, tick) in at.iter().enumerate().filter(|(_, tick)| ticks.contains(*tick)) {
+                let index = Index::at_tick(tick - ticks.start() + from);
+                rows.push((chunk.entity_path().clone(), index, cells(chunk, row, "")));
+            }
+        }
+        rows.into_iter().try_for_each(|(entity, index, columns)| self.push(entity, index, columns))
+    }
+
+    /// The chunks of the entities below `root` that have ticks of decisions, with these.
+    fn below(&self, root: &EntityPath) -> impl Iterator<Item = (&Chunk, &[i64])> {
+        let shown = self.made.iter().filter(|chunk| chunk.entity_path().starts_with(root));
+        shown.filter_map(|chunk| {
+            Some((chunk, chunk.timelines().get(&"decision".into())?.times_raw()))
+        })
     }
 
     fn push_rows(
@@ -307,6 +331,17 @@ impl Chunks {
     pub(super) fn into_chunks(self) -> Vec<Chunk> {
         self.made
     }
+}
+
+/// What `chunk` has in a row, of the components whose name begins so.
+fn cells(chunk: &Chunk, row: usize, component: &str) -> Vec<SerializedComponentColumn> {
+    let columns = chunk.components().0.values();
+    let named = columns.filter(|c| c.descriptor.component.as_str().starts_with(component));
+    let cell = named.map(|column| {
+        let (list, name) = (column.list_array.slice(row, 1), column.descriptor.clone());
+        SerializedComponentColumn::new(list, name)
+    });
+    cell.collect()
 }
 
 /// A column of numbers named `name`; `None` is null.

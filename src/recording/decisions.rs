@@ -110,7 +110,7 @@ struct Table {
     /// Rank by squared error within the step.
     rank: Vec<Option<i64>>,
     /// What a person reads, in the order of [`Self::SHOWN`].
-    shown: [Vec<Option<f64>>; 5],
+    shown: [Vec<Option<f64>>; 3],
     accepted: Vec<Option<i64>>,
     fine: Vec<Option<FineDelay>>,
     /// Trial and verdict.
@@ -120,9 +120,8 @@ struct Table {
 impl Table {
     const WHOLE: [&str; 8] = ["i", "p", "r", "end", "f", "j", "q", "delta"];
     const REAL: [&str; 3] = ["sse", "slope_before", "slope_after"];
-    /// A viewer orders columns by their names: the most telling ones come first.
-    const SHOWN: [&str; 5] =
-        ["3_delay_s", "4_sse", "5_times_least", "slope_before_shown", "slope_after_shown"];
+    /// A viewer orders columns by their names: these are such that the most telling ones come first.
+    const SHOWN: [&str; 3] = ["delay_s", "error", "error_times_least"];
 
     /// The numbers of `candidate`, of which so many have a smaller error; `j` is its number, empty on
     /// the row of the verdict.
@@ -156,9 +155,9 @@ impl Table {
         let period_s = trial.trial.period().seconds();
         let own = decision.delay().filter(|_| j.is_none());
         let delay = own.or_else(|| breakpoint.map(|q| (q - signed(p)) as f64));
-        let [sse, before, after] = real;
+        let [sse, ..] = real;
         let ratio = sse.zip(best.filter(|best| best.sse > 0.0)).map(|(sse, best)| sse / best.sse);
-        let shown = [delay.map(|delay| delay * period_s), sse, ratio, before, after];
+        let shown = [delay.map(|delay| delay * period_s), sse, ratio];
         self.shown.iter_mut().zip(shown).for_each(|(column, value)| column.push(value));
         self.rank.push(rank);
         let accepted = i64::from(decision.verdict() == Verdict::Accepted);
@@ -206,12 +205,12 @@ fn add_table(
     let real = Table::REAL.iter().zip(&table.real).map(|(name, values)| numbers(name, values));
     let rounded = Table::SHOWN.iter().zip(&table.shown).map(|(name, values)| shown(name, values));
     let [trials, verdicts] = &table.words;
-    let words = [texts("trial", trials), texts("verdict", verdicts), texts("6_verdict", verdicts)];
+    let words = [texts("trial", trials), texts("verdict", verdicts)];
     let [.., breakpoints, _] = &table.whole;
     let accepted = [
         integers("accepted", &table.accepted),
-        integers("1_rank", &table.rank),
-        integers("2_q", breakpoints),
+        integers("error_rank", &table.rank),
+        integers("breakpoint", breakpoints),
     ];
     let fine = fine_columns(&table.fine);
     let columns: Vec<_> =

@@ -136,6 +136,11 @@ pub(super) struct SegmentLayout<'a> {
 }
 
 impl SegmentLayout<'_> {
+    /// Whether its decision is doubtful, and no person has spoken of it.
+    pub(super) fn is_open(&self) -> bool {
+        self.doubt.is_doubtful() && self.decision.reviewer_verdict.is_none()
+    }
+
     /// Its last tick.
     pub(super) fn verdict(&self) -> i64 {
         self.opening + signed(self.kept.len()) + 1
@@ -168,6 +173,7 @@ impl<'a> JointLayout<'a> {
         joint: EstimatedJoint<'a>,
         starts: &TrialStarts,
         (detail, revisions): (Detail, Option<(i64, i64)>),
+        first_tick: i64,
     ) -> Self {
         let mut tick = 1;
         let mut number = 0;
@@ -198,7 +204,7 @@ impl<'a> JointLayout<'a> {
             trials.push(trial);
         }
         let (first_revision, last_revision) = revisions.unzip();
-        let first = Opening { revision: first_revision, is_compared: false };
+        let first = Opening { tick: first_tick, revision: first_revision, is_compared: false };
         let mut layout = Self { trials, first, last_revision };
         layout.rank();
         layout

@@ -48,6 +48,8 @@ pub(crate) const VERDICT: &str = "verdict";
 pub(crate) const VERDICT_LOG: &str = "verdict/log";
 pub(crate) const SEGMENT: &str = "segment";
 pub(crate) const TRIAL: &str = "trial";
+/// What was found of the joint, and what to do next.
+pub(crate) const HEADLINE: &str = "headline";
 /// Where the cursor is, in words.
 pub(crate) const PLACE: &str = "place";
 /// The decisions by doubt, in words and as lines to click.
@@ -123,6 +125,10 @@ pub(crate) mod drawing {
     /// What the chosen lines leave.
     pub(crate) const RESIDUAL: &str = "residual";
     pub(crate) const SSE: &str = "sse";
+    /// The samples of the close-up.
+    pub(crate) const CLOSE: &str = "close";
+    /// Algorithm 1's lines in the close-up, where the answer is another one's.
+    pub(crate) const ALGORITHM_1: &str = "algorithm_1";
     /// What the program found where a reviewer moved the breakpoint.
     pub(crate) const BEFORE_REVIEW: &str = "before_review";
     pub(crate) const ACCEPTED: &str = "accepted";
@@ -130,7 +136,7 @@ pub(crate) mod drawing {
     pub(crate) const NAMES: &str = "names";
     pub(crate) const CANDIDATE: &str = "candidate";
     pub(crate) const CANDIDATE_MARK: &str = "candidate/mark";
-    pub(crate) const PARTS: [&str; 14] = [
+    pub(crate) const PARTS: [&str; 16] = [
         GRID,
         TICKS,
         BORDERS,
@@ -138,8 +144,10 @@ pub(crate) mod drawing {
         INPUT_STEP,
         MEASURED,
         SMOOTHED,
+        CLOSE,
         RESIDUAL,
         SSE,
+        ALGORITHM_1,
         ACCEPTED,
         REJECTED,
         NAMES,

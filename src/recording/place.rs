@@ -50,12 +50,13 @@ fn push(
     chunks.push(entity, index, texts.columns_of_unit_batches()?)
 }
 
-const OPENING: &str = "**The most doubtful decision**; the right arrow begins with the first step.";
+const OPENING: &str = "**The most doubtful decision**: the right arrow goes through its candidates, \
+then on to the first step.";
 
 const WITHOUT_STEPS: &str = "**No steps**: what is found of the whole record is on the right.";
 
-const OPENING_COMPARED: &str = "**The most different decision**; on `decision` the right arrow \
-begins with the first step.";
+const OPENING_COMPARED: &str = "**The most different decision**: on `decision` the right arrow \
+goes through its candidates, then on to the first step.";
 
 const HINT: &str = "**The whole record is drawn below.** To move along it choose `sample`, `time` or \
 `decision` at the bottom left, and the tab *Along …*.";

@@ -1,11 +1,9 @@
-//! The drawing of one decision: the segment, both lines, what they leave, the error curve, the
-//! cursor.
+//! The drawing of one decision: on the left the segment, both lines, what they leave, the error
+//! curve and the cursor; on the right a close-up of the reaction.
 //!
 //! What belongs to the segment is set at its opening tick and stays until the next one;
 //! what belongs to a candidate is set at each of its ticks and cleared before and after,
 //! so that nothing leaks into the next segment.
-
-use std::iter;
 
 use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
@@ -13,12 +11,14 @@ use rerun::{EntityPath, LineStrips2D, Points2D};
 use super::beside::{Other, decided_in_short, in_short};
 use super::canvas::{CURVE_POINTS, HALF_LETTER, Labels, Plot, SHEET, Span, simplified, thinned_to};
 use super::chunk::{Chunks, Index};
+use super::close_up::CloseUp;
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, color};
 use super::paths::{at, drawing};
 use super::rows::Rows;
 use crate::delay::{Candidate, Line, Method, Verdict};
+use crate::diagnosis::sensor_noise;
 use crate::experiment::Joint;
 use crate::figure::segment::SegmentFigure;
 use crate::figure::{Role, power_of_ten};
@@ -28,6 +28,9 @@ use crate::wording::{bracketed, number, samples_text};
 
 /// Width and height of the sheet.
 pub(super) const SIZE: (f32, f32) = (SHEET.0, 770.0);
+
+/// Left and right end of the plots of the whole segment.
+const SIDES: (f32, f32) = (120.0, 960.0);
 
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(
@@ -57,11 +60,16 @@ pub(super) fn add_drawings(
     sheet.strips(drawing::GRID, palette::GRID, 0.8, rows().map(|d| d.grid().0))?;
     sheet.texts(drawing::TICKS, palette::BORDER, rows().map(|d| d.grid().1))?;
     sheet.points(drawing::MEASURED, palette::RAW, 1.6, rows().map(Drawing::measured))?;
-    sheet.strips(drawing::SMOOTHED, palette::SMOOTHED, 1.4, rows().map(|d| vec![d.smoothed()]))?;
+    sheet.points(drawing::CLOSE, palette::MEASURED, 5.0, rows().map(|d| d.close_up.measured()))?;
+    sheet.strips(drawing::SMOOTHED, palette::SMOOTHED, 1.4, rows().map(Drawing::smoothed))?;
     sheet.strips(drawing::BORDERS, palette::BORDER, 1.2, rows().map(Drawing::borders))?;
     sheet.strips(drawing::INPUT_STEP, palette::INPUT, 1.6, rows().map(Drawing::input_step))?;
     sheet.strips(drawing::RESIDUAL, palette::SMOOTHED, 1.4, rows().map(Drawing::residual))?;
     sheet.strips(drawing::SSE, palette::ERROR, 1.6, rows().map(|d| vec![d.errors()]))?;
+    if rows().any(|drawing| drawing.segment.decision.onset.is_some()) {
+        let lines = rows().map(Drawing::algorithm_1);
+        sheet.strips(drawing::ALGORITHM_1, palette::BORDER, 1.4, lines)?;
+    }
     for (path, rgb, role) in [
         (drawing::ACCEPTED, palette::ACCEPTED, Role::Accepted),
         (drawing::REJECTED, palette::REJECTED, Role::Rejected),
@@ -117,7 +125,7 @@ fn add_others(
     Ok(())
 }
 
-/// One line of texts side by side between the two plots.
+/// Texts, one below another, at the bottom of the close-up.
 #[derive(Clone, Copy)]
 struct Legend {
     entries: usize,
@@ -125,19 +133,16 @@ struct Legend {
 
 impl Legend {
     fn entry(self, index: usize, text: Option<String>) -> Labels {
-        const ROW: f32 = 464.0;
         let mut labels = Labels::default();
-        let width = (SHEET.0 - 200.0) / self.entries as f32;
-        let middle = 200.0 + width * (index as f32 + 0.5);
         if let Some(text) = text {
-            labels.put_whole(Vec2D::new(middle, ROW), text);
+            labels.put_whole(CloseUp::legend_place(index, self.entries), text);
         }
         labels
     }
 }
 
 /// One segment on its sheet: the output above, what both lines leave of it, the error curve
-/// below.
+/// below; and the close-up beside them.
 pub(super) struct Drawing<'l, 'a> {
     joint: &'l Joint,
     trial: &'l TrialLayout<'a>,
@@ -147,6 +152,7 @@ pub(super) struct Drawing<'l, 'a> {
     /// What the chosen lines leave, with its plot.
     residual: (Vec<(f64, f64)>, Plot),
     error: Plot,
+    close_up: CloseUp<'l>,
 }
 
 impl<'l, 'a> Drawing<'l, 'a> {
@@ -163,15 +169,17 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let y = Span::around(values, 0.06);
         let left = figure.residual(trial.output());
         let heights = left.iter().map(|(_, y)| *y).chain([0.0]);
-        let residual = Plot::new(494.0..=556.0, x, Span::around(heights, 0.1));
+        let residual = Plot::within(SIDES, 494.0..=556.0, x, Span::around(heights, 0.1));
+        let noise = sensor_noise(&joint.trials);
         Self {
             joint,
             trial,
             segment,
             figure,
-            output: Plot::new(76.0..=400.0, x, y),
+            output: Plot::within(SIDES, 76.0..=400.0, x, y),
             residual: (left, residual),
-            error: Plot::new(606.0..=712.0, x, figure.error_span()),
+            error: Plot::within(SIDES, 606.0..=712.0, x, figure.error_span()),
+            close_up: CloseUp::new(trial, segment.decision, noise),
         }
     }
 
@@ -179,12 +187,24 @@ impl<'l, 'a> Drawing<'l, 'a> {
         self.output.places(self.figure.signal(self.trial.trial.output(), CURVE_POINTS))
     }
 
-    fn smoothed(&self) -> Vec<Vec2D> {
-        simplified(self.output.places(self.figure.signal(self.trial.output(), CURVE_POINTS)))
+    fn smoothed(&self) -> Vec<Vec<Vec2D>> {
+        let signal = self.figure.signal(self.trial.output(), CURVE_POINTS);
+        vec![simplified(self.output.places(signal)), self.close_up.smoothed()]
+    }
+
+    /// Algorithm 1's lines in the close-up, where the answer is not theirs.
+    fn algorithm_1(&self) -> Vec<Vec<Vec2D>> {
+        let decision = self.segment.decision;
+        let best = decision.candidates.best().filter(|_| decision.onset.is_some());
+        best.map_or_else(Vec::new, |best| {
+            let q = best.breakpoint as f64;
+            let lines = self.close_up.lines(&best, q, 0.0).into_iter();
+            lines.chain(self.close_up.vertical(q)).collect()
+        })
     }
 
     fn grid(&self) -> (Vec<Vec<Vec2D>>, Labels) {
-        let x_ticks = self.output.x_span().ticks(9.0);
+        let x_ticks = self.output.x_span().ticks(5.0);
         let x_ticks: Vec<f64> = x_ticks.into_iter().filter(|k| k.fract() == 0.0).collect();
         let mut labels = Labels::default();
         let named = |ticks: Vec<f64>| ticks.into_iter().map(|y| (y, number(y))).collect::<Vec<_>>();
@@ -200,6 +220,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         for k in x_ticks {
             labels.put_whole(self.error.below(k, 4.0), number(k));
         }
+        strips.extend(self.close_up.grid(&mut labels));
         (strips, labels)
     }
 
@@ -211,7 +232,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
 
     fn input_step(&self) -> Vec<Vec<Vec2D>> {
         let p = self.segment.decision.input_step.sample as f64;
-        vec![self.output.vertical(p).to_vec(), self.error.vertical(p).to_vec()]
+        let close = self.close_up.input_step();
+        vec![self.output.vertical(p).to_vec(), self.error.vertical(p).to_vec(), close]
     }
 
     /// What the chosen lines leave, thinned; the line breaks where they do.
@@ -237,9 +259,18 @@ impl<'l, 'a> Drawing<'l, 'a> {
     }
 
     /// Both lines of a candidate, and a line down through its breakpoint `q`.
-    fn pair(&self, candidate: &Candidate, q: f64) -> [Vec<Vec2D>; PAIR_STRIPS] {
+    fn pair(&self, candidate: &Candidate, q: f64) -> Vec<Vec<Vec2D>> {
         let [before, after] = self.figure.lines(candidate, q).map(|line| self.output.places(line));
-        [before, after, self.output.through(&self.error, q).to_vec()]
+        vec![before, after, self.output.through(&self.error, q).to_vec()]
+    }
+
+    /// A candidate in both plots.
+    fn candidate(&self, candidate: &Candidate) -> Vec<Vec<Vec2D>> {
+        let q = candidate.breakpoint as f64;
+        let mut strips = self.pair(candidate, q);
+        strips.extend(self.close_up.lines(candidate, q, 0.0));
+        strips.extend(self.close_up.vertical(q));
+        strips
     }
 
     /// The chosen pair, a mark on the error curve, and the delay as a distance.
@@ -249,7 +280,12 @@ impl<'l, 'a> Drawing<'l, 'a> {
             return Vec::new();
         };
         let p = decision.input_step.sample as f64;
-        let mut strips = self.pair(&best, p + delay).to_vec();
+        let mut strips = self.pair(&best, p + delay);
+        // Where Algorithm 1's answer is another one, its lines have a colour of their own.
+        if decision.onset.is_none() {
+            strips.extend(self.close_up.lines(&best, p + delay, 0.0));
+        }
+        strips.extend(self.close_up.answer());
         strips.push(diamond(self.error_at(&best), 6.0));
         let [from, to] = [p, p + delay].map(|k| self.output.above(k, 8.0));
         strips.push(vec![from, to]);
@@ -283,7 +319,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
             [low, high].map(|k| self.output.above(k, depth)).to_vec(),
             tick(high),
         ];
-        lines.into_iter().chain(bar).collect()
+        lines.into_iter().chain(bar).chain(self.close_up.vertical(p + delay)).collect()
     }
 
     /// The program's lines and breakpoint, where a reviewer put another one.
@@ -291,7 +327,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let decision = self.segment.decision;
         let found = decision.candidates.best().zip(decision.delay_before_review());
         let p = decision.input_step.sample as f64;
-        found.map_or_else(Vec::new, |(best, delay)| self.pair(&best, p + delay).to_vec())
+        found.map_or_else(Vec::new, |(best, delay)| self.pair(&best, p + delay))
     }
 
     /// Where the delay may end: a bar from one end of its interval to the other.
@@ -321,10 +357,10 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let p = decision.input_step.sample as f64;
         let step = format!("p = {}", decision.input_step.sample);
         let mut names = vec![(self.output.x(p), step)];
-        if let Some((best, delay)) = decision.shown_candidate().zip(decision.delay()) {
+        if let Some((_, delay)) = decision.shown_candidate().zip(decision.delay()) {
             let place = self.segment.place().unwrap_or_default();
             let text = match decision.delay_before_review() {
-                None => format!("q = {place}, SSE = {}", number(best.sse)),
+                None => format!("q = {place}"),
                 Some(_) => format!("q = {place} by a reviewer"),
             };
             names.push((self.output.x(p + delay), text));
@@ -347,7 +383,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let mut taken: Vec<(f32, f32)> = Vec::new();
         for (x, text) in names {
             let half = half(&text);
-            let x = x.min(SHEET.0 - half).max(half);
+            let x = x.min(SIDES.1 + 60.0 - half).max(half);
             let row = usize::from(taken.iter().any(|other| collide((x, half), *other)));
             if row == 0 {
                 taken.push((x, half));
@@ -359,7 +395,6 @@ impl<'l, 'a> Drawing<'l, 'a> {
     fn names(&self) -> Labels {
         let decision = self.segment.decision;
         let mut labels = Labels::default();
-        let p = decision.input_step.sample as f64;
         if let Some(delay) = decision.delay() {
             let seconds = number(delay * self.trial.trial.period().seconds());
             let own = decision.fine.filter(|_| decision.delay_before_review().is_none());
@@ -367,13 +402,15 @@ impl<'l, 'a> Drawing<'l, 'a> {
                 format!(" ({} … {})", number(fine.low), number(fine.high))
             });
             let text = format!("δ = {}{interval} = {seconds} s", samples_text(delay));
-            labels.put_whole(self.output.above(p + delay / 2.0, 62.0), text);
+            self.close_up.title(&mut labels, text);
         }
         self.name_places(&mut labels);
         let output = bracketed("output", self.joint.output_unit.as_deref());
         labels.put_whole(Vec2D::new(62.0, 22.0), output);
         labels.put(Vec2D::new(75.0, 442.0), "residual".to_owned());
-        labels.put(Vec2D::new(190.0, 550.0), "SSE (log)".to_owned());
+        let least = self.segment.decision.shown_candidate();
+        let least = least.map_or_else(String::new, |best| format!(", least {}", number(best.sse)));
+        labels.put_whole(Vec2D::new(190.0, 550.0), format!("SSE (log){least}"));
         labels
     }
 }
@@ -416,17 +453,20 @@ fn add_candidates(
         let (trial, segment) = (drawing.trial, drawing.segment);
         let p = signed(segment.decision.input_step.sample);
         index.extend([trial.opening(segment)]);
+        strip_lengths.push(0);
+        mark_lengths.push(0);
         for (moment, candidate) in trial.candidates(segment) {
+            mark_lengths.push(1);
             index.extend([trial.within(segment, moment)]);
-            strips.extend(drawing.pair(&candidate, candidate.breakpoint as f64));
+            let drawn = drawing.candidate(&candidate);
+            strip_lengths.push(drawn.len());
+            strips.extend(drawn);
             let (q, sse) = (signed(candidate.breakpoint), number(candidate.sse));
             marks.put(drawing.error_at(&candidate), format!("q {q}, δ {}, SSE {sse}", q - p));
         }
         index.extend([trial.within(segment, trial.verdict(segment))]);
-        let ticks = segment.kept.len();
-        let cleared = |each| iter::once(0).chain(iter::repeat_n(each, ticks)).chain([0]);
-        strip_lengths.extend(cleared(PAIR_STRIPS));
-        mark_lengths.extend(cleared(1));
+        strip_lengths.push(0);
+        mark_lengths.push(0);
     }
     let lines = at(root, drawing::CANDIDATE);
     let style = LineStrips2D::update_fields().with_colors([color(palette::CANDIDATE)]);
@@ -439,6 +479,3 @@ fn add_candidates(
     let points = Points2D::update_fields().with_positions(marks.places).with_labels(marks.texts);
     chunks.push(mark, index, points.columns(mark_lengths)?)
 }
-
-/// Strips that a pair of lines is drawn with.
-const PAIR_STRIPS: usize = 3;

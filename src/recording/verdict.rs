@@ -79,14 +79,15 @@ fn lane_colors() -> StateConfiguration {
 
 type Placed<'l, 'a> = (&'l TrialLayout<'a>, &'l SegmentLayout<'a>);
 
-/// One line per segment, at its verdict tick: a click on it goes there.
+/// One line per segment, at its opening tick: a click on it goes there, and the right arrow then to
+/// its candidates.
 fn add_log(
     chunks: &mut Chunks,
     root: &EntityPath,
     joint: &Joint,
     (segments, last_revision): (&[Placed<'_, '_>], Option<i64>),
 ) -> Result<(), RecordError> {
-    let index: Index = segments.iter().map(|(trial, segment)| trial.verdict(segment)).collect();
+    let index: Index = segments.iter().map(|(trial, segment)| trial.opening(segment)).collect();
     let lines: Vec<_> = segments.iter().map(|(t, s)| log_line(joint, t, s)).collect();
     // On the timeline of revisions, too, where a click leads away from.
     let index = index.at_revision(last_revision);
@@ -179,9 +180,11 @@ fn add_lanes(
         opening,
         StateChange::new().with_state(names).columns_of_unit_batches()?,
     )?;
+    let revision = layout.first.revision.into_iter();
     let hint = ["along decision, segment, sample or time: choose it at the bottom left"];
     let hint = StateChange::new().with_state(hint).columns_of_unit_batches()?;
-    chunks.push(at(root, paths::SEGMENT), Index::before_all(layout.first), hint)?;
+    // On the timeline of revisions the lane has nothing else.
+    chunks.push_revisions(at(root, paths::SEGMENT), revision.collect(), hint)?;
     let starts = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
     let labels: Vec<_> = layout.trials.iter().map(|trial| trial.trial.label().to_owned()).collect();
     let states = StateChange::new().with_state(labels).columns_of_unit_batches()?;

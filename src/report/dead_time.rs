@@ -58,6 +58,11 @@ fn finding(found: &DeadTime) -> String {
     let what = if found.integrates { "the speed" } else { "the output" };
     let confidence = percent(found.confidence);
     match found.finding {
+        Finding::Known(bounds) if found.varies() => format!(
+            "the dead time varies: {} over the record at {confidence}, then {what} follows with a lag \
+             of {lag:.3} s",
+            seconds(bounds)
+        ),
         Finding::Known(bounds) => format!(
             "dead time {} at {confidence}, then {what} follows with a lag of {lag:.3} s",
             seconds(bounds)
@@ -84,14 +89,14 @@ fn finding(found: &DeadTime) -> String {
 }
 
 fn windows(found: &DeadTime) -> Option<String> {
-    /// Below it, dead times in windows differ by more than chance.
-    const SAME: f64 = 0.01;
     let known: Vec<Bounds> = found.windows.iter().filter_map(|window| window.estimate).collect();
     let least = known.iter().map(|bounds| bounds.value_s).min_by(f64::total_cmp)?;
     let most = known.iter().map(|bounds| bounds.value_s).max_by(f64::total_cmp)?;
-    let differ = found.same_in_all.map_or("", |p| {
-        if p < SAME { ", more apart than by chance" } else { ", no more apart than by chance" }
-    });
+    let differ = match found.same_in_all {
+        None => "",
+        Some(_) if found.varies() => ", more apart than by chance",
+        Some(_) => ", no more apart than by chance",
+    };
     let (count, all) = (known.len(), found.windows.len());
     Some(format!("in {count} of {all} windows {least:.3} to {most:.3} s{differ}"))
 }

@@ -2,6 +2,7 @@
 
 mod add;
 mod against;
+mod answer;
 mod columns;
 mod compare;
 mod conclusion;
@@ -45,6 +46,7 @@ pub(crate) use add::{AddedJoint, add_text, gone};
 pub use against::against_table;
 #[cfg(feature = "rrd")]
 pub(crate) use against::variable_text;
+pub(crate) use answer::delay_answer;
 pub(crate) use columns::columns_table;
 pub use compare::ComparedJoint;
 pub(crate) use compare::compare_text;

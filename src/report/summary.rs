@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::decisions::verdicts;
 use super::{EstimatedJoint, ReviewCount};
 use crate::delay::{Condition, KindDelay, Verdict};
-use crate::experiment::{LONGEST_JOINED_S, longest_gap_s};
+use crate::experiment::longest_gap_s;
 
 /// How many steps were accepted, why the others were not, and what the delays are.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,10 +129,6 @@ impl JointSummary {
     pub(crate) fn without_steps(&self) -> String {
         match (self.is_continuous, self.levels_differ, self.gap_s) {
             (true, _, _) => "the input moves all the time".to_owned(),
-            (false, true, Some(gap_s)) if gap_s <= LONGEST_JOINED_S => format!(
-                "the input changes only in gaps of the log of up to {gap_s} s, to which no model is \
-                 fitted; `tauscope estimate` fills them"
-            ),
             (false, true, Some(gap_s)) => format!(
                 "the input changes only between trials or in gaps of up to {gap_s} s, which \
                  `tauscope estimate --fill {gap_s}` bridges"

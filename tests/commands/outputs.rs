@@ -59,6 +59,51 @@ fn a_model_file_is_never_replaced_by_another_output() {
 }
 
 #[test]
+fn no_output_replaces_a_log_that_is_not_even_read() {
+    let folder = folder();
+    let other = folder.path().join("other.csv");
+    fs::write(&other, log_text()).unwrap();
+    let commands = [
+        "estimate log.csv --decisions other.csv",
+        "estimate log.csv --delays other.csv",
+        "improve log.csv --write other.csv",
+        "columns log.csv -w other.csv",
+        "estimate log.csv --results r --summary other.csv",
+    ];
+    for command in commands {
+        let ended = tauscope(folder.path()).args(command.split(' ')).output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert!(ended.status.code() == Some(2), "{command}: {said}");
+        assert!(said.contains("other.csv: this is a log"), "{command}: {said}");
+        assert_eq!(fs::read_to_string(&other).unwrap(), log_text());
+    }
+    // What the program wrote itself is made anew.
+    for _ in 0..2 {
+        let words = "estimate log.csv --quiet --decisions d.csv --delays y.csv --table t.csv";
+        let ended = tauscope(folder.path()).args(words.split(' ')).output().unwrap();
+        assert_eq!(ended.status.code(), Some(0), "{}", String::from_utf8_lossy(&ended.stderr));
+    }
+}
+
+#[test]
+fn a_name_that_says_another_kind_of_file_is_refused() {
+    let folder = folder();
+    let cases = [
+        ("estimate log.csv -o delays.csv", "FILE.rrd"),
+        ("compare log.csv -o report.html", "FILE.rrd"),
+        ("log.csv -o report.pdf", "FILE.html"),
+        ("report log.csv -o no/report.html", "no/report.html"),
+    ];
+    for (words, remedy) in cases {
+        let ended = tauscope(folder.path()).args(words.split(' ')).output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert!(ended.status.code() == Some(2) && said.contains(remedy), "{words}: {said}");
+        assert!(!said.contains(".part"), "{words}: {said}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
 fn logs_whose_names_differ_in_bytes_that_are_no_text_have_a_result_each() {
     let folder = TempDir::new().unwrap();
     let log =

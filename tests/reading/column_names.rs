@@ -206,6 +206,16 @@ fn a_mapping_that_was_kept_beside_a_log_holds_for_those_of_its_folder() {
     assert_eq!(found.joints[0].name, "boom");
     let says = |note: &String| note.contains("the mapping beside it is not used");
     assert!(found.notes.iter().any(says), "{:?}", found.notes);
+    // One for another log of the folder says nothing of this one.
+    let map = ColumnMap { time: Some("t".to_owned()), ..map };
+    fs::write(folder.path().join("columns.toml"), map.to_toml()).unwrap();
+    let found = read();
+    assert_eq!(found.joints[0].name, "boom");
+    let says = |note: &String| note.contains("columns.toml` names the column `a`");
+    assert!(found.notes.iter().any(says), "{:?}", found.notes);
+    fs::write(&path, log("t,c,d,e,f")).unwrap();
+    let error = read().failures[0].error.to_string();
+    assert!(error.contains("columns.toml` names the column `a`"), "{error}");
     // What is named in the log itself stands above it.
     fs::write(&path, log("t,arm.input,arm.output")).unwrap();
     assert_eq!(read().joints[0].name, "arm");

@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use tauscope::delay::{FirstLast, Method, Settings, estimate_joint};
-use tauscope::experiment::{Experiment, ReadOptions, Repair};
+use tauscope::experiment::{Experiment, ReadOptions};
 
 use log::{Expected, Messy, SAME, clean, messy, plain};
 
@@ -35,9 +35,7 @@ fn read_file(log: &Messy) -> Experiment {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(log.name);
     fs::write(&path, &log.bytes).unwrap();
-    // As the command line reads it.
-    let repair = Repair { joins_steps: true, ..Repair::default() };
-    let options = ReadOptions { columns: log.columns.clone(), repair, ..ReadOptions::default() };
+    let options = ReadOptions { columns: log.columns.clone(), ..ReadOptions::default() };
     Experiment::read(&[path], &options)
 }
 

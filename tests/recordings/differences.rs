@@ -200,7 +200,7 @@ mod recorded {
         let page = page(&back, "/boom/difference");
         assert!(page.contains("**boom against earlier** (two-line"), "{page}");
         let all = back.numbers("/boom/decision/table", "sse");
-        let shown = back.rows("/boom/decision/table", "4_sse", |cell| {
+        let shown = back.rows("/boom/decision/table", "error", |cell| {
             cell.as_primitive::<Float32Type>().value(0)
         });
         assert_eq!(shown.len(), all.len());

@@ -80,8 +80,8 @@ impl ReadBack {
                 let times = times.map(|(name, column)| (name.to_string(), column.times_raw()[row]));
                 let times: BTreeMap<String, i64> = times.collect();
                 // What is shown before the first tick is shown again in its place.
-                let is_before_all =
-                    times.get("decision") == Some(&0) && !times.contains_key("sample");
+                let is_before_all = times.get("decision").is_some_and(|tick| *tick <= 0)
+                    && !times.contains_key("sample");
                 if !is_before_all {
                     rows.push((times, value(&list.value(row))));
                 }

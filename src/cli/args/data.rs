@@ -249,12 +249,7 @@ impl ReadingArgs {
                 }
             }
         }
-        let repair = Repair {
-            resample: self.resample,
-            fill_s: self.fill,
-            as_it_stands: false,
-            joins_steps: false,
-        };
+        let repair = Repair { resample: self.resample, fill_s: self.fill, as_it_stands: false };
         let memory = self.memory.limit();
         Ok(ReadOptions { columns, joints, others: false, repair, memory })
     }

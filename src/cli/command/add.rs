@@ -14,7 +14,7 @@ use crate::cli::args::{
     DataArgs, ModelFileArgs, ProtocolArgs, ResultArgs, find, name_of, note_missing,
 };
 use crate::cli::exit::Completion;
-use crate::cli::output::check_outputs;
+use crate::cli::output::check_recorded;
 use crate::cli::run::{Session, Study, entry, outcomes, with_fit};
 
 /// Add an effect to a model, and write its next revision
@@ -44,8 +44,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let file = args.model.read()?;
     let effect = find(&args.effect, file.candidates())?;
     let target = args.model.target();
-    let outputs: Vec<_> = std::iter::once(target).chain(args.output.recording.as_deref()).collect();
-    check_outputs(&outputs, &[args.data.files(), args.model.kept()].concat())?;
+    check_recorded(
+        args.output.recording.as_deref(),
+        &[target],
+        &[args.data.files(), args.model.kept()].concat(),
+    )?;
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::with_others("add", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();

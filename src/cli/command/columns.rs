@@ -8,6 +8,7 @@ use anyhow::bail;
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{MemoryArgs, RunArgs};
+use crate::cli::console::{Verbosity, message, warn};
 use crate::cli::exit::Completion;
 use crate::cli::output::{check_outputs, write_file};
 use crate::cli::typed::mapping_options;
@@ -43,16 +44,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         let beside = args.log.with_file_name(KEPT);
         let path = if path.is_empty() { &beside } else { Path::new(path) };
         check_outputs(&[path], std::slice::from_ref(&args.log))?;
-        let mapping = survey.map.to_toml();
-        // A mapping may have been corrected by hand.
-        let is_mapping = path.is_file() && ColumnMap::read(path).is_ok();
-        if is_mapping && std::fs::read_to_string(path).is_ok_and(|text| text != mapping) {
-            let path = path.display();
-            bail!(
-                "--write {path}: is there already and says something else; remove it, or name another file"
-            );
-        }
-        write_file(path, |file| Ok(file.write_all(mapping.as_bytes())?))?;
+        write(&survey, path, args.run.verbosity())?;
     }
     let map = &survey.map;
     let named = [map.time.as_deref(), map.trial.as_deref()];
@@ -67,6 +59,28 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     args.run.print(text, || ColumnsJson::new(&survey, of_json, &mended))?;
     let told = !survey.map.joints.is_empty();
     Ok(if told { Completion::Whole } else { Completion::Partial })
+}
+
+/// Writes the mapping of `survey` to `path`, unless it names no joint.
+fn write(survey: &Survey, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
+    let name = path.display();
+    if survey.map.joints.is_empty() {
+        warn(&[format!("--write {name}: not written: no columns of a joint are recognised")]);
+        return Ok(());
+    }
+    let mapping = survey.map.to_toml();
+    // A mapping may have been corrected by hand.
+    let is_mapping = path.is_file() && ColumnMap::read(path).is_ok();
+    if is_mapping && std::fs::read_to_string(path).is_ok_and(|text| text != mapping) {
+        bail!(
+            "--write {name}: is there already and says something else; remove it, or name another file"
+        );
+    }
+    write_file(path, |file| Ok(file.write_all(mapping.as_bytes())?))?;
+    if verbosity == Verbosity::Normal {
+        message("columns", &name.to_string());
+    }
+    Ok(())
 }
 
 /// What is mended in the log where its columns are read as `survey` takes them, or why it cannot be read so;

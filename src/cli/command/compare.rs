@@ -14,7 +14,7 @@ use clap::Args as ClapArgs;
 use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs, note_conditions, read_model};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures};
-use crate::cli::output::check_outputs;
+use crate::cli::output::check_recorded;
 use crate::cli::run::{Session, Study};
 
 /// Compare a model with the measurement
@@ -56,12 +56,8 @@ struct Named {
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let models = models(&args.model, &args.against)?;
-    if let Some(path) = &args.output.recording {
-        check_outputs(
-            &[path.as_path()],
-            &[args.data.files(), args.model.clone(), args.against.clone()].concat(),
-        )?;
-    }
+    let inputs = [args.data.files(), args.model.clone(), args.against.clone()].concat();
+    check_recorded(args.output.recording.as_deref(), &[], &inputs)?;
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::with_others("compare", &args.data, &args.output.run, stream)?;
     let study = Study::of(session, &args.output.delay_settings(), |begun| {

@@ -15,7 +15,7 @@ use crate::cli::args::{
     DataArgs, EffectArgs, ProtocolArgs, ResultArgs, fresh_name, name_of, note_missing, read_model,
 };
 use crate::cli::exit::Completion;
-use crate::cli::output::check_outputs;
+use crate::cli::output::check_recorded;
 use crate::cli::run::{Session, Study, StudyContext, add_arguments, estimate_at, outcomes};
 
 /// Say which physical effect a model lacks
@@ -46,10 +46,8 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let file = args.model.as_deref().map(read_model).transpose()?.unwrap_or_default();
     let options = args.effects.options(file.candidates())?;
-    if let Some(path) = &args.output.recording {
-        let inputs: Vec<_> = args.data.files().into_iter().chain(args.model.clone()).collect();
-        check_outputs(&[path.as_path()], &inputs)?;
-    }
+    let inputs: Vec<_> = args.data.files().into_iter().chain(args.model.clone()).collect();
+    check_recorded(args.output.recording.as_deref(), &[], &inputs)?;
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::with_others("explain", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();

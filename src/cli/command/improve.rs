@@ -16,7 +16,7 @@ use crate::cli::args::{
 use crate::cli::console::{Interrupt, STOPPING, message};
 use crate::cli::each_log::{Each, FolderArgs};
 use crate::cli::exit::Completion;
-use crate::cli::output::check_outputs;
+use crate::cli::output::check_recorded;
 use crate::cli::run::{
     Progress, Session, Study, StudyContext, add_arguments, estimate_at, improved, models, outcomes,
     revised, revision_names,
@@ -80,9 +80,11 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let file = args.model.read()?;
     let options = args.options(&file)?;
     let target = args.model.target();
-    let recording = args.output.recording.as_deref();
-    let outputs: Vec<_> = std::iter::once(target).chain(recording).collect();
-    check_outputs(&outputs, &[args.data.files(), args.model.kept()].concat())?;
+    check_recorded(
+        args.output.recording.as_deref(),
+        &[target],
+        &[args.data.files(), args.model.kept()].concat(),
+    )?;
     let stream = args.output.stream.open(args.output.run.verbosity())?.expecting_revisions()?;
     let interrupt = Interrupt::watch(STOPPING);
     let session = Session::with_others("improve", &args.data, &args.output.run, stream)?;

@@ -10,7 +10,7 @@ use clap::{Args as ClapArgs, ValueEnum};
 
 use crate::cli::console::{Bar, Verbosity, message};
 use crate::cli::exit::Completion;
-use crate::cli::output::{OutputFile, check_outputs, filled_file};
+use crate::cli::output::{OutputFile, check_places, filled_file};
 use crate::experiment::read_text;
 
 /// Make a log of joints whose truth is known
@@ -109,7 +109,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     };
     let outputs = std::iter::once(&args.output).chain(&args.truth);
     let inputs = args.plant.iter().filter_map(|path| path.canonicalize().ok());
-    check_outputs(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), &inputs.collect::<Vec<_>>())?;
+    // What it writes is a log itself, which may be made anew.
+    check_places(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), &inputs.collect::<Vec<_>>())?;
     let bar = Bar::spinner(Verbosity::from(args.quiet), "simulating");
     let made = match &args.plant {
         Some(path) => simulate(&spec).with_context(|| path.display().to_string())?,

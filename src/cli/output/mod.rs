@@ -5,7 +5,9 @@ mod limit;
 mod recording;
 mod table;
 
-pub(crate) use file::{OutputFile, check_outputs, filled_file, target_of, write_file};
+pub(crate) use file::{
+    OutputFile, check_outputs, check_places, check_recorded, filled_file, target_of, write_file,
+};
 pub(crate) use limit::meet_file_limits;
 #[cfg(not(feature = "rrd"))]
 pub(crate) use recording::left_out;

@@ -45,9 +45,7 @@ impl<'a> Session<'a> {
         run: &'a RunArgs,
         stream: Stream,
     ) -> anyhow::Result<Self> {
-        let mut options = data.options()?;
-        options.repair.joins_steps = true;
-        Self::reading(command, data, &options, (run, stream))
+        Self::reading(command, data, &data.options()?, (run, stream))
     }
 
     fn reading(

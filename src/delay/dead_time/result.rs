@@ -109,6 +109,13 @@ pub struct Window {
 }
 
 impl DeadTime {
+    /// Whether the dead times of windows are more apart than by chance: at 1 %.
+    pub fn varies(&self) -> bool {
+        /// Below it the same dead time in all windows is not believed.
+        const SAME: f64 = 0.01;
+        self.same_in_all.is_some_and(|p| p < SAME)
+    }
+
     /// The dead time and its interval, where they are known; one that holds 0, too.
     pub fn bounds(&self) -> Option<Bounds> {
         match self.finding {

@@ -96,7 +96,7 @@ impl Log<'_> {
         let output = &self.column(layout.output.column)?.values;
         // Where outputs are missing, the reaction may be among them.
         let is_whole = !output.iter().any(|value| value.is_nan());
-        if !self.options.joins_steps || self.options.fill_s.is_some() || !is_whole {
+        if self.options.as_it_stands || self.options.fill_s.is_some() || !is_whole {
             return None;
         }
         let gap_s = gap_with_all_steps_s(read)?;

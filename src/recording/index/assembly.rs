@@ -20,7 +20,7 @@ use crate::report::{JointSummary, SUMMARY_HEADER, summary_cells};
 impl IndexRecording<'_> {
     fn layouts(&self) -> Vec<JointLayout<'_>> {
         let starts = TrialStarts::of(self.all.joints.iter().map(|joint| joint.joint));
-        let layout = |joint: &_| JointLayout::of(*joint, &starts, (self.all.detail, None));
+        let layout = |joint: &_| JointLayout::of(*joint, &starts, (self.all.detail, None), 0);
         self.all.joints.iter().map(layout).collect()
     }
 }

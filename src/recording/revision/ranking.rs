@@ -51,15 +51,17 @@ pub(super) fn around(
     let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
     let is_last = at + 1 == improved.revisions.len();
     let title = match (all.as_slice(), revision.ranking.as_slice()) {
-        ([], _) if is_adequate(revision) => "no effect is missing",
-        ([], _) => "nothing more was looked for",
-        (_, []) => "error at the next revision",
-        _ if is_last && improved.finding.verdict == Verdict::Unexplained => {
-            "error with one effect more: none was added"
+        ([], _) if is_adequate(revision) => "no effect is missing".to_owned(),
+        ([], _) => "nothing more was looked for".to_owned(),
+        (_, []) => "error at the next revision".to_owned(),
+        ([best, ..], _) if is_last && improved.finding.verdict == Verdict::Unexplained => {
+            let name = best.name.trim_start_matches("+ ");
+            let why = best.refusal.as_ref().map(|why| format!(" ({name}: {why})"));
+            format!("none was added{}", why.unwrap_or_default())
         }
-        _ => "error with one effect more",
+        _ => "error with one effect more".to_owned(),
     };
-    bars.title(labels, title);
+    bars.title(labels, &title);
     let own = (format!("revision {number}"), judged(&revision.comparison));
     let candidates = all.into_iter().map(|one| (one.name, one.error));
     for (row, (name, error)) in std::iter::once(own).chain(candidates).enumerate() {
@@ -85,6 +87,8 @@ struct Tried {
     name: String,
     error: f64,
     is_taken: bool,
+    /// What speaks against it, in short.
+    refusal: Option<String>,
 }
 
 /// The candidates at a revision; where there was no choice, what came next.
@@ -92,13 +96,14 @@ fn tried(improved: &ImprovedJoint<'_>, at: usize) -> Vec<Tried> {
     let ranking = improved.revisions.get(at).map_or(&[][..], |revision| &revision.ranking);
     if let ([], Some(next)) = (ranking, improved.revisions.get(at + 1)) {
         let (name, error) = (change_in_words(next), judged(&next.comparison));
-        return vec![Tried { name, error, is_taken: true }];
+        return vec![Tried { name, error, is_taken: true, refusal: None }];
     }
     let proposed = improved.proposed(at).map(|candidate| &candidate.effects);
     let one = |candidate: &Candidate| Tried {
         name: format!("+ {}", candidate.name()),
         error: candidate.rmse(),
         is_taken: proposed == Some(&candidate.effects),
+        refusal: candidate.judgement.refusal_in_short(),
     };
     let mut all: Vec<Tried> = ranking.iter().map(one).collect();
     all.sort_by(|a, b| a.error.total_cmp(&b.error));

@@ -76,7 +76,11 @@ pub(super) fn tab(
         pages.push(views.differences()?);
     }
     if doubts.is_empty() {
-        let title = if estimate.dead_time.is_some() { "Dead time" } else { "No steps" };
+        let title = match &estimate.dead_time {
+            Some(found) if found.varies() => "The dead time varies",
+            Some(_) => "Dead time",
+            None => "No steps",
+        };
         pages.push(views.without_steps(title)?);
     } else {
         let delay = views.delay_state();
@@ -175,17 +179,8 @@ struct Views<'b, 'i> {
 }
 
 /// Columns of the table of candidates, in the order in which a viewer shows them.
-const CANDIDATE_COLUMNS: [&str; 9] = [
-    "1_rank",
-    "2_q",
-    "3_delay_s",
-    "4_sse",
-    "5_times_least",
-    "6_verdict",
-    "i",
-    "slope_after_shown",
-    "slope_before_shown",
-];
+const CANDIDATE_COLUMNS: [&str; 7] =
+    ["breakpoint", "delay_s", "error", "error_rank", "error_times_least", "i", "verdict"];
 
 impl Views<'_, '_> {
     /// The entity at `path` below the joint.
@@ -204,6 +199,8 @@ impl Views<'_, '_> {
 
     /// What a reviewer steps through.
     fn decisions(&mut self) -> Result<Node, RecordError> {
+        let headline = [self.path(paths::HEADLINE)];
+        let headline = self.view(View::new("TextDocument", "What was found", &headline))?;
         let drawing = self.view(self.drawing())?;
         let map = self.view(self.map())?;
         // The verdict names the trial: a lane for it would hide that of the verdicts in a small window.
@@ -215,11 +212,14 @@ impl Views<'_, '_> {
         let left = [drawing, map, lanes];
         let builder = &mut *self.builder;
         let left =
-            builder.container(ContainerKind::Vertical, "Segment", &left, &[6.3, 2.1, 2.3])?;
+            builder.container(ContainerKind::Vertical, "Segment", &left, &[6.9, 1.9, 2.1])?;
         let right = [verdict, lists];
         let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.2, 2.8])?;
         let columns = [left, right];
-        builder.container(ContainerKind::Horizontal, "Decisions", &columns, &[6.8, 3.2])
+        let columns =
+            builder.container(ContainerKind::Horizontal, "Steps", &columns, &[6.8, 3.2])?;
+        let rows = [headline, columns];
+        builder.container(ContainerKind::Vertical, "Decisions", &rows, &[1.1, 8.9])
     }
 
     fn drawing(&self) -> View<'static> {
@@ -230,7 +230,7 @@ impl Views<'_, '_> {
         let others = others.iter().map(String::as_str);
         let parts: Vec<_> =
             drawing::PARTS.into_iter().chain(others).chain(first).chain(interval).collect();
-        let name = "The segment, its candidates, what the chosen lines leave, the squared errors";
+        let name = "The segment and its candidates; close-up: samples, Algorithm 1 white with 95 % of the noise";
         View::drawing(name, &self.at(drawing::ROOT), &parts, segment_view::SIZE)
     }
 

@@ -12,8 +12,8 @@ use crate::report::difference::difference_table;
 use crate::report::text::{onset_line, tracking_line};
 use crate::report::text_table::TextTable;
 use crate::report::{
-    DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, Headline, JointSummary,
-    ReviewCount, by_doubt, dead_time_sentences,
+    DecisionDetail, DecisionRow, Doubted, EstimatedJoint, JointSummary, ReviewCount, by_doubt,
+    delay_answer,
 };
 use crate::wording::{capitalized, difference_sentences, doubt_percent, doubt_sentence, number};
 
@@ -56,51 +56,15 @@ pub(super) fn blocks(
 
 /// Delays, steps and model of a joint, in a sentence each.
 pub(super) fn sentences(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> String {
-    let delay = over_record(estimated);
-    let delay = delay.unwrap_or_else(|| delay_sentence(&JointSummary::of(estimated)));
+    let delay = delay_answer(estimated);
     let model = report.model_of(estimated.joint).map(model::sentence);
     let reviewed = ReviewCount::on(estimated).map(|count| format!("{}.", count.sentence()));
     [delay].into_iter().chain(reviewed).chain(model).collect::<Vec<_>>().join(" ")
 }
 
-/// Why there are no steps, and the dead time instead.
-fn over_record(estimated: EstimatedJoint<'_>) -> Option<String> {
-    let sentences = dead_time_sentences(&estimated);
-    let all: Vec<String> = sentences.iter().take(2).map(|words| sentence(words)).collect();
-    (!all.is_empty()).then(|| all.join(" "))
-}
-
 /// `words` with a capital letter and a full stop.
 fn sentence(words: &str) -> String {
     format!("{}.", capitalized(words))
-}
-
-fn delay_sentence(summary: &JointSummary) -> String {
-    let JointSummary { steps, accepted, rejected, delay_s, headline, .. } = summary;
-    if *steps == 0 {
-        return format!("No step: {}.", summary.without_steps());
-    }
-    let counted = |(why, count): &(Condition, usize)| format!("{}: {count}", why.meaning());
-    let why = match rejected.as_slice() {
-        [] => String::new(),
-        [(why, _)] => format!(" ({})", why.meaning()),
-        several => format!(" ({})", several.iter().map(counted).collect::<Vec<_>>().join(", ")),
-    };
-    let rest = steps - accepted;
-    let kinds: Vec<_> = headline.kinds().iter().map(kind_sentence).collect();
-    let kinds = kinds.join("; ");
-    match (headline, delay_s) {
-        (_, None) => format!("No delay: all {steps} steps were rejected{why}."),
-        (Headline::All, Some(DelayRange { min, median, max })) => format!(
-            "Delay {median:.3} s (median; {min:.3} to {max:.3} s); {accepted} of {steps} steps \
-             accepted, {rest} rejected{why}."
-        ),
-        (Headline::Kinds(_), _) => format!(
-            "The delay differs by kind of step: {kinds}. In all {accepted} of {steps} steps \
-             accepted, {rest} rejected{why}."
-        ),
-        (Headline::None(_), _) => format!("No typical delay: {kinds}."),
-    }
 }
 
 /// Figures and table of the delays.

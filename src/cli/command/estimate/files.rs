@@ -15,7 +15,7 @@ use super::args::OutputArgs;
 use super::estimated::Estimated;
 use crate::cli::console::Verbosity;
 use crate::cli::output::{
-    Contents, CsvText, FileKind, check_beside_parts, check_outputs, check_tables, write_csv,
+    Contents, CsvText, FileKind, check_beside_parts, check_recorded, check_tables, write_csv,
     write_file, write_parquet,
 };
 use crate::cli::viewer::Stream;
@@ -35,14 +35,14 @@ impl<'a> Files<'a> {
         text: CsvText,
     ) -> anyhow::Result<Self> {
         let tables = [&args.decisions, &args.delays, &args.table, &args.review_sheet];
-        let outputs = [&args.recording, &args.export].into_iter().chain(tables);
-        let outputs: Vec<&Path> = outputs.flatten().map(PathBuf::as_path).collect();
-        check_outputs(&outputs, inputs)?;
+        let others = [&args.export].into_iter().chain(tables);
+        let others: Vec<&Path> = others.flatten().map(PathBuf::as_path).collect();
+        check_recorded(args.recording.as_deref(), &others, inputs)?;
         if let Some(sheet) = &args.review_sheet {
             check_sheet(sheet)?;
         }
         if let Some(recording) = &args.recording {
-            check_beside_parts(recording, &outputs)?;
+            check_beside_parts(recording, &others)?;
         }
         check_tables(args.decisions.iter().chain(&args.delays).chain(&args.table))?;
         args.export.as_deref().map(named_lookup).transpose()?;

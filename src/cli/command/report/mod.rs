@@ -4,7 +4,6 @@ mod args;
 mod first_look;
 mod target;
 
-use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
@@ -47,14 +46,15 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
 pub(crate) fn first_look(args: &mut Args) -> anyhow::Result<Completion> {
     args.model.improve |= args.model.model.is_none();
     if let Some(path) = &mut args.output.report {
-        let named = match args.data.given() {
-            _ if path != Path::new(BESIDE_THE_LOG) => path.clone(),
-            [log] => log.clone(),
-            logs => bail!("-o: of {} logs the report needs a name: `-o FILE`", logs.len()),
-        };
-        let ending = named.extension().and_then(OsStr::to_str);
-        let is_page = matches!(ending, Some("html" | "htm" | "md"));
-        *path = if is_page { named } else { named.with_extension("html") };
+        match args.data.given() {
+            _ if path != Path::new(BESIDE_THE_LOG) => {
+                if path.extension().is_none() {
+                    path.set_extension("html");
+                }
+            }
+            [log] => *path = log.with_extension("html"),
+            logs => bail!("-o: of {} logs the report needs a name: `-o FILE.html`", logs.len()),
+        }
     }
     let target = args.output.target()?;
     report(args, target.as_ref(), Shown::Everything)
