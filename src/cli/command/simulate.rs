@@ -109,7 +109,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     };
     let outputs = std::iter::once(&args.output).chain(&args.truth);
     let inputs = args.plant.iter().filter_map(|path| path.canonicalize().ok());
-    // What it writes is a log itself, which may be made anew.
+    // What it writes is a log, which may be made anew.
     check_places(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), &inputs.collect::<Vec<_>>())?;
     let bar = Bar::spinner(Verbosity::from(args.quiet), "simulating");
     let made = match &args.plant {

@@ -11,13 +11,13 @@ use crate::wording::{measure, p_text, percent, range_text, rounded};
 
 impl Finding<'_> {
     pub(super) fn adequate_headline(&self) -> String {
-        let explained =
-            self.explained().map_or_else(String::new, |explained| format!("{explained}; "));
-        let none = match self.comparison().lack_of_fit {
-            Some(test) if !test.adequate => "no missing effect of consequence found",
-            _ => "no missing effect found",
+        let is_shown = self.comparison().lack_of_fit.is_some_and(|test| !test.adequate);
+        let of_consequence = if is_shown { " of consequence" } else { "" };
+        let none = match self.explained() {
+            None => format!("no missing effect{of_consequence} found"),
+            Some(explained) => format!("{explained}; no further effect{of_consequence} is missing"),
         };
-        format!("{}: {explained}{none}", self.joint().name)
+        format!("{}: {none}", self.joint().name)
     }
 
     pub(super) fn adequate(&self) -> Vec<Passage> {

@@ -16,7 +16,7 @@ use crate::report::{DesignJson, DesignedJoint, design_text, write_input, write_p
 use crate::cli::console::{Bar, Verbosity, message, warn};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, read_failures, said};
-use crate::cli::output::{PreviewContents, check_outputs, check_recordings, write_file};
+use crate::cli::output::{PreviewContents, check_places, check_recordings, write_file};
 
 use known::Known;
 
@@ -47,7 +47,8 @@ impl Args {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let outputs: Vec<_> = args.output.iter().chain(&args.preview).map(PathBuf::as_path).collect();
     let inputs = args.data.iter().chain(&args.model).filter_map(|path| path.canonicalize().ok());
-    check_outputs(&outputs, &inputs.collect::<Vec<_>>())?;
+    // What it writes has the form of a log, and may be made anew.
+    check_places(&outputs, &inputs.collect::<Vec<_>>())?;
     if args.preview.as_deref().is_some_and(is_recording) {
         check_recordings()?;
     }

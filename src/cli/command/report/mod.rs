@@ -48,7 +48,8 @@ pub(crate) fn first_look(args: &mut Args) -> anyhow::Result<Completion> {
     if let Some(path) = &mut args.output.report {
         match args.data.given() {
             _ if path != Path::new(BESIDE_THE_LOG) => {
-                if path.extension().is_none() {
+                // The recording may be named as well as the report.
+                if path.extension().is_none_or(|ending| ending == "rrd") {
                     path.set_extension("html");
                 }
             }
