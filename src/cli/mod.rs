@@ -19,6 +19,7 @@ mod console;
 mod each_log;
 mod exit;
 mod failure;
+mod help;
 mod importer;
 mod output;
 mod program;

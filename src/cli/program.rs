@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::Context as _;
-use clap::{Arg, CommandFactory as _, Parser, Subcommand};
+use clap::{Arg, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 use crate::cli::args::DataArgs;
 use crate::cli::command::{
@@ -19,6 +19,7 @@ use crate::cli::console::{Ended, Host, Hosting, message};
 use crate::cli::each_log::end_with_parent;
 use crate::cli::exit::Completion;
 use crate::cli::failure::said;
+use crate::cli::help::arranged;
 use crate::cli::output::meet_file_limits;
 use crate::experiment::{Experiment, ReadError, is_named_like_a_log};
 
@@ -77,7 +78,7 @@ enum Command {
 pub(super) fn run() -> ExitCode {
     end_with_parent();
     meet_file_limits();
-    let outcome = match Cli::try_parse_from(with_command(std::env::args_os().collect())) {
+    let outcome = match parsed(with_command(std::env::args_os().collect())) {
         Ok(cli) => perform(cli.command),
         Err(fault) if fault.use_stderr() => fault.exit(),
         // Help and the version are results, which may be lost like others.
@@ -95,6 +96,16 @@ pub(super) fn run() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// The program with the options of its commands in the order of their help.
+fn program() -> clap::Command {
+    Cli::command().mut_subcommands(arranged)
+}
+
+/// What the words of a command line ask for.
+fn parsed(words: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
+    Cli::from_arg_matches(&program().try_get_matches_from(words)?)
 }
 
 /// The output of a first look: beside the log where it has no name, and nowhere unless it is asked
@@ -122,7 +133,7 @@ fn with_command(mut words: Vec<OsString>) -> Vec<OsString> {
 
 fn is_command(word: &OsStr) -> bool {
     let text = word.to_string_lossy();
-    text == "help" || Cli::command().find_subcommand(&*text).is_some()
+    text == "help" || program().find_subcommand(&*text).is_some()
 }
 
 /// Whether a word names a log, and neither a command nor an option.
@@ -151,7 +162,7 @@ pub struct Refused {
 /// # Errors
 /// [`Refused`], where the program would end with status 2. A panic is one, too.
 pub fn run_within(arguments: &[OsString], host: Arc<dyn Hosting>) -> Result<bool, Refused> {
-    let cli = Cli::try_parse_from(named(arguments));
+    let cli = parsed(named(arguments));
     let cli = cli.map_err(|error| Refused::because(&error.to_string()))?;
     let completion = within(host, || perform(cli.command))?;
     Ok(completion == Completion::Whole)
@@ -230,7 +241,7 @@ pub struct CommandOption {
 pub fn options_of(command: &str) -> Option<Vec<CommandOption>> {
     let command = match command {
         "read" => Reading::command(),
-        _ => Cli::command().find_subcommand(command)?.clone(),
+        _ => program().find_subcommand(command)?.clone(),
     };
     let option = |argument: &Arg| {
         let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
@@ -248,12 +259,12 @@ pub fn options_of(command: &str) -> Option<Vec<CommandOption>> {
 
 fn perform(command: Command) -> anyhow::Result<Completion> {
     match command {
-        Command::Estimate(args) => estimate::run(&args, &Cli::command()),
+        Command::Estimate(args) => estimate::run(&args, &program()),
         Command::Sweep(args) => sweep::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Add(args) => add::run(&args),
-        Command::Improve(args) => improve::run(&args, &Cli::command()),
+        Command::Improve(args) => improve::run(&args, &program()),
         Command::Merge(args) => merge::run(&args),
         Command::Columns(args) => columns::run(&args),
         Command::Report(args) => report::run(&args),
@@ -264,8 +275,8 @@ fn perform(command: Command) -> anyhow::Result<Completion> {
         Command::Design(args) => design::run(&args),
         Command::Doctor(args) => doctor::run(&args),
         Command::Importer(args) => importer::run(&args),
-        Command::Completions(args) => completions::run(&args, Cli::command()),
-        Command::Man(args) => man::run(&args, Cli::command()),
+        Command::Completions(args) => completions::run(&args, program()),
+        Command::Man(args) => man::run(&args, program()),
     }
 }
 

@@ -156,8 +156,8 @@ fn detail(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> String {
     match recording.detail {
         Detail::Full => format!("All {all} candidates are recorded."),
         Detail::Lean => format!(
-            "**{kept} of {all} candidates are recorded** (`--detail lean`): all of rejected \
-             segments, of accepted ones the best, its neighbours, and some of the others."
+            "**{kept} of {all} candidates are recorded** (`--detail full` records all): all of \
+             rejected and doubtful segments, of the others the best, its neighbours, and some more."
         ),
     }
 }

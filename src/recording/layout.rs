@@ -29,7 +29,7 @@ pub enum Detail {
     /// All.
     #[default]
     Full,
-    /// All of rejected segments; of accepted ones the best, its neighbours, and every
+    /// All of rejected and of doubtful segments; of others the best, its neighbours, and every
     /// so-manieth, 25 at most.
     Lean,
 }
@@ -186,7 +186,7 @@ impl<'a> JointLayout<'a> {
             let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
             for (decision, doubt) in doubts(&estimate.decisions, output) {
                 number += 1;
-                let kept = kept(decision, detail);
+                let kept = kept(decision, &doubt, detail);
                 let segment = SegmentLayout {
                     decision,
                     number,
@@ -281,10 +281,11 @@ impl<'a> JointLayout<'a> {
     }
 }
 
-fn kept(decision: &Decision, detail: Detail) -> Vec<usize> {
+fn kept(decision: &Decision, doubt: &Doubt, detail: Detail) -> Vec<usize> {
     let count = decision.candidates.len();
     let thin = detail == Detail::Lean
         && decision.verdict() == Verdict::Accepted
+        && !doubt.is_doubtful()
         && count > LEAN_CANDIDATES;
     if !thin {
         return (0..count).collect();

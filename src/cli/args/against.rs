@@ -10,6 +10,6 @@ pub(crate) struct AgainstArgs {
     /// Show where decisions differ from those of another result: the JSON of an earlier
     /// `estimate --format json`, its table of `--decisions`, or another log of the experiment,
     /// which is estimated with the same settings. May be repeated
-    #[arg(long, value_name = "FILE", help_heading = "Comparing")]
+    #[arg(long, value_name = "FILE")]
     pub(crate) against: Vec<PathBuf>,
 }

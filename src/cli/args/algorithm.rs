@@ -9,7 +9,6 @@ use crate::units::Length;
 
 /// The settings of the algorithm.
 #[derive(ClapArgs, Debug)]
-#[command(next_help_heading = "Algorithm")]
 pub(crate) struct AlgorithmArgs {
     /// How a delay is found. May be repeated: the first one is the answer, the others are reported
     /// beside it [default: auto; two-line with `--paper` and `--follow`]

@@ -9,7 +9,6 @@ use clap::{Args, ValueEnum};
 
 /// The settings that are no part of how a breakpoint is searched.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Algorithm")]
 pub(crate) struct ConditionArgs {
     #[arg(long, help = confidence_help(), value_name = "X|none", value_parser = confidence, allow_negative_numbers = true)]
     confidence: Option<Confidence>,

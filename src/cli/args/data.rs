@@ -32,40 +32,37 @@ fn help() -> String {
 pub(crate) struct ReadingArgs {
     /// A joint to use, by name; or `NAME=INPUT_COLUMN:OUTPUT_COLUMN` in a foreign log.
     /// May be repeated
-    #[arg(long, value_name = "NAME[=IN:OUT]", help_heading = "Reading logs")]
+    #[arg(long, value_name = "NAME[=IN:OUT]")]
     joint: Vec<String>,
 
     /// Column of the time in seconds
-    #[arg(long, value_name = "COLUMN", help_heading = "Reading logs")]
+    #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
 
     /// Column that names the trial of a row, or `none`
-    #[arg(long, value_name = "COLUMN", help_heading = "Reading logs")]
+    #[arg(long, value_name = "COLUMN")]
     trial: Option<String>,
 
     /// Seconds between samples, for a log without a time column
     #[arg(
-        long, value_name = "SECONDS", value_parser = number::period, allow_negative_numbers = true,
-        help_heading = "Reading logs"
+        long, value_name = "SECONDS", value_parser = number::period, allow_negative_numbers = true
     )]
     sample_period: Option<SamplePeriod>,
 
     /// A TOML file that maps the columns of a foreign log
-    #[arg(long, value_name = "FILE", help_heading = "Reading logs")]
+    #[arg(long, value_name = "FILE")]
     columns: Option<PathBuf>,
 
     /// Put unevenly sampled logs on a grid of this period: output linear, input held
     #[arg(
-        long, value_name = "SECONDS", value_parser = number::period, allow_negative_numbers = true,
-        help_heading = "Reading logs"
+        long, value_name = "SECONDS", value_parser = number::period, allow_negative_numbers = true
     )]
     resample: Option<SamplePeriod>,
 
     /// Fill gaps of the output up to this long; longer ones split the trial in two. An
     /// input that is missing is held
     #[arg(
-        long, value_name = "SECONDS", value_parser = number::seconds, allow_negative_numbers = true,
-        help_heading = "Reading logs"
+        long, value_name = "SECONDS", value_parser = number::seconds, allow_negative_numbers = true
     )]
     fill: Option<f64>,
 
@@ -78,7 +75,7 @@ pub(crate) struct ReadingArgs {
 pub(crate) struct MemoryArgs {
     /// The most memory that reading logs may take, in bytes or as `500MB` or `4GB`: a log that
     /// needs more is refused [default: half of the machine's]
-    #[arg(long, value_name = "SIZE", value_parser = number::bytes, help_heading = "Reading logs")]
+    #[arg(long, value_name = "SIZE", value_parser = number::bytes)]
     max_memory: Option<u64>,
 }
 

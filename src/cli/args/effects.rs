@@ -11,7 +11,7 @@ use crate::explain::{Options, Tried};
 pub(crate) struct EffectArgs {
     /// Effects that are tried, separated by commas [default: the catalogue and the
     /// candidates of the model file]
-    #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Model")]
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
     effects: Vec<String>,
 }
 

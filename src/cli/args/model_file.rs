@@ -19,11 +19,11 @@ pub(crate) struct ModelFileArgs {
     /// The model file (TOML, schema `tauscope/model/1`). It is revised in place: values
     /// change, comments and whatever else was written by hand stay. Where it is not there
     /// yet, it is made; joints that it has not start as plain integrators
-    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    #[arg(short, long, value_name = "MODEL.toml")]
     model: Option<PathBuf>,
 
     /// Where the revised file goes instead [default: the model file, or a new model.toml]
-    #[arg(short, long, value_name = "FILE.toml", help_heading = "Model")]
+    #[arg(short, long, value_name = "FILE.toml")]
     write: Option<PathBuf>,
 }
 

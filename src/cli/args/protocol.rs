@@ -12,13 +12,13 @@ pub(crate) struct ProtocolArgs {
     /// (never), `steps` (at every step of the input, in long holds every 2 s), seconds, or
     /// `auto`: free where the output follows its input, as a speed or a pressure does, else steps,
     /// where an error counts where it is made [default: auto]
-    #[arg(long, value_name = "auto|free|steps|SECONDS", value_parser = horizon, help_heading = "Model")]
+    #[arg(long, value_name = "auto|free|steps|SECONDS", value_parser = horizon)]
     horizon: Option<Horizon>,
 
     /// Share of each trial's time that is for training; `blocks`: every third block of four runs
     /// is for validation; or `trials`: every third trial is [default: trials from six on, else
     /// blocks]
-    #[arg(long, value_name = "SHARE|blocks|trials", value_parser = split, help_heading = "Model")]
+    #[arg(long, value_name = "SHARE|blocks|trials", value_parser = split)]
     split: Option<Split>,
 }
 

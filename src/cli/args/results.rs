@@ -22,7 +22,6 @@ pub(crate) enum Format {
 
 /// How a command works and prints.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Output")]
 pub(crate) struct RunArgs {
     /// How results are printed
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -72,7 +71,6 @@ impl RunArgs {
 
 /// Where the results of a command that fits models go.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Output")]
 pub(crate) struct ResultArgs {
     /// Record models and decisions for the Rerun viewer
     #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]

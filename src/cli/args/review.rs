@@ -12,7 +12,7 @@ pub(crate) struct ReviewArgs {
     /// Put a person's word above the conditions: a table with the columns
     /// `joint,trial,i,verdict,delay_s,note,reviewer`, as `estimate --review-sheet` writes it and
     /// `report --interactive` saves it
-    #[arg(long, value_name = "FILE.csv", help_heading = "Review")]
+    #[arg(long, value_name = "FILE.csv")]
     pub(crate) review: Option<PathBuf>,
 }
 

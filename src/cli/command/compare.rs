@@ -27,17 +27,17 @@ pub(crate) struct Args {
     data: DataArgs,
 
     /// A model file (TOML, schema `tauscope/model/1`). May be repeated
-    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    #[arg(short, long, value_name = "MODEL.toml")]
     model: Vec<PathBuf>,
 
     /// A model to compare the first one with: its errors beside the first one's, where each is
     /// better, and whether the difference is more than chance. The same is said of further
     /// `--model` files. May be repeated
-    #[arg(long, value_name = "MODEL.toml", help_heading = "Model")]
+    #[arg(long, value_name = "MODEL.toml")]
     against: Vec<PathBuf>,
 
     /// Fit the free parameters of the model files, starting at their values
-    #[arg(long, help_heading = "Model")]
+    #[arg(long)]
     fit: bool,
 
     #[command(flatten)]

@@ -30,7 +30,7 @@ pub(crate) struct Args {
 
     /// The model file (TOML, schema `tauscope/model/1`). Joints that it has not start as
     /// plain integrators; its candidates are tried, too
-    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    #[arg(short, long, value_name = "MODEL.toml")]
     model: Option<PathBuf>,
 
     #[command(flatten)]

@@ -39,12 +39,12 @@ pub(crate) struct Args {
     effects: EffectArgs,
 
     /// How many effects are added at most
-    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, help_heading = "Model")]
+    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS)]
     max_effects: usize,
 
     /// Keep effects that are significant and have no practical consequence: without them
     /// the error grows by less than 1 % of the first
-    #[arg(long, help_heading = "Model")]
+    #[arg(long)]
     refine: bool,
 
     #[command(flatten)]

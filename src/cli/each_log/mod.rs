@@ -29,7 +29,6 @@ pub(crate) use with_parent::end_with_parent;
 
 /// Many logs, each by itself.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Folders of logs")]
 pub(crate) struct FolderArgs {
     /// Take each log as an experiment of its own, and keep its result in this folder. A log
     /// whose result is there already, from the same bytes by the same settings and version,
@@ -47,7 +46,7 @@ pub(crate) struct FolderArgs {
 
     /// Write texts in CSV so that a spreadsheet program computes nothing: an apostrophe stands
     /// before what it would take for a formula
-    #[arg(long, help_heading = "Output")]
+    #[arg(long)]
     safe_csv: bool,
 }
 

@@ -21,9 +21,11 @@ use crate::cli::console::{Bar, Verbosity, message};
 /// How many candidates are recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Detail {
+    /// All candidates up to 200,000 of them, else as `lean`
+    Auto,
     /// Every candidate of every segment
     Full,
-    /// At most 25 candidates of an accepted segment: for long logs
+    /// At most 25 candidates of an accepted segment that is not doubtful
     Lean,
 }
 
@@ -52,6 +54,18 @@ impl Contents<'_> {
     /// Joints of a file, where there are more.
     #[cfg(feature = "rrd")]
     const OF_A_FILE: usize = 8;
+
+    /// Candidates up to which all are recorded. Each takes 230 bytes: above it they are more than half
+    /// of a recording of 14 joints of 100,000 samples.
+    #[cfg(feature = "rrd")]
+    const CANDIDATES: usize = 200_000;
+
+    #[cfg(feature = "rrd")]
+    fn candidates(&self) -> usize {
+        let trials = self.joints.iter().flat_map(|joint| joint.estimate.estimated());
+        let decisions = trials.flat_map(|trial| &trial.decisions);
+        decisions.map(|decision| decision.candidates.len()).sum()
+    }
 
     /// Writes the recording to `path` and says how to look at it. Of many joints it writes a
     /// recording of some of them each to `path_1`, `path_2` and so on, and to `path` one that leads
@@ -131,7 +145,8 @@ impl Contents<'_> {
         let Self { command, joints, settings, sources, reading, .. } = *self;
         let Self { models, revisions, detail, also, .. } = *self;
         let detail = match detail {
-            Detail::Full => recording::Detail::Full,
+            Detail::Auto if self.candidates() > Self::CANDIDATES => recording::Detail::Lean,
+            Detail::Auto | Detail::Full => recording::Detail::Full,
             Detail::Lean => recording::Detail::Lean,
         };
         work(&Recording {

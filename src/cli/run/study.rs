@@ -117,7 +117,7 @@ impl<'a> StudyContext<'a> {
             reading: &experiment.options,
             models,
             revisions,
-            detail: Detail::Full,
+            detail: Detail::Auto,
         })
     }
 }

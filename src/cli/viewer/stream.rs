@@ -15,7 +15,6 @@ use crate::cli::output::{Contents, SweepContents};
 
 /// Which viewer shows the recording while it is made.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Output")]
 pub(crate) struct StreamArgs {
     /// Show the recording while it is made, in a viewer that runs [default: 127.0.0.1:9876]
     #[arg(

@@ -52,7 +52,6 @@ impl Args {
 
 /// A log that still grows.
 #[derive(ClapArgs, Debug)]
-#[command(next_help_heading = "Reading logs")]
 pub(crate) struct FollowArgs {
     /// Follow a log that is still written: each decision is reported as soon as its step is
     /// complete. Ctrl-C ends it; then all is done as for any log
@@ -69,7 +68,6 @@ pub(crate) struct FollowArgs {
 
 /// What is written where.
 #[derive(ClapArgs, Debug)]
-#[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
     /// Record every decision for the Rerun viewer
     #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
@@ -78,8 +76,8 @@ pub(crate) struct OutputArgs {
     #[command(flatten)]
     pub(crate) stream: StreamArgs,
 
-    /// Candidates in the recording: all, or fewer of accepted segments
-    #[arg(long, value_enum, default_value_t = Detail::Full)]
+    /// Candidates in the recording: all, or fewer of accepted segments that are not doubtful
+    #[arg(long, value_enum, default_value_t = Detail::Auto)]
     pub(crate) detail: Detail,
 
     /// Write the table of decisions, as CSV or Parquet by the name's ending

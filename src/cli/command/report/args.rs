@@ -43,19 +43,19 @@ pub(super) struct ModelArgs {
     /// Report this model, too (TOML, schema `tauscope/model/1`). One that `improve` made from
     /// these logs is shown as it is, with the ladder of its history; any other is fitted,
     /// starting at its values. Joints that it has not start as plain integrators
-    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    #[arg(short, long, value_name = "MODEL.toml")]
     pub(super) model: Option<PathBuf>,
 
     /// Add to the model what it lacks, and report the ladder of errors. Without a model
     /// each joint starts as a plain integrator; no model file is written
-    #[arg(long, help_heading = "Model")]
+    #[arg(long)]
     pub(super) improve: bool,
 
     #[command(flatten)]
     pub(super) effects: EffectArgs,
 
     /// How many effects `--improve` adds at most
-    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, help_heading = "Model")]
+    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS)]
     pub(super) max_effects: usize,
 
     #[command(flatten)]
@@ -64,7 +64,6 @@ pub(super) struct ModelArgs {
 
 /// What is written where.
 #[derive(ClapArgs, Debug)]
-#[command(next_help_heading = "Output")]
 pub(super) struct OutputArgs {
     /// The report: a page, or Markdown with its drawings in a folder `FILE_files` beside it.
     /// The recording goes beside it as `FILE.rrd`

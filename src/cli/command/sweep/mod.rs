@@ -34,21 +34,21 @@ pub(crate) struct Args {
     data: DataArgs,
 
     /// How a breakpoint is found
-    #[arg(long, value_name = "NAMES", default_value_t = Values::all(), value_parser = methods, help_heading = "Settings that are varied")]
+    #[arg(long, value_name = "NAMES", default_value_t = Values::all(), value_parser = methods)]
     method: Values<Method>,
 
     /// Samples that a segment reaches beyond its input steps, or seconds as in `0.05s,0.1s`
-    #[arg(long, value_name = "LIST", default_value = "5,10,20", value_parser = lengths, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    #[arg(long, value_name = "LIST", default_value = "5,10,20", value_parser = lengths, allow_hyphen_values = true)]
     alpha: Values<Length>,
 
-    #[arg(long, help = format!("Samples, or seconds, between two candidate breakpoints; for `{}` alone", ids_with(|spec| !spec.has_intervals)), value_name = "LIST", default_value = "1,2,5,10", value_parser = lengths, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    #[arg(long, help = format!("Samples, or seconds, between two candidate breakpoints; for `{}` alone", ids_with(|spec| !spec.has_intervals)), value_name = "LIST", default_value = "1,2,5,10", value_parser = lengths, allow_hyphen_values = true)]
     beta: Values<Length>,
 
-    #[arg(long, help = format!("Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none]; for `{}` alone", ids_with(|spec| !spec.has_intervals)), value_name = "LIST", value_parser = passbands, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    #[arg(long, help = format!("Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none]; for `{}` alone", ids_with(|spec| !spec.has_intervals)), value_name = "LIST", value_parser = passbands, allow_hyphen_values = true)]
     passband: Option<Values<Passband>>,
 
     /// Delays that differ by so many samples more than β or their intervals allow still agree
-    #[arg(long, value_name = "SAMPLES", default_value_t = 2.0, value_parser = number::threshold, allow_negative_numbers = true, help_heading = "Settings that are varied")]
+    #[arg(long, value_name = "SAMPLES", default_value_t = 2.0, value_parser = number::threshold, allow_negative_numbers = true)]
     tolerance: f64,
 
     #[command(flatten)]
@@ -60,7 +60,6 @@ pub(crate) struct Args {
 
 /// What is printed and recorded.
 #[derive(ClapArgs, Debug)]
-#[command(next_help_heading = "Output")]
 struct OutputArgs {
     /// Record how every delay moves with the settings, for the Rerun viewer
     #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
