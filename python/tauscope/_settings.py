@@ -54,7 +54,7 @@ def arguments(command: str, settings: Mapping[str, Any]) -> list[str]:
 def _word(value: Any) -> str:
     if isinstance(value, str):
         return value
-    if isinstance(value, (tuple, list)):
+    if isinstance(value, Iterable):
         return ",".join(_word(each) for each in value)
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
         return str(int(value))
