@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tauscope import _tauscope
 from tauscope._messages import COMMANDS, translated
-from tauscope._settings import options
+from tauscope._settings import ARRAYS, options
 
 PATH = Path(__file__).parent / "tauscope" / "_options.py"
 
@@ -48,12 +48,6 @@ TYPES = {
 
 #: Arguments of the functions that are options of the program.
 OWN = {"report": {"output"}, "simulate": {"output", "truth"}}
-
-#: What the package asks of arrays besides.
-ARRAYS = [
-    ("input_unit", "str | None", "Unit of the input, of arrays."),
-    ("output_unit", "str | None", "Unit of the output, of arrays."),
-]
 
 #: Name, type and help of a setting.
 Setting = tuple[str, str, str]
@@ -114,8 +108,8 @@ def settings(command: str) -> list[Setting]:
         block = said[option]
         default = re.search(r"\[default: [^\]]+\]", block)
         if default and "[default:" not in about:
-            about = f"{about} {default[0]}"
-        text = translated(command, about) + "."
+            about = f"{about} {' '.join(default[0].split())}"
+        text = translated(command, about.replace("May be repeated", "May be a list")) + "."
         found.append((option.replace("-", "_"), kind(block, many) if takes else "bool", text))
     return found
 
@@ -141,7 +135,8 @@ def field(setting: str, type_: str) -> str:
 def module() -> str:
     """The text of ``tauscope/_options.py``."""
     reading = settings("read")
-    text = HEAD + written("ReadOptions", "TypedDict", "How logs are read.", [*reading, *ARRAYS])
+    units = [(name, "str | None", "Of arrays: the unit, as in a log.") for name in ARRAYS]
+    text = HEAD + written("ReadOptions", "TypedDict", "How logs are read.", [*reading, *units])
     for command in COMMANDS:
         found = settings(command)
         is_reading = all(setting in found for setting in reading)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import tempfile
 from collections.abc import Callable, Mapping
@@ -17,7 +18,7 @@ from ._model import Model
 from ._progress import Progress
 from ._run import Done, warn
 from ._run import run as _run_command
-from ._settings import arguments
+from ._settings import arguments, defaults
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -290,3 +291,19 @@ def simulate(
             pd.read_csv(delays, comment="#"),
             [text for kind, text in said if kind == "note"],
         )
+
+
+def _list_settings(function: Any) -> None:
+    """Names the settings in the signature: notebooks and ``help`` know what they see when run."""
+    found = inspect.signature(function)
+    own = [each for each in found.parameters.values() if each.kind is not each.VAR_KEYWORD]
+    settings = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default)
+        for name, default in defaults(function.__name__).items()
+        if name not in found.parameters
+    ]
+    function.__signature__ = found.replace(parameters=[*own, *settings])
+
+
+for _function in (estimate, sweep, compare, explain, add, improve, report, design, simulate):
+    _list_settings(_function)

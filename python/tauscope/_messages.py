@@ -76,12 +76,11 @@ def _keyword(command: str, option: str, value: str) -> str | None:
     """An option as the keyword argument of the command's function, if it has one."""
     name = option.replace("-", "_")
     if option == "model" and command != "simulate":
-        takes = True
-    elif option in options(command):
-        takes = options(command)[option][1]
-    else:
+        return f"{name}={_value(value)}"
+    found = options(command).get(option)
+    if found is None:
         return None
-    return f"{name}={_value(value)}" if takes else f"{name}=True"
+    return f"{name}={_value(value)}" if found[1] else f"{name}=True"
 
 
 def _value(typed: str) -> str:

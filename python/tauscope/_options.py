@@ -16,8 +16,8 @@ class ReadOptions(TypedDict, total=False):
     """How logs are read."""
 
     joint: str | Sequence[str] | None
-    """A joint to use, by name; or `NAME=INPUT_COLUMN:OUTPUT_COLUMN` in a foreign log. May be
-    repeated."""
+    """A joint to use, by name; or `NAME=INPUT_COLUMN:OUTPUT_COLUMN` in a foreign log. May be a
+    list."""
     time: str | None
     """Column of the time in seconds."""
     trial: str | None
@@ -35,9 +35,9 @@ class ReadOptions(TypedDict, total=False):
     """The most memory that reading logs may take, in bytes or as `500MB` or `4GB`: a log that needs
     more is refused [default: half of the machine's]."""
     input_unit: str | None
-    """Unit of the input, of arrays."""
+    """Of arrays: the unit, as in a log."""
     output_unit: str | None
-    """Unit of the output, of arrays."""
+    """Of arrays: the unit, as in a log."""
 
 
 class EstimateOptions(ReadOptions, total=False):
@@ -48,7 +48,7 @@ class EstimateOptions(ReadOptions, total=False):
         | Sequence[Literal["auto", "two-line", "hinge", "lag-aware"]]
         | None
     )
-    """How a delay is found. May be repeated: the first one is the answer, the others are reported
+    """How a delay is found. May be a list: the first one is the answer, the others are reported
     beside it [default: auto; two-line with `paper=True` and `--follow`]."""
     alpha: float | str | Literal["auto"] | None
     """Samples that a segment reaches beyond its input steps, or seconds as in `0.1s`; `auto`
@@ -102,9 +102,7 @@ class EstimateOptions(ReadOptions, total=False):
     against: File | Sequence[File] | None
     """Show where decisions differ from those of another result: the JSON of an earlier `estimate
     --format json`, its table of `decisions=`, or another log of the experiment, which is estimated
-    with the same settings. May be repeated."""
-    idle: float | None
-    """End, too, when the log has not grown for so long."""
+    with the same settings. May be a list."""
     output: File | None
     """Record every decision for the Rerun viewer."""
     detail: Literal["full", "lean"] | None
@@ -198,7 +196,7 @@ class CompareOptions(ReadOptions, total=False):
     against: File | Sequence[File] | None
     """A model to compare the first one with: its errors beside the first one's, where each is
     better, and whether the difference is more than chance. The same is said of further `model=`
-    files. May be repeated."""
+    files. May be a list."""
     fit: bool
     """Fit the free parameters of the model files, starting at their values."""
     horizon: float | Literal["auto", "free", "steps"] | None
@@ -288,7 +286,7 @@ class ReportOptions(ReadOptions, total=False):
         | Sequence[Literal["auto", "two-line", "hinge", "lag-aware"]]
         | None
     )
-    """How a delay is found. May be repeated: the first one is the answer, the others are reported
+    """How a delay is found. May be a list: the first one is the answer, the others are reported
     beside it [default: auto; two-line with `paper=True` and `--follow`]."""
     alpha: float | str | Literal["auto"] | None
     """Samples that a segment reaches beyond its input steps, or seconds as in `0.1s`; `auto`
@@ -342,7 +340,7 @@ class ReportOptions(ReadOptions, total=False):
     against: File | Sequence[File] | None
     """Show where decisions differ from those of another result: the JSON of an earlier `estimate
     --format json`, its table of `--decisions`, or another log of the experiment, which is estimated
-    with the same settings. May be repeated."""
+    with the same settings. May be a list."""
     improve: bool
     """Add to the model what it lacks, and report the ladder of errors. Without a model each joint
     starts as a plain integrator; no model file is written."""
@@ -432,8 +430,8 @@ class SimulateOptions(TypedDict, total=False):
 
     effect: str | Sequence[str] | None
     """What the joint hides, without a plant file: an effect of the catalogue or outside it, with
-    the keys of its table in a plant file; without them its size follows from `strength=`. May be
-    repeated."""
+    the keys of its table in a plant file; without them its size follows from `strength=`. May be a
+    list."""
     strength: Literal["weak", "clear"] | None
     """How clearly an effect without numbers shows: the nearest plain integrator is wrong by some 3
     times the noise, or 12 times [default: clear]."""
