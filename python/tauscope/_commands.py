@@ -16,8 +16,7 @@ from ._inputs import gathered
 from ._messages import in_python, translated
 from ._model import Model
 from ._progress import Progress
-from ._run import Done, warn
-from ._run import run as _run_command
+from ._run import Done, run, warn
 from ._settings import arguments, defaults
 
 if TYPE_CHECKING:
@@ -59,8 +58,8 @@ def _run(
     files, logs = gathered(data, rest) if is_needed else ([], None)
     given = Model.load(model) if model is not None and not isinstance(model, Model) else model
 
-    def run(output: str | None) -> Done:
-        return _run_command(
+    def done_with(output: str | None) -> Done:
+        return run(
             words,
             files,
             logs,
@@ -76,12 +75,12 @@ def _run(
     if is_recorded and output is None and command in FITTING:
         folder = tempfile.TemporaryDirectory(prefix="tauscope_")
         output = Path(folder.name) / f"{command}.rrd"
-    done = run(output and os.fspath(output))
+    done = done_with(output and os.fspath(output))
     warn(done.messages, stacklevel=3)
     name, functions = (given.name, given.functions) if given is not None else ("model.toml", ())
 
     def record(path: str) -> None:
-        run(path)
+        done_with(path)
 
     return kind(
         command,
