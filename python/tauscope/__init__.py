@@ -17,21 +17,17 @@ DataFrame to the delay table, the missing effect and a recording:
 """
 
 from ._commands import (
-    Joint,
-    Logs,
-    TauscopeWarning,
-    Trial,
     add,
     compare,
     design,
     estimate,
     explain,
     improve,
-    read,
     report,
     simulate,
     sweep,
 )
+from ._logs import Joint, Logs, Trial, read
 from ._model import Effect, JointModel, Model
 from ._results import (
     Comparison,
@@ -44,6 +40,7 @@ from ._results import (
     Simulated,
     Sweep,
 )
+from ._run import TauscopeWarning
 from ._settings import keywords
 from ._tauscope import HAS_RECORDINGS, TauscopeError, __version__
 

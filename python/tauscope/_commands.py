@@ -2,41 +2,49 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import tempfile
-import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-import numpy as np
 import pandas as pd
 
 from . import _results, _tauscope
 from ._inputs import gathered
+from ._messages import in_python, translated
 from ._model import Model
-from ._progress import Progress, reporting
-from ._settings import arguments
+from ._progress import Progress
+from ._run import Done, run, warn
+from ._settings import arguments, defaults
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._options import (
+        AddOptions,
+        CompareOptions,
+        DesignOptions,
+        EstimateOptions,
+        ExplainOptions,
+        ImproveOptions,
+        ReportOptions,
+        SimulateOptions,
+        SweepOptions,
+    )
 
 R = TypeVar("R", bound=_results.Result)
 
-
-#: Whether all was done, what was printed, what was said, whether it was stopped, and the model.
-_Done = tuple[bool, _tauscope.Printed, list[tuple[str, str]], bool, Model | None]
-
 #: Commands whose work takes longer than its recording, which they make at once.
 FITTING = frozenset({"explain", "add", "improve"})
-
-
-class TauscopeWarning(UserWarning):
-    """A joint or a file that was left out, and why."""
 
 
 def _run(
     kind: Callable[..., R],
     words: list[str],
     data: Any,
-    settings: dict[str, Any],
+    settings: Mapping[str, Any],
     *,
     progress: Progress = None,
     model: Model | str | os.PathLike[str] | None = None,
@@ -45,57 +53,51 @@ def _run(
 ) -> R:
     """Runs the command ``words`` on ``data``; the result is of class ``kind``."""
     command = words[0]
-    settings = dict(settings)
+    rest: dict[str, Any] = {**settings}
     is_needed = data is not None or kind is not _results.Design
-    files, logs = gathered(data, settings) if is_needed else ([], None)
-
+    files, logs = gathered(data, rest) if is_needed else ([], None)
     given = Model.load(model) if model is not None and not isinstance(model, Model) else model
-    name = given.name if given is not None else "model.toml"
-    functions = given.functions if given is not None else ()
 
-    def run(output: str | None) -> _Done:
-        with tempfile.TemporaryDirectory() as folder:
-            typed = arguments(command, {**settings, "output": output})
-            if given is not None:
-                given.save(Path(folder) / name)
-                typed.append(f"--model={Path(folder) / name}")
-            revised = Path(folder) / f"revised_{name}"
-            if revises:
-                typed.append(f"--write={revised}")
-            all_words = [*words, *files, *typed, "--format=json"]
-            with reporting(progress, command) as report:
-                done = _tauscope.run(all_words, logs, report, keeps, functions)
-            is_revised = revises and revised.exists()
-            left = Model(revised.read_text("utf-8"), name, functions) if is_revised else None
-            return (*done, left)
+    def done_with(output: str | None) -> Done:
+        return run(
+            words,
+            files,
+            logs,
+            {**rest, "output": output},
+            progress=progress,
+            model=given,
+            revises=revises,
+            keeps=keeps,
+        )
 
     is_recorded = kind not in (_results.Report, _results.Design) and _tauscope.HAS_RECORDINGS
-    output, folder = settings.get("output"), None
+    output, folder = rest.get("output"), None
     if is_recorded and output is None and command in FITTING:
         folder = tempfile.TemporaryDirectory(prefix="tauscope_")
         output = Path(folder.name) / f"{command}.rrd"
-    complete, printed, messages, stopped, left = run(output and os.fspath(output))
-    for what, said in messages:
-        if what == "warning":
-            warnings.warn(said, TauscopeWarning, stacklevel=3)
+    done = done_with(output and os.fspath(output))
+    warn(done.messages, stacklevel=3)
+    name, functions = (given.name, given.functions) if given is not None else ("model.toml", ())
 
     def record(path: str) -> None:
-        run(path)
+        done_with(path)
 
     return kind(
         command,
-        printed,
-        messages,
-        complete=complete,
-        stopped=stopped,
+        done.printed,
+        done.messages,
+        complete=done.complete,
+        stopped=done.stopped,
         record=record if is_recorded else None,
         recording=Path(output) if is_recorded and output and Path(output).exists() else None,
         folder=folder,
-        model=left,
+        model=None if done.revised is None else Model(done.revised, name, functions),
     )
 
 
-def estimate(data: Any, *, progress: Progress = None, **settings: Any) -> _results.Estimate:
+def estimate(
+    data: Any, *, progress: Progress = None, **settings: Unpack[EstimateOptions]
+) -> _results.Estimate:
     """The delay of every step of the input of every joint.
 
     ``data`` is a path or several; a DataFrame of pandas or polars whose columns are named as in
@@ -119,7 +121,9 @@ def estimate(data: Any, *, progress: Progress = None, **settings: Any) -> _resul
     return _run(_results.Estimate, ["estimate"], data, settings, progress=progress)
 
 
-def sweep(data: Any, *, progress: Progress = None, **settings: Any) -> _results.Sweep:
+def sweep(
+    data: Any, *, progress: Progress = None, **settings: Unpack[SweepOptions]
+) -> _results.Sweep:
     """How every delay moves with α, β, passband and method.
 
     ``data`` as for :func:`estimate`, which raises the same; ``alpha`` and ``beta`` in samples
@@ -133,7 +137,7 @@ def compare(
     model: Model | str | os.PathLike[str] | None = None,
     *,
     progress: Progress = None,
-    **settings: Any,
+    **settings: Unpack[CompareOptions],
 ) -> _results.Comparison:
     """A model beside the measurement: error figures, and where it fails.
 
@@ -150,7 +154,7 @@ def explain(
     model: Model | str | os.PathLike[str] | None = None,
     *,
     progress: Progress = None,
-    **settings: Any,
+    **settings: Unpack[ExplainOptions],
 ) -> _results.Explanation:
     """Which physical effect a model lacks: the ranking, and its evidence.
 
@@ -167,7 +171,7 @@ def add(
     model: Model | str | os.PathLike[str] | None = None,
     *,
     progress: Progress = None,
-    **settings: Any,
+    **settings: Unpack[AddOptions],
 ) -> _results.Comparison:
     """That effect in the model, refitted: ``.model`` is the new revision.
 
@@ -189,7 +193,7 @@ def improve(
     model: Model | str | os.PathLike[str] | None = None,
     *,
     progress: Progress = None,
-    **settings: Any,
+    **settings: Unpack[ImproveOptions],
 ) -> _results.Improvement:
     """Adds to a model what it lacks, effect by effect: ``.model`` is what came of it.
 
@@ -214,11 +218,11 @@ def report(
     model: Model | str | os.PathLike[str] | None = None,
     *,
     progress: Progress = None,
-    **settings: Any,
+    **settings: Unpack[ReportOptions],
 ) -> _results.Report:
     """A page with figures and numbers (``.html`` or ``.md``), a recording beside it."""
     if not _tauscope.HAS_RECORDINGS:
-        settings = {"no_recording": True, **settings}
+        settings.setdefault("no_recording", True)
     found = _run(
         _results.Report,
         ["report"],
@@ -236,7 +240,7 @@ def design(
     model: Model | str | os.PathLike[str] | None = None,
     *,
     progress: Progress = None,
-    **settings: Any,
+    **settings: Unpack[DesignOptions],
 ) -> _results.Design:
     """The next experiment: an input in steps, or one that tells two effects apart.
 
@@ -261,7 +265,7 @@ def simulate(
     *,
     output: str | os.PathLike[str] | None = None,
     truth: str | os.PathLike[str] | None = None,
-    **settings: Any,
+    **settings: Unpack[SimulateOptions],
 ) -> _results.Simulated:
     """A log of a joint with chosen effects, noise and seed, and the truth about it.
 
@@ -271,66 +275,34 @@ def simulate(
     """
     with tempfile.TemporaryDirectory() as folder:
         log = Path(output or Path(folder) / "log.csv")
-        kept = Path(truth or Path(folder) / "truth.toml")
-        typed = arguments("simulate", {**settings, "output": log, "truth": kept})
+        delays, whole = Path(folder) / "truth.csv", Path(folder) / "truth.toml"
+        kept = Path(truth) if truth else whole
+        rest = {**settings, "output": log, "truth": [delays, kept]}
         files = [] if plant is None else [os.fspath(plant)]
-        _tauscope.run(["simulate", *files, *typed], None, None, False)
-        return _results.Simulated(pd.read_csv(log, comment="#"), kept.read_text())
+        typed = arguments("simulate", rest)
+        with in_python("simulate"):
+            _, _, messages, _ = _tauscope.run(["simulate", *files, *typed], None, None, False)
+        said = [(kind, translated("simulate", text)) for kind, text in messages]
+        warn(said, stacklevel=2)
+        return _results.Simulated(
+            pd.read_csv(log, comment="#"),
+            kept.read_text("utf-8"),
+            pd.read_csv(delays, comment="#"),
+            [text for kind, text in said if kind == "note"],
+        )
 
 
-class Trial:
-    """An uninterrupted run of one joint."""
-
-    def __init__(self, found: dict[str, Any]) -> None:
-        self.trial: str = found["trial"]
-        self.start_s: float = found["start_s"]
-        #: Seconds between samples.
-        self.sample_period: float = found["sample_period"]
-        #: What drove the joint, n samples.
-        self.input: np.ndarray[Any, np.dtype[np.float64]] = found["input"]
-        #: What the joint did, n samples.
-        self.output: np.ndarray[Any, np.dtype[np.float64]] = found["output"]
-        own = {"trial", "start_s", "sample_period", "input", "output"}
-        #: Further signals, n samples each.
-        self.others = {name: values for name, values in found.items() if name not in own}
-
-    @property
-    def time_s(self) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """The time of each sample in seconds."""
-        samples = np.arange(len(self.input), dtype=np.float64)
-        return np.asarray(self.start_s + self.sample_period * samples, dtype=np.float64)
-
-    def to_frame(self) -> pd.DataFrame:
-        """Time, input and output as a DataFrame."""
-        columns = {"time_s": self.time_s, "input": self.input, "output": self.output}
-        return pd.DataFrame({**columns, **self.others})
+def _list_settings(function: Any) -> None:
+    """Names the settings in the signature: notebooks and ``help`` know what they see when run."""
+    found = inspect.signature(function)
+    own = [each for each in found.parameters.values() if each.kind is not each.VAR_KEYWORD]
+    settings = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default)
+        for name, default in defaults(function.__name__).items()
+        if name not in found.parameters
+    ]
+    function.__signature__ = found.replace(parameters=[*own, *settings])
 
 
-class Joint:
-    """A joint: its units and its trials."""
-
-    def __init__(self, found: dict[str, Any]) -> None:
-        self.joint: str = found["joint"]
-        self.input_unit: str | None = found["input_unit"]
-        self.output_unit: str | None = found["output_unit"]
-        self.trials = [Trial(trial) for trial in found["trials"]]
-
-    def __repr__(self) -> str:
-        samples = sum(len(trial.input) for trial in self.trials)
-        return f"<Joint {self.joint}: {len(self.trials)} trials, {samples} samples>"
-
-
-class Logs(dict[str, Joint]):
-    """Joints by their names; ``notes`` says what a person should know of the logs."""
-
-    notes: list[str]
-
-
-def read(data: Any, **settings: Any) -> Logs:
-    """Reads logs as every command does: joints by name, each with its trials as arrays."""
-    settings = dict(settings)
-    files, logs = gathered(data, settings)
-    joints, notes = _tauscope.read(["read", *files, *arguments("read", settings)], logs)
-    found = Logs((joint["joint"], Joint(joint)) for joint in joints)
-    found.notes = notes
-    return found
+for _function in (estimate, sweep, compare, explain, add, improve, report, design, simulate):
+    _list_settings(_function)

@@ -5,18 +5,29 @@ from __future__ import annotations
 import json
 import math
 import os
+import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _tauscope
 from ._functions import Parameter, own_function, written
-from ._settings import _word
+from ._inputs import gathered
+from ._logs import read
+from ._messages import in_python, translated
+from ._progress import Progress
+from ._run import run, warn
+from ._settings import arguments
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._options import CompareOptions, ReadOptions
 
 #: Radians in one unit of an angle; of any other unit, a degree.
 RADIANS = {"rad": 1.0, "mrad": 1e-3, "rev": 2 * math.pi, "turn": 2 * math.pi}
@@ -204,21 +215,25 @@ class Model:
 
     predict = simulate
 
-    def fit(self, data: Any, **settings: Any) -> Model:
-        """This model fitted to ``data``, from its values; a new model."""
-        from ._commands import compare
+    def fit(
+        self, data: Any, *, progress: Progress = None, **settings: Unpack[CompareOptions]
+    ) -> Model:
+        """This model fitted to ``data``, from its values; a new model.
 
+        ``settings`` are those of :func:`compare`.
+        """
+        rest: dict[str, Any] = {**settings, "fit": True}
+        done = run(["compare"], *gathered(data, rest), rest, progress=progress, model=self)
+        warn(done.messages, stacklevel=2)
         fitted: Model = self
-        for joint in compare(data, self, fit=True, **settings).joints:
+        for joint in json.loads(done.printed.text())["joints"]:
             values = [(name, of["value"]) for name, of in joint["parameters"].items()]
             text = _tauscope.refitted(fitted.text, joint["joint"], values, self.functions)
             fitted = Model(text, self.name, self.functions)
         return fitted
 
-    def score(self, data: Any, **settings: Any) -> float:
+    def score(self, data: Any, **settings: Unpack[ReadOptions]) -> float:
         """The coefficient of determination R² of free simulations over all trials."""
-        from ._commands import read
-
         missed = total = 0.0
         for name, joint in read(data, **settings).items():
             if name not in self.joints:
@@ -269,20 +284,21 @@ class Model:
         *,
         input_unit: str | None = None,
         output_unit: str | None = None,
+        trial: str | None = None,
     ) -> list[str]:
         """Writes the model as source code or as an FMU: ``.c``, ``.h``, ``.py``, ``.m``, ``.fmu``.
 
-        Gives what is to be said of it, such as that there is no compiler for the binary.
+        Where effects act in some trials alone, ``trial`` is the label whose effects are meant, or
+        ``"none"``. Gives what is to be said of it, such as that there is no compiler for the
+        binary.
         """
-        import tempfile
-
-        units = {"--input-unit": input_unit, "--output-unit": output_unit}
-        typed = [f"{name}={_word(unit)}" for name, unit in units.items() if unit]
-        with tempfile.TemporaryDirectory() as folder:
+        given = {"input_unit": input_unit, "output_unit": output_unit, "trial": trial}
+        typed = arguments("export", {"joint": self._joint(joint), **given})
+        with tempfile.TemporaryDirectory() as folder, in_python("export"):
             kept = self.save(Path(folder) / self.name)
-            words = ["export", str(kept), os.fspath(path), f"--joint={self._joint(joint)}", *typed]
+            words = ["export", str(kept), os.fspath(path), *typed]
             _, _, messages, _ = _tauscope.run(words, None, None, False, self.functions)
-        return [said for kind, said in messages if kind == "note"]
+        return [translated("export", said) for kind, said in messages if kind == "note"]
 
     def __repr__(self) -> str:
         parts = []

@@ -219,10 +219,18 @@ class Explanation(Comparison):
         """The effects by the error that they leave on data that were not fitted."""
         return self._rows("ranking")
 
-    @property
-    def verdicts(self) -> dict[str, str]:
-        """``adequate``, ``missing_effect`` or ``unexplained``, by joint."""
-        return {joint["joint"]: joint["verdict"] for joint in self.joints if "verdict" in joint}
+    @cached_property
+    def verdicts(self) -> pd.DataFrame:
+        """Whether anything is missing, a row for each joint, and the conclusion in a sentence.
+
+        ``verdict`` is ``adequate``, ``missing_effect`` or ``unexplained``.
+        """
+        rows = [
+            {name: joint.get(name) for name in ("joint", "verdict", "headline")}
+            for joint in self.joints
+            if "verdict" in joint
+        ]
+        return pd.DataFrame(rows, columns=["joint", "verdict", "headline"])
 
     def headline(self, joint: str | None = None) -> str:
         """The conclusion in a sentence, of one joint or of all."""
@@ -305,11 +313,17 @@ class Design(Result):
 class Simulated:
     """A log of a joint that was simulated, and the truth about it."""
 
-    def __init__(self, log: pd.DataFrame, truth: str) -> None:
+    def __init__(
+        self, log: pd.DataFrame, truth: str, delays: pd.DataFrame, notes: list[str]
+    ) -> None:
         #: The log: time, input and output of each joint.
         self.log = log
         #: The delays or effects that are in it, as the program writes them.
         self.truth = truth
+        #: The true delay of every step of every joint; a row each.
+        self.delays = delays
+        #: What a person should know.
+        self.notes = notes
 
     def __repr__(self) -> str:
         return f"<tauscope simulate: {len(self.log)} samples>"

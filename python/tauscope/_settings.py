@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Mapping
-from functools import cache
 from typing import Any
 
 from . import _tauscope
 
 #: What the package does itself, or what only a terminal needs.
 HIDDEN = frozenset(
-    "format quiet connect serve spawn follow results shard summary model write".split()  # noqa: SIM905
+    "format quiet connect serve spawn follow idle results shard summary model write".split()  # noqa: SIM905
 )
 
+#: What the package asks of arrays besides; a log has it in the names of its columns.
+ARRAYS = ("input_unit", "output_unit")
 
-@cache
+
 def options(command: str) -> dict[str, tuple[str, bool, bool]]:
     """The options of a command: help, whether a value follows, whether it may be repeated."""
     found = _tauscope.options(command) or []
@@ -23,9 +24,17 @@ def options(command: str) -> dict[str, tuple[str, bool, bool]]:
     return {name: (about, takes, many) for name, about, takes, many in shown}
 
 
+def defaults(command: str) -> dict[str, bool | None]:
+    """The settings of a command as keyword arguments, with what leaves the program its own."""
+    found = options(command)
+    of_arrays = ARRAYS if "sample-period" in found else ()
+    switches = {name.replace("-", "_"): None if of[1] else False for name, of in found.items()}
+    return {**switches, **dict.fromkeys(of_arrays)}
+
+
 def keywords(command: str) -> list[str]:
     """The names of a command's settings, as keyword arguments."""
-    return sorted(name.replace("-", "_") for name in options(command))
+    return sorted(defaults(command))
 
 
 def arguments(command: str, settings: Mapping[str, Any]) -> list[str]:
@@ -34,12 +43,17 @@ def arguments(command: str, settings: Mapping[str, Any]) -> list[str]:
     >>> arguments("estimate", {"alpha": 5, "keep_first_last": True, "max_sse": None})
     ['--alpha=5', '--keep-first-last']
     """
+    known = options(command)
     typed: list[str] = []
     for name, value in settings.items():
         option = name.replace("_", "-")
-        if option not in options(command):
+        if name in ARRAYS and option not in known:
+            if value is None:
+                continue
+            raise TypeError(f"`{name}` is for arrays; a log says it in the names of its columns")
+        if option not in known:
             raise TypeError(_unknown(command, name))
-        _, takes, many = options(command)[option]
+        _, takes, many = known[option]
         if value is None or value is False:
             continue
         if not takes:
@@ -54,7 +68,7 @@ def arguments(command: str, settings: Mapping[str, Any]) -> list[str]:
 def _word(value: Any) -> str:
     if isinstance(value, str):
         return value
-    if isinstance(value, (tuple, list)):
+    if isinstance(value, Iterable):
         return ",".join(_word(each) for each in value)
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
         return str(int(value))

@@ -1,10 +1,26 @@
 """The native part of the package."""
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 import numpy.typing as npt
+
+__all__ = [
+    "HAS_RECORDINGS",
+    "Frame",
+    "Function",
+    "Printed",
+    "TauscopeError",
+    "__version__",
+    "check",
+    "describe",
+    "options",
+    "read",
+    "refitted",
+    "run",
+    "simulate",
+]
 
 __version__: str
 HAS_RECORDINGS: bool
@@ -13,9 +29,11 @@ class TauscopeError(ValueError):
     row: int | None
     column: str | None
 
+@final
 class Frame:
     def __new__(cls, table: Any, names: dict[str, str | None]) -> Frame: ...
 
+@final
 class Function:
     def __new__(
         cls,
@@ -29,6 +47,7 @@ class Function:
     @property
     def id(self) -> str: ...
 
+@final
 class Printed:
     def text(self) -> str: ...
 
@@ -37,7 +56,7 @@ def run(
     logs: Any = None,
     progress: Callable[[str, int, int], None] | None = None,
     keeps: bool = False,
-    functions: Sequence[Function] = (),
+    functions: Sequence[Function] = ...,
 ) -> tuple[bool, Printed, list[tuple[str, str]], bool]: ...
 def options(command: str) -> list[tuple[str, str, bool, bool]] | None: ...
 def read(arguments: list[str], logs: Any = None) -> tuple[list[dict[str, Any]], list[str]]: ...
