@@ -9,7 +9,7 @@ use super::markdown::plain;
 use super::paths::{self, at};
 use crate::experiment::Source;
 use crate::report::{EstimatedJoint, delay_answer};
-use crate::wording::{capitalized, counted};
+use crate::wording::capitalized;
 
 /// Adds `/headline`.
 pub(super) fn add(
@@ -24,11 +24,14 @@ pub(super) fn add(
 
 fn text(estimated: EstimatedJoint<'_>, layout: &JointLayout<'_>, sources: &[Source]) -> String {
     let name = plain(&estimated.joint.name);
-    let mut sentences = vec![format!("**{name}: {}**", plain(&delay_answer(estimated)))];
+    let answer = format!("**{name}: {}**", plain(&delay_answer(estimated)));
+    // The whole of a warning, with what to do, is in the report and on the terminal.
     let warnings = estimated.warnings();
-    sentences.extend(
-        warnings.iter().map(|warning| format!("⚠ {}.", plain(&capitalized(&warning.text)))),
-    );
+    let in_short = |text: &str| text.split_once(". ").map_or(text, |(first, _)| first).to_owned();
+    let mut sentences: Vec<String> = warnings
+        .iter()
+        .map(|warning| format!("⚠ {}.", plain(&capitalized(&in_short(&warning.text)))))
+        .collect();
     let doubtful = layout.segments().filter(|(_, segment)| segment.is_open()).count();
     let log = match sources {
         [source] => source.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -36,17 +39,15 @@ fn text(estimated: EstimatedJoint<'_>, layout: &JointLayout<'_>, sources: &[Sour
     };
     let quoted = |word: &str| shlex::try_quote(word).map_or_else(|_| word.to_owned(), Into::into);
     let data = format!("{} --joint {}", quoted(&log), quoted(&estimated.joint.name));
-    let are = if doubtful == 1 { "is" } else { "are" };
     sentences.push(match doubtful {
-        0 if warnings.is_empty() => format!(
-            "No decision is doubtful. `tauscope improve {data}` seeks what a model of the joint lacks."
-        ),
-        0 => "No decision is doubtful by itself.".to_owned(),
-        count => format!(
-            "{} {are} doubtful: the list on the right leads there. `tauscope estimate {data} \
-             --review-sheet review.csv` makes a sheet to correct decisions.",
-            counted(count, "decision")
-        ),
+        0 => format!("No decision is doubtful. What a model lacks: `tauscope improve {data}`"),
+        1 => format!("1 decision is doubtful. {}", review(&data)),
+        count => format!("{count} decisions are doubtful. {}", review(&data)),
     });
-    sentences.join("  \n")
+    format!("{answer}  \n{}", sentences.join(" "))
+}
+
+/// How decisions are corrected.
+fn review(data: &str) -> String {
+    format!("To correct them: `tauscope estimate {data} --review-sheet review.csv`")
 }

@@ -212,14 +212,14 @@ impl Views<'_, '_> {
         let left = [drawing, map, lanes];
         let builder = &mut *self.builder;
         let left =
-            builder.container(ContainerKind::Vertical, "Segment", &left, &[6.9, 1.9, 2.1])?;
+            builder.container(ContainerKind::Vertical, "Segment", &left, &[6.3, 2.1, 2.3])?;
         let right = [verdict, lists];
         let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.2, 2.8])?;
         let columns = [left, right];
         let columns =
             builder.container(ContainerKind::Horizontal, "Steps", &columns, &[6.8, 3.2])?;
         let rows = [headline, columns];
-        builder.container(ContainerKind::Vertical, "Decisions", &rows, &[1.1, 8.9])
+        builder.container(ContainerKind::Vertical, "Decisions", &rows, &[1.3, 8.7])
     }
 
     fn drawing(&self) -> View<'static> {
