@@ -6,7 +6,7 @@ use super::curves::{Curve, curves};
 use super::failure::{self, Diagnosis, Region, Samples, diagnose, regions};
 use super::input_edges::without_edges;
 use super::local_misfit::local_misfit;
-use super::residual_size::{ResidualSize, clipped};
+use super::residual_size::{BEYOND_NOISE, ResidualSize, clipped};
 use super::shapes::shapes;
 use super::speed_error::speed_error;
 use super::step_error::{StepError, step_errors};
@@ -68,6 +68,16 @@ impl Comparison {
     /// The error by which the model is judged: on the validation part where there is one.
     pub fn judged(&self) -> Option<ErrorFigures> {
         self.validation.or(self.training)
+    }
+
+    /// Whether no lack of fit is shown; where there are too few samples to test for one, whether the
+    /// error is not far beyond the noise of the sensor.
+    pub(crate) fn is_adequate(&self) -> bool {
+        let is_large = self
+            .judged()
+            .zip(self.sensor_noise)
+            .is_some_and(|(error, noise)| error.rmse > BEYOND_NOISE * noise);
+        self.lack_of_fit.map_or(!is_large, |test| test.adequate)
     }
 }
 

@@ -1,7 +1,5 @@
 //! The table of decisions: one row per input step.
 
-use std::io::Write;
-
 use serde::{Serialize, Serializer};
 
 use super::{DataTable, EstimatedJoint, Kind};
@@ -186,34 +184,10 @@ pub(super) fn detailed_rows(
     })
 }
 
-/// Writes the decisions of all joints as CSV, those of one run of settings below those of
-/// another. With a method other than the paper's there are columns for its details.
-///
-/// # Errors
-/// When `out` cannot be written.
-pub(crate) fn write_decisions(
-    runs: &[(&Settings, &[EstimatedJoint<'_>])],
-    out: impl Write,
-) -> csv::Result<()> {
-    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(out);
-    let methods = Methods::of(runs);
-    writer.write_record(decision_columns(methods).map(|(name, _)| name))?;
-    for (_, joints) in runs {
-        for (row, detail) in joints.iter().flat_map(|joint| detailed_rows(*joint)) {
-            if methods == Methods::PaperOnly {
-                writer.serialize(row)?;
-            } else {
-                writer.serialize((row, detail))?;
-            }
-        }
-    }
-    Ok(writer.flush()?)
-}
-
 /// The columns of [`decision_table`] for decisions of these methods.
 pub(crate) fn decision_columns(methods: Methods) -> impl Iterator<Item = (&'static str, Kind)> {
-    let more: &[&str] = if methods == Methods::PaperOnly { &[] } else { &DETAILS };
-    COLUMNS.iter().chain(more).map(|name| (*name, kind(name)))
+    let count = if methods == Methods::PaperOnly { OF_THE_PAPER } else { COLUMNS.len() };
+    COLUMNS.into_iter().take(count)
 }
 
 /// Which methods the decisions are of.
@@ -232,16 +206,8 @@ impl Methods {
     }
 }
 
-fn kind(column: &str) -> Kind {
-    match column {
-        "joint" | "trial" | "verdict" | "failed" | "method" | "accepted_with" => Kind::Text,
-        "i" | "p" | "r" | "end" | "candidates" | "f_opt" | "runner_up_q" => Kind::Whole,
-        "q" | "delta" => Kind::Samples,
-        _ => Kind::Real,
-    }
-}
-
-/// The decisions that [`write_decisions`] writes, as a table with types.
+/// The decisions of all joints, those of one run of settings below those of another. With a method
+/// other than the paper's there are columns for its details.
 ///
 /// # Errors
 /// Never: the rows have fields.
@@ -265,35 +231,35 @@ struct DetailedRow<'a> {
     detail: DecisionDetail,
 }
 
-/// The header of the further columns.
-const DETAILS: [&str; 7] = [
-    "method",
-    "delta_low",
-    "delta_high",
-    "p_value",
-    "runner_up_q",
-    "runner_up_margin",
-    "accepted_with",
+/// Names of the columns, and what they hold: those of [`DecisionRow`], then those of
+/// [`DecisionDetail`].
+const COLUMNS: [(&str, Kind); 25] = [
+    ("joint", Kind::Text),
+    ("trial", Kind::Text),
+    ("i", Kind::Whole),
+    ("p", Kind::Whole),
+    ("r", Kind::Whole),
+    ("end", Kind::Whole),
+    ("candidates", Kind::Whole),
+    ("f_opt", Kind::Whole),
+    ("q", Kind::Samples),
+    ("delta", Kind::Samples),
+    ("delta_s", Kind::Real),
+    ("sse", Kind::Real),
+    ("slope_before", Kind::Real),
+    ("intercept_before", Kind::Real),
+    ("slope_after", Kind::Real),
+    ("intercept_after", Kind::Real),
+    ("verdict", Kind::Text),
+    ("failed", Kind::Text),
+    ("method", Kind::Text),
+    ("delta_low", Kind::Real),
+    ("delta_high", Kind::Real),
+    ("p_value", Kind::Real),
+    ("runner_up_q", Kind::Whole),
+    ("runner_up_margin", Kind::Real),
+    ("accepted_with", Kind::Text),
 ];
 
-/// The header, which is written even when there is no row.
-const COLUMNS: [&str; 18] = [
-    "joint",
-    "trial",
-    "i",
-    "p",
-    "r",
-    "end",
-    "candidates",
-    "f_opt",
-    "q",
-    "delta",
-    "delta_s",
-    "sse",
-    "slope_before",
-    "intercept_before",
-    "slope_after",
-    "intercept_after",
-    "verdict",
-    "failed",
-];
+/// How many of them there are where all decisions are the paper's.
+const OF_THE_PAPER: usize = 18;

@@ -1,6 +1,4 @@
-//! The delays by kind of step and level, as CSV, as a typed table, and for people.
-
-use std::io::Write;
+//! The delays by kind of step and level, as a typed table and for people.
 
 use serde::Serialize;
 
@@ -74,21 +72,6 @@ pub(crate) fn level_table(joints: &[EstimatedJoint<'_>]) -> serde_json::Result<D
         }
     }
     Ok(table)
-}
-
-/// Writes the rows of all joints as CSV, numbers in full.
-///
-/// # Errors
-/// When `out` cannot be written.
-pub(crate) fn write_level_table(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Result<()> {
-    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(out);
-    writer.write_record(COLUMNS.map(|(name, _)| name))?;
-    for joint in joints {
-        for row in &joint.delay_table().rows {
-            writer.serialize(DelayTableRow::new(&joint.joint.name, row))?;
-        }
-    }
-    Ok(writer.flush()?)
 }
 
 /// What the cells of [`level_cells`] are.

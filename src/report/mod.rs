@@ -59,12 +59,10 @@ pub(crate) use consequence::MANY_TIMES_NOISE;
 pub(crate) use dead_time::{dead_time_sentences, input_note};
 pub use decisions::DecisionRow;
 pub use decisions::decision_rows;
-pub(crate) use decisions::{
-    DecisionDetail, Methods, decision_columns, decision_table, write_decisions,
-};
+pub(crate) use decisions::{DecisionDetail, Methods, decision_columns, decision_table};
 #[cfg(feature = "rrd")]
 pub(crate) use delay_table::{LEVEL_HEADER, kind_sentence, level_cells};
-pub(crate) use delay_table::{delay_levels_text, level_table, write_level_table};
+pub(crate) use delay_table::{delay_levels_text, level_table};
 pub(crate) use delays::delay_table;
 pub use delays::write_delays;
 pub(crate) use design::{Basis, DesignedJoint, Discrimination, write_input, write_preview};

@@ -121,8 +121,8 @@ fn steps(added: &AddedJoint<'_>) -> [Step; 2] {
 
 fn grown<'a>(added: &AddedJoint<'a>, revisions: &'a [Step]) -> ImprovedJoint<'a> {
     let [_, compared] = added.compared();
-    let is_adequate = compared.comparison.lack_of_fit.is_none_or(|test| test.adequate);
     // What the model still lacks was not looked for.
+    let is_adequate = compared.comparison.is_adequate();
     let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
     let before = Some(&added.addition.before);
     let attribution = Some(&added.addition.attribution);

@@ -211,8 +211,7 @@ impl<'a> Stage<'a> {
 
 /// What is to be said of a revision that may not be the last.
 fn so_far(revision: &Step) -> Verdict {
-    let lack_of_fit = revision.comparison.lack_of_fit;
-    match (lack_of_fit.is_none_or(|test| test.adequate), revision.ranking.is_empty()) {
+    match (revision.comparison.is_adequate(), revision.ranking.is_empty()) {
         (true, _) => Verdict::Adequate,
         (false, true) => Verdict::Unexplained,
         (false, false) => Verdict::MissingEffect,

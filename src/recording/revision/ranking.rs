@@ -51,7 +51,7 @@ pub(super) fn around(
     let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
     let is_last = at + 1 == improved.revisions.len();
     let title = match (all.as_slice(), revision.ranking.as_slice()) {
-        ([], _) if is_adequate(revision) => "no effect is missing".to_owned(),
+        ([], _) if revision.comparison.is_adequate() => "no effect is missing".to_owned(),
         ([], _) => "nothing more was looked for".to_owned(),
         (_, []) => "error at the next revision".to_owned(),
         ([best, ..], _) if is_last && improved.finding.verdict == Verdict::Unexplained => {
@@ -75,11 +75,6 @@ pub(super) fn around(
     let Some(noise) = noise(improved) else { return Vec::new() };
     bars.below(floor, noise, format!("noise {} {unit}", short(noise)));
     vec![bars.line(noise)]
-}
-
-/// Whether no lack of fit is shown.
-fn is_adequate(revision: &Revision) -> bool {
-    revision.comparison.lack_of_fit.is_some_and(|test| test.adequate)
 }
 
 /// What may come next, and the error with it.

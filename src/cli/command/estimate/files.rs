@@ -6,17 +6,14 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 
 use crate::report::{Language, Lookup};
-use crate::report::{
-    decision_table, delay_table, level_table, write_decisions, write_delays, write_level_table,
-    write_review_sheet,
-};
+use crate::report::{decision_table, delay_table, level_table, write_delays, write_review_sheet};
 
 use super::args::OutputArgs;
 use super::estimated::Estimated;
 use crate::cli::console::Verbosity;
 use crate::cli::output::{
     Contents, CsvText, FileKind, check_beside_parts, check_recorded, check_tables, write_csv,
-    write_file, write_parquet,
+    write_file, write_parquet, write_table,
 };
 use crate::cli::viewer::Stream;
 use crate::study::{Review, ReviewError};
@@ -69,12 +66,7 @@ impl<'a> Files<'a> {
         verbosity: Verbosity,
     ) -> anyhow::Result<()> {
         if let Some(path) = &self.args.decisions {
-            write_file(path, |file| match FileKind::of(path) {
-                FileKind::Csv => {
-                    write_csv(file, self.text, |out| Ok(write_decisions(result.runs, out)?))
-                }
-                FileKind::Parquet => write_parquet(&decision_table(result.runs)?, file),
-            })?;
+            write_table(&decision_table(result.runs)?, path, self.text)?;
         }
         if let Some(path) = &self.args.review_sheet {
             write_file(path, |file| {
@@ -90,12 +82,7 @@ impl<'a> Files<'a> {
             })?;
         }
         if let Some(path) = &self.args.table {
-            write_file(path, |file| match FileKind::of(path) {
-                FileKind::Csv => {
-                    write_csv(file, self.text, |out| Ok(write_level_table(result.joints, out)?))
-                }
-                FileKind::Parquet => write_parquet(&level_table(result.joints)?, file),
-            })?;
+            write_table(&level_table(result.joints)?, path, self.text)?;
         }
         if let Some(path) = self.args.export.as_ref().filter(|_| !lookup(result).is_empty()) {
             let (language, name) = named_lookup(path)?;
