@@ -105,8 +105,9 @@ class EstimateOptions(ReadOptions, total=False):
     with the same settings. May be a list."""
     output: File | None
     """Record every decision for the Rerun viewer."""
-    detail: Literal["full", "lean"] | None
-    """Candidates in the recording: all, or fewer of accepted segments [default: full]."""
+    detail: Literal["auto", "full", "lean"] | None
+    """Candidates in the recording: all, or fewer of accepted segments that are not doubtful
+    [default: auto]."""
     decisions: File | None
     """Write the table of decisions, as CSV or Parquet by the name's ending."""
     review_sheet: File | None
