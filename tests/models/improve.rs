@@ -95,7 +95,7 @@ fn each_step_is_told_and_the_ladder_is_printed() {
     let printed = String::from_utf8(output.stdout).unwrap();
     for part in [
         "boom: dead_band explains ",
-        "; no further effect is missing",
+        "; nothing more is missing",
         "│ 0          integrator",
         "│ 1          + dead_band",
         "arm: ",

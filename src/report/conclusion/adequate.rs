@@ -15,7 +15,7 @@ impl Finding<'_> {
         let of_consequence = if is_shown { " of consequence" } else { "" };
         let none = match self.explained() {
             None => format!("no missing effect{of_consequence} found"),
-            Some(explained) => format!("{explained}; no further effect{of_consequence} is missing"),
+            Some(explained) => format!("{explained}; nothing more{of_consequence} is missing"),
         };
         format!("{}: {none}", self.joint().name)
     }
