@@ -356,7 +356,7 @@ fn laid_out_foreign(head: &Head, options: &ReadOptions) -> Result<(Layout, Exper
     let survey = Survey::of(&head.path, options.memory)?;
     let (layout, mut found) = laid_out_by_names(head, &survey, options).map_err(|mut error| {
         if let (ReadError::NoJoints { available, .. }, Some(why)) = (&mut error, &unusable) {
-            *available += &format!("; {why}");
+            available.extend(["; ", why]);
         }
         error
     })?;

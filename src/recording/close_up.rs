@@ -5,7 +5,8 @@ use rerun::datatypes::Vec2D;
 
 use super::canvas::{CURVE_POINTS, Labels, Plot, Span, Strips, simplified, thinned_to};
 use super::layout::TrialLayout;
-use crate::delay::{Candidate, Decision};
+use crate::delay::{Candidate, Decision, Line};
+use crate::units::floor_to_index;
 use crate::wording::number;
 
 /// Left and right end on the sheet, and its rows.
@@ -102,14 +103,14 @@ impl<'a> CloseUp<'a> {
         let segment = self.decision.segment;
         let before = (candidate.before, segment.first as f64, q);
         let after = (candidate.after, q, segment.last as f64);
-        let line = |(line, from, to): (crate::delay::Line, f64, f64)| {
+        let line = |(line, from, to): (Line, f64, f64)| {
             self.plot.clipped([from, to].map(|k| (k, line.at(k) + shift)))
         };
         [before, after].into_iter().filter_map(line).map(Vec::from).collect()
     }
 
-    /// Names of the input step and of the breakpoint below the plot.
-    pub(super) fn title(&self, labels: &mut Labels, text: String) {
+    /// Puts a text above the plot.
+    pub(super) fn title(labels: &mut Labels, text: String) {
         let (left, right) = PLACE.0;
         labels.put_whole(Vec2D::new(f32::midpoint(left, right), 22.0), text);
     }
@@ -132,6 +133,6 @@ fn window(decision: &Decision, samples: usize) -> (usize, usize) {
     let delay = decision.delay().unwrap_or(0.1 * decision.hold as f64);
     let spread = decision.fine.map_or(0.0, |fine| fine.high - fine.low);
     let room = 2.0 * delay.abs().max(spread).max(0.5 * FEWEST);
-    let end = |sample: f64| crate::units::floor_to_index(sample.max(1.0)).clamp(1, samples.max(1));
+    let end = |sample: f64| floor_to_index(sample.max(1.0)).clamp(1, samples.max(1));
     (end(p.min(p + delay) - room), end(p.max(p + delay) + room))
 }

@@ -402,7 +402,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
                 format!(" ({} … {})", number(fine.low), number(fine.high))
             });
             let text = format!("δ = {}{interval} = {seconds} s", samples_text(delay));
-            self.close_up.title(&mut labels, text);
+            CloseUp::title(&mut labels, text);
         }
         self.name_places(&mut labels);
         let output = bracketed("output", self.joint.output_unit.as_deref());
