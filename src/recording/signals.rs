@@ -69,7 +69,7 @@ pub(super) fn add(
         1.5,
         InterpolationMode::StepAfter,
     )?;
-    add_held(chunks, entity, layout, |trial| trial.estimate.profile.iter().collect())
+    add_sparse(chunks, entity, layout, |trial| trial.estimate.profile.iter().collect())
 }
 
 fn style(
@@ -101,39 +101,6 @@ fn add_signal<'a>(
         all.extend_from_slice(values);
         lengths.extend(std::iter::repeat_n(1, values.len()));
         lengths.push(0);
-    }
-    chunks.push(entity, index.without_segment(), Scalars::new(all).columns(lengths)?)
-}
-
-/// A signal that is held between its changes: a row where it changes, one at the last sample that has
-/// the value, and an empty one where it stops.
-fn add_held<'a>(
-    chunks: &mut Chunks,
-    entity: EntityPath,
-    layout: &JointLayout<'a>,
-    values: impl Fn(&TrialLayout<'a>) -> Vec<Option<f64>>,
-) -> Result<(), RecordError> {
-    let mut index = Index::default();
-    let mut all = Vec::new();
-    let mut lengths = Vec::new();
-    for trial in &layout.trials {
-        let values = values(trial);
-        let mut start = 1;
-        for run in values.chunk_by(|a, b| a == b) {
-            let last = start + run.len() - 1;
-            if let [Some(value), ..] = run {
-                let ends = [start, last];
-                let ends = if start == last { &ends[..1] } else { &ends[..] };
-                index.extend(ends.iter().map(|k| trial.moment_of(*k)));
-                all.extend(ends.iter().map(|_| *value));
-                lengths.extend(ends.iter().map(|_| 1));
-                if values.get(last).is_none_or(Option::is_none) {
-                    index.extend(trial.moments(last + 1).last());
-                    lengths.push(0);
-                }
-            }
-            start = last + 1;
-        }
     }
     chunks.push(entity, index.without_segment(), Scalars::new(all).columns(lengths)?)
 }

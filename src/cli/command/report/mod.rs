@@ -247,7 +247,8 @@ impl Reported<'_> {
             failures,
         };
         if study.verbosity() == Verbosity::Normal {
-            for note in &notes {
+            // Those on the logs are said at the end, as by every command.
+            for note in notes.iter().skip(experiment.notes.len()) {
                 message("note", note);
             }
         }
