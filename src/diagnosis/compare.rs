@@ -244,11 +244,11 @@ fn residual_record(
     let mut samples = Samples::with_capacity(all);
     let mut segments = Vec::new();
     let simulated = evaluation.simulated.into_iter().zip(evaluation.residuals);
-    for (index, (trial, (simulated, residual))) in trials.iter().zip(simulated).enumerate() {
+    for (index, (trial, (simulated, mut residual))) in trials.iter().zip(simulated).enumerate() {
         let number = u32::try_from(index).ok()?;
         let Simulated { output, velocity, acting } = simulated;
         drop(output);
-        let mut residual = residual;
+        // What was filled in says nothing of the model.
         for gap in trial.unlogged() {
             residual[gap.clone()].fill(0.0);
         }
