@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::evaluation::Starts;
 use super::speed;
-use super::window::Window;
+use super::window::{Part, Window};
 use crate::experiment::Trial;
 use crate::model::{
     Arrivals, BESIDE, Driven, JointModel, Restart, Signals, Simulated, Surroundings,
@@ -159,11 +159,15 @@ impl Run<'_> {
     }
 
     /// By how much the start behind each restart is wrong: `Σ w g r / Σ w g²` over the samples of its
-    /// windows, with the slope `g` of the output to it (1 where there is none).
+    /// windows that are for training, or of all where none is, with the slope `g` of the output to it
+    /// (1 where there is none).
     fn shifts(&self, simulated: &[f64], slope: Option<&[f64]>) -> Vec<f64> {
         let shift = |windows: &[Window]| {
+            let is_fitted = |window: &&Window| window.part == Part::Training;
+            let has_fitted = windows.iter().any(|window| is_fitted(&window));
+            let seen = windows.iter().filter(|window| !has_fitted || is_fitted(window));
             let (mut with, mut square) = (0.0, f64::MIN_POSITIVE);
-            for index in windows.iter().flat_map(|window| window.start..window.end) {
+            for index in seen.flat_map(|window| window.start..window.end) {
                 let at = |values: &[f64]| values[index];
                 let (g, w) = (slope.map_or(1.0, at), self.weights.map_or(1.0, at));
                 with += w * g * (at(self.trial.output()) - at(simulated));
@@ -295,4 +299,35 @@ fn simulated_ranges(windows: &[Window]) -> Vec<Range<usize>> {
         }
     }
     ranges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::Joint;
+    use crate::fit::{FitRecord, Horizon, Split};
+    use crate::units::SamplePeriod;
+
+    #[test]
+    fn the_start_of_a_free_run_is_fitted_to_what_is_for_training_alone() {
+        let input: Vec<f64> = (0..1800).map(|k| f64::from(k / 100 % 2)).collect();
+        // The blocks for validation lie 5 above what an integrator could follow.
+        let output = (0..1800).map(|k| match k {
+            400..800 | 1600.. => 5.0,
+            _ => 0.0,
+        });
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("a", 0.0, period, input, output.collect()).unwrap();
+        let joint = Joint {
+            name: "boom".to_owned(),
+            input_unit: None,
+            output_unit: None,
+            covariates: Vec::new(),
+            trials: [trial].into(),
+        };
+        let record = FitRecord::new(&joint, Split::Blocks, Horizon::FreeRun);
+        let still = JointModel::integrator(0.0, 0.0);
+        let simulated = record.evaluate(&still).simulated;
+        assert!(simulated[0].output.iter().all(|output| output.abs() < 1e-12));
+    }
 }
