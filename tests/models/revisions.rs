@@ -7,9 +7,7 @@ use proptest::prelude::*;
 use tauscope::effect::expression::define;
 use tauscope::effect::{Definition, OwnParameter};
 use tauscope::effect::{Effect, Placebo, REGISTRY, Stage, find};
-use tauscope::model::{
-    Component, JointModel, ModelError, ModelFile, Revision, RevisionErrors, Value,
-};
+use tauscope::model::{Component, JointModel, ModelFile, Revision, RevisionErrors, Value};
 
 fn parse(text: &str) -> ModelFile {
     ModelFile::parse(text, Path::new("mine.toml")).unwrap()
@@ -242,13 +240,12 @@ fn what_could_not_be_read_again_is_not_written() {
     let arm = file.joint("arm").unwrap();
     for value in [f64::NAN, f64::INFINITY] {
         let error = file.revised("arm", &arm.with_values(&[value]), &Revision::default());
-        assert!(
-            matches!(error.unwrap_err(), ModelError::OutOfBounds { name, .. } if name == "gain")
-        );
+        let message = error.unwrap_err().to_string();
+        assert!(message.contains("joint `arm`: `integrator.gain` = "), "{message}");
     }
     let unknown = arm.with(Component::neutral(&Placebo));
     let error = file.revised("arm", &unknown, &Revision::default()).unwrap_err();
-    assert!(matches!(error, ModelError::UnknownEffect { .. }), "{error}");
+    assert!(error.to_string().contains("lists the catalogue"), "{error}");
 }
 
 #[test]
@@ -259,7 +256,8 @@ fn a_limit_that_is_no_number_is_refused() {
              parameters = {{ gain = {{ value = 8.0, {limit} = nan }}, delay = 0.1 }}\n"
         );
         let error = ModelFile::parse(&text, Path::new("boom.toml")).unwrap_err();
-        assert!(matches!(error, ModelError::OutOfBounds { .. }), "{error}");
+        let problem = format!("`integrator.gain`: `{limit}` is not a number");
+        assert!(error.to_string().contains(&problem), "{error}");
     }
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use super::error::Place;
 use super::read::{self, JointReader};
 use super::schema::{FileToml, JointToml, SCHEMA};
 use super::{Fitted, ModelError, Revision};
@@ -60,7 +61,7 @@ impl ModelFile {
         others: &[&'static dyn Effect],
     ) -> Result<Self, ModelError> {
         let text =
-            read_text(path).map_err(|source| ModelError::Read { path: path.to_owned(), source })?;
+            read_text(path).map_err(|e| Place::file(path).error_from("cannot be read", e))?;
         Self::parse_with(&text, path, others)
     }
 
@@ -83,14 +84,15 @@ impl ModelFile {
         others: &[&'static dyn Effect],
     ) -> Result<Self, ModelError> {
         let file: FileToml = toml::from_str(text)
-            .map_err(|e| ModelError::Parse { path: path.to_owned(), source: Box::new(e) })?;
+            .map_err(|e| Place::file(path).error_from("not a model file", e))?;
         if file.schema != SCHEMA {
-            return Err(ModelError::Schema { path: path.to_owned(), found: file.schema });
+            let problem = format!("schema `{}` is not known; expected `{SCHEMA}`", file.schema);
+            return Err(Place::file(path).error(problem));
         }
         let candidates = read::candidates(path, others, file.candidate)?;
         let mut joints = BTreeMap::new();
         for (name, joint) in file.joint {
-            let reader = JointReader { path, joint: &name, candidates: &candidates };
+            let reader = JointReader { place: Place::joint(path, &name), candidates: &candidates };
             let model = reader.joint(&joint)?;
             let JointToml { history, fitted, .. } = joint;
             joints.insert(name, Revised { model, history, fitted });

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use super::ModelError;
+use super::error::Place;
 use super::schema::{EffectToml, JointToml, Parameters, TableToml};
 use crate::effect::expression;
-use crate::effect::{self, Definition, Effect, OwnParameter};
+use crate::effect::{self, Definition, Effect, OwnParameter, UNLIMITED};
 use crate::model::{Component, JointModel, Value};
 
 /// The most effects of a joint, and the most candidates of a file: twice the catalogue. Reading them
@@ -22,22 +23,18 @@ pub(super) fn candidates(
     others: &[&'static dyn Effect],
     given: Vec<EffectToml>,
 ) -> Result<Vec<&'static dyn Effect>, ModelError> {
-    check_size(path, || "candidates".to_owned(), &given)?;
+    check_size(&Place::part(path, "candidates".to_owned()), &given)?;
+    let place = Place::part(path, "candidate".to_owned());
     let mut candidates = others.to_vec();
     for given in given {
-        let own = Own { path, place: "candidate".to_owned() };
-        let effect = own.define(&given, Start::Given)?;
-        own.check_unique(&candidates, effect.spec().id)?;
+        let effect = define(&place, &given, Start::Given)?;
+        check_unique(&place, &candidates, effect.spec().id)?;
         candidates.push(effect);
     }
     Ok(candidates)
 }
 
-fn check_size(
-    path: &Path,
-    place: impl FnOnce() -> String,
-    effects: &[EffectToml],
-) -> Result<(), ModelError> {
+fn check_size(place: &Place, effects: &[EffectToml]) -> Result<(), ModelError> {
     let count = effects.len();
     let characters: usize = effects.iter().map(EffectToml::characters).sum();
     let problem = match (count > MOST_EFFECTS, characters > MOST_CHARACTERS) {
@@ -47,7 +44,7 @@ fn check_size(
             format!("{characters} characters of expressions; {MOST_CHARACTERS} are the most")
         }
     };
-    Err(ModelError::TooLarge { path: path.to_owned(), place: place(), problem })
+    Err(place.error(problem))
 }
 
 /// Where the start values of a definition come from.
@@ -60,60 +57,52 @@ enum Start {
     InModel,
 }
 
-/// An effect of a file's own, for messages.
-struct Own<'a> {
-    path: &'a Path,
-    place: String,
+/// An error about one effect.
+fn of_effect(place: &Place, effect: &str, problem: &str) -> ModelError {
+    place.error(format!("effect `{effect}` {problem}"))
 }
 
-impl Own<'_> {
-    fn error(&self, effect: &str, problem: &str) -> ModelError {
-        let (path, place) = (self.path.to_owned(), self.place.clone());
-        ModelError::Effect { path, place, effect: effect.to_owned(), problem: problem.to_owned() }
+fn check_unique(place: &Place, others: &[&'static dyn Effect], id: &str) -> Result<(), ModelError> {
+    if others.iter().any(|other| other.spec().id == id) {
+        let problem = "has an id that another one has; rename one of them";
+        return Err(of_effect(place, id, problem));
     }
+    Ok(())
+}
 
-    fn check_unique(&self, others: &[&'static dyn Effect], id: &str) -> Result<(), ModelError> {
-        if others.iter().any(|other| other.spec().id == id) {
-            return Err(self.error(id, "has an id that another one has; rename one of them"));
-        }
-        Ok(())
+/// An effect of the file's own.
+fn define(
+    place: &Place,
+    given: &EffectToml,
+    start: Start,
+) -> Result<&'static dyn Effect, ModelError> {
+    if given.kind != expression::KIND {
+        let problem = "is not of this file: a candidate has kind = \"expression\"; those of \
+                       the catalogue are candidates anyway";
+        return Err(of_effect(place, &given.kind, problem));
     }
-
-    fn define(&self, given: &EffectToml, start: Start) -> Result<&'static dyn Effect, ModelError> {
-        if given.kind != expression::KIND {
-            let problem = "is not of this file: a candidate has kind = \"expression\"; those of \
-                           the catalogue are candidates anyway";
-            return Err(self.error(&given.kind, problem));
-        }
-        let id = given.id.clone().ok_or_else(|| {
-            self.error(&given.kind, "has no `id`: give it a name, as in id = \"knee\"")
-        })?;
-        let stage = given.stage.ok_or_else(|| {
-            let known = "has no `stage`: input, transport, dynamics, load or output";
-            self.error(&id, known)
-        })?;
-        let expression = given.expression.clone().ok_or_else(|| {
-            self.error(&id, "has no `expression`, as in expression = \"signal + 0.1\"")
-        })?;
-        let parameters = given.parameters.iter().map(|(name, parameter)| {
-            let given = parameter.table();
-            own_parameter(name, given, start)
-        });
-        let (summary, parameters) = (given.summary.clone(), parameters.collect());
-        let states = given.states.iter().map(|(name, state)| state.of_name(name)).collect();
-        let defined = expression::define(Definition {
-            id: id.clone(),
-            summary,
-            stage,
-            expression,
-            states,
-            parameters,
-        });
-        defined.map_err(|source| {
-            let (path, place) = (self.path.to_owned(), self.place.clone());
-            ModelError::Definition { path, place, effect: id, source: Box::new(source) }
-        })
-    }
+    let id = given.id.clone().ok_or_else(|| {
+        let problem = "has no `id`: give it a name, as in id = \"knee\"";
+        of_effect(place, &given.kind, problem)
+    })?;
+    let stage = given.stage.ok_or_else(|| {
+        of_effect(place, &id, "has no `stage`: input, transport, dynamics, load or output")
+    })?;
+    let expression = given.expression.clone().ok_or_else(|| {
+        of_effect(place, &id, "has no `expression`, as in expression = \"signal + 0.1\"")
+    })?;
+    let states = given.states.iter().map(|(name, state)| state.of_name(name)).collect();
+    let parameters = given.parameters.iter();
+    let parameters = parameters.map(|(name, given)| own_parameter(name, given.table(), start));
+    let defined = expression::define(Definition {
+        id: id.clone(),
+        summary: given.summary.clone(),
+        stage,
+        expression,
+        states,
+        parameters: parameters.collect(),
+    });
+    defined.map_err(|source| place.error_from(format!("effect `{id}`"), source))
 }
 
 fn own_parameter(name: &str, given: TableToml, start: Start) -> OwnParameter {
@@ -130,39 +119,33 @@ fn own_parameter(name: &str, given: TableToml, start: Start) -> OwnParameter {
     }
 }
 
-/// A joint of a file, for messages.
+/// A joint of a file, with what it may name.
 pub(super) struct JointReader<'a> {
-    pub(super) path: &'a Path,
-    pub(super) joint: &'a str,
+    pub(super) place: Place,
     pub(super) candidates: &'a [&'static dyn Effect],
 }
 
 impl JointReader<'_> {
     pub(super) fn joint(&self, joint: &JointToml) -> Result<JointModel, ModelError> {
         if joint.structure != "integrator" {
-            let (path, name) = (self.path.to_owned(), self.joint.to_owned());
-            let found = joint.structure.clone();
-            return Err(ModelError::Structure { path, joint: name, found });
+            let found = &joint.structure;
+            let problem = format!("structure `{found}` is not known; expected `integrator`");
+            return Err(self.place.error(problem));
         }
         let own = [("gain", f64::MIN, f64::MAX), ("delay", 0.0, f64::MAX)];
         let given = self.values("integrator", &own, &joint.parameters)?;
-        let needed = |index: usize, name| {
-            let (path, joint) = (self.path.to_owned(), self.joint.to_owned());
+        let needed = |index: usize, name: &str| {
             let value = given.get(index).copied().flatten();
-            value.ok_or(ModelError::MissingParameter { path, joint, name })
+            value.ok_or_else(|| self.place.error(format!("parameter `{name}` is missing")))
         };
         let mut model = JointModel::integrator(0.0, 0.0);
         (model.gain, model.delay) = (needed(0, "gain")?, needed(1, "delay")?);
-        check_size(self.path, || format!("joint `{}`", self.joint), &joint.effect)?;
+        check_size(&self.place, &joint.effect)?;
         for given in &joint.effect {
             let before: Vec<_> = model.components().iter().map(Component::effect).collect();
             model = model.with(self.component(given, &before)?);
         }
         Ok(model)
-    }
-
-    fn own(&self) -> Own<'_> {
-        Own { path: self.path, place: format!("joint `{}`", self.joint) }
     }
 
     /// An effect of the joint, which has those `before` it.
@@ -190,7 +173,7 @@ impl JointReader<'_> {
             Component::new(effect, or_neutral.collect()).unwrap_or(Component::neutral(effect));
         let parameters: Vec<f64> = component.parameters().iter().map(|value| value.value).collect();
         match effect.fault(&parameters) {
-            Some(fault) => Err(self.own().error(effect.spec().id, fault)),
+            Some(fault) => Err(of_effect(&self.place, effect.spec().id, fault)),
             None => Ok(component),
         }
     }
@@ -200,13 +183,13 @@ impl JointReader<'_> {
         given: &EffectToml,
         before: &[&'static dyn Effect],
     ) -> Result<&'static dyn Effect, ModelError> {
-        let effect = self.own().define(given, Start::InModel)?;
+        let effect = define(&self.place, given, Start::InModel)?;
         let id = effect.spec().id;
         if self.candidates.iter().any(|candidate| candidate.spec().id == id) {
             let problem = format!("is a candidate; write kind = \"{id}\", or rename one of them");
-            return Err(self.own().error(id, &problem));
+            return Err(of_effect(&self.place, id, &problem));
         }
-        self.own().check_unique(before, id)?;
+        check_unique(&self.place, before, id)?;
         Ok(effect)
     }
 
@@ -217,7 +200,7 @@ impl JointReader<'_> {
         if is_defined || expression.is_some() {
             let problem = "has a definition already: `id`, `summary`, `stage`, `expression` and \
                            `states` belong to kind = \"expression\"";
-            return Err(self.own().error(kind, problem));
+            return Err(of_effect(&self.place, kind, problem));
         }
         let is_own = |given: TableToml| given.neutral.is_some() || given.dimension.is_some();
         for (name, parameter) in parameters {
@@ -230,14 +213,11 @@ impl JointReader<'_> {
             } else {
                 continue;
             };
-            return Err(self.own().error(kind, &problem));
+            return Err(of_effect(&self.place, kind, &problem));
         }
-        let unknown = |source| ModelError::UnknownEffect {
-            path: self.path.to_owned(),
-            joint: self.joint.to_owned(),
-            source,
-        };
-        effect::find_among(kind, self.candidates).map_err(unknown)
+        effect::find_among(kind, self.candidates).map_err(|source| {
+            self.place.error_from("`tauscope effects` lists the catalogue", source)
+        })
     }
 
     /// The given values in the order of `known` (name, lowest, highest).
@@ -250,13 +230,9 @@ impl JointReader<'_> {
         let is_known = |name: &str| known.iter().any(|(known, _, _)| *known == name);
         if let Some(name) = given.keys().find(|name| !is_known(name)) {
             let names: Vec<_> = known.iter().map(|(name, _, _)| *name).collect();
-            return Err(ModelError::UnknownParameter {
-                path: self.path.to_owned(),
-                joint: self.joint.to_owned(),
-                owner: owner.to_owned(),
-                name: name.clone(),
-                known: names.join(", "),
-            });
+            let known = names.join(", ");
+            let problem = format!("`{owner}` has no parameter `{name}`; it has {known}");
+            return Err(self.place.error(problem));
         }
         let value = |(name, min, max): &(&str, f64, f64)| {
             let value = given.get(*name).and_then(|parameter| parameter.table().given());
@@ -272,23 +248,36 @@ impl JointReader<'_> {
         own: (f64, f64),
         value: Value,
     ) -> Result<Value, ModelError> {
-        // A limit that is no number is none of the two, and holds no value.
-        let tighter = |given: f64, own: f64, tighter: fn(f64, f64) -> f64| {
-            if given.is_nan() { given } else { tighter(given, own) }
-        };
-        let min = value.min.map_or(own.0, |min| tighter(min, own.0, f64::max));
-        let max = value.max.map_or(own.1, |max| tighter(max, own.1, f64::min));
+        for (key, limit) in [("min", value.min), ("max", value.max)] {
+            if limit.is_some_and(f64::is_nan) {
+                let problem = format!("`{owner}.{name}`: `{key}` is not a number; remove it");
+                return Err(self.place.error(problem));
+            }
+        }
+        let min = value.min.map_or(own.0, |min| min.max(own.0));
+        let max = value.max.map_or(own.1, |max| max.min(own.1));
         if (min..=max).contains(&value.value) {
             return Ok(value);
         }
-        Err(ModelError::OutOfBounds {
-            path: self.path.to_owned(),
-            joint: self.joint.to_owned(),
-            owner: owner.to_owned(),
-            name: name.to_owned(),
-            value: value.value,
-            min,
-            max,
-        })
+        let (written, allowed) = (plain(value.value), allowed(value.value, (min, max)));
+        Err(self.place.error(format!("`{owner}.{name}` = {written} is not {allowed}")))
     }
+}
+
+/// What a value may be.
+fn allowed(value: f64, (min, max): (f64, f64)) -> String {
+    if value.abs() > UNLIMITED && value.is_finite() {
+        return format!("between -{UNLIMITED:e} and {UNLIMITED:e}");
+    }
+    match (min > -UNLIMITED, max < UNLIMITED) {
+        (true, true) => format!("between {} and {}", plain(min), plain(max)),
+        (true, false) => format!("{} or more", plain(min)),
+        (false, true) => format!("{} or less", plain(max)),
+        (false, false) => "a finite number".to_owned(),
+    }
+}
+
+/// A number without rows of zeros.
+fn plain(value: f64) -> String {
+    if value.abs() < UNLIMITED { value.to_string() } else { format!("{value:e}") }
 }

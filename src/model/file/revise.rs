@@ -6,6 +6,7 @@
 use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike};
 
 use super::edit::{entries, is_empty, or_new, push, retain, set_text};
+use super::error::Place;
 use super::fitted::insert_errors;
 use super::parameter::{write_component, write_parameters};
 use super::schema::SCHEMA;
@@ -139,15 +140,16 @@ impl ModelFile {
         joint: &str,
         edit: impl FnOnce(&mut Table) -> Option<()>,
     ) -> Result<Self, ModelError> {
-        let mut document: DocumentMut = self.text.parse().map_err(|error| ModelError::Edit {
-            path: self.path.clone(),
-            source: Box::new(error),
-        })?;
+        let place = Place::file(&self.path);
+        let mut document: DocumentMut =
+            self.text.parse().map_err(|error| place.error_from("cannot be revised", error))?;
         if !document.contains_key("schema") {
             document.insert("schema", toml_edit::value(SCHEMA));
         }
-        let form = || ModelError::Form { path: self.path.clone(), joint: joint.to_owned() };
-        edit(document.as_table_mut()).ok_or_else(form)?;
+        edit(document.as_table_mut()).ok_or_else(|| {
+            Place::joint(&self.path, joint)
+                .error(format!("cannot be revised as it is written; write it as `[joint.{joint}]`"))
+        })?;
         Self::parse_with(&document.to_string(), &self.path, &self.others)
     }
 }
