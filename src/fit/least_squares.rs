@@ -92,6 +92,7 @@ fn fit_to(
     limits: Limits,
 ) -> Result<Fit, FitError> {
     let space = Space::of(model, range);
+    check_changes(record)?;
     check_record(record, &space)?;
     let slopes = record.training_samples() * space.free.len();
     let _turn = turn::wait_for(slopes);
@@ -202,6 +203,24 @@ pub fn assess(
     let assessment = Search::new(&training, model, &held, values).assessment(record);
     check_numbers(&assessment)?;
     Ok(assessment)
+}
+
+/// Whether both signals change: a gain is the one in parts of the other.
+fn check_changes(record: &FitRecord<'_>) -> Result<(), FitError> {
+    let trials = &record.joint().trials;
+    let changes = |signal: fn(&Trial) -> &[f64]| {
+        let mut values = trials.iter().flat_map(signal);
+        let first = values.next();
+        values.any(|value| first.is_some_and(|first| (*value - *first).abs() > 0.0))
+    };
+    for (name, signal) in
+        [("input", Trial::input as fn(&Trial) -> &[f64]), ("output", Trial::output)]
+    {
+        if !changes(signal) {
+            return Err(FitError::NeverChanges { signal: name });
+        }
+    }
+    Ok(())
 }
 
 /// Whether there are samples enough, and a model of them has parameters within their bounds.

@@ -104,7 +104,10 @@ impl fmt::Display for Termination {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Converged => "converged",
-            Self::NoDescent => "stopped at a kink of the error, where no step lowers it; another start may end lower",
+            Self::NoDescent => {
+                "stopped where no step lowers the error, which is not smooth there; another start may \
+                 end lower"
+            },
             Self::NothingToFit => "nothing to fit",
             Self::OutOfPatience => "stopped after too many simulations",
             Self::Numerical => "the simulation gave no numbers",
@@ -123,6 +126,12 @@ pub enum FitError {
         samples: usize,
         /// Parameters to fit.
         parameters: usize,
+    },
+    /// The input or the output has one value throughout.
+    #[error("its {signal} never changes: no model can be fitted to it")]
+    NeverChanges {
+        /// Which of them.
+        signal: &'static str,
     },
     /// What the model says is no number, or beyond what double precision can square.
     #[error(

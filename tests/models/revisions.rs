@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use tauscope::effect::expression::define;
 use tauscope::effect::{Definition, OwnParameter};
 use tauscope::effect::{Effect, Placebo, REGISTRY, Stage, find};
+use tauscope::experiment::Joint;
 use tauscope::model::{Component, JointModel, ModelFile, Revision, RevisionErrors, Value};
 
 fn parse(text: &str) -> ModelFile {
@@ -407,4 +408,25 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn a_model_is_refused_on_a_log_in_other_units() {
+    let text = "schema = \"tauscope/model/1\"\n[joint.boom]\nstructure = \"integrator\"\n\
+         parameters = { gain = 8.0, delay = 0.1 }\n[joint.boom.fitted]\nlogs = []\n\
+         input_unit = \"V\"\noutput_unit = \"deg\"\n";
+    let file = parse(text);
+    let logged = |units: [Option<&str>; 2]| {
+        let [input_unit, output_unit] = units.map(|unit| unit.map(str::to_owned));
+        let (name, covariates) = ("boom".to_owned(), Vec::new());
+        Joint { name, input_unit, output_unit, covariates, trials: [].into() }
+    };
+    for units in [[Some("V"), Some("deg")], [None, Some("deg")], [Some("V"), None]] {
+        assert!(file.check_units(&logged(units)).is_ok(), "{units:?}");
+    }
+    let refused = file.check_units(&logged([Some("V"), Some("rad")])).unwrap_err().to_string();
+    assert!(
+        refused.contains("its output was in deg") && refused.contains("is in rad"),
+        "{refused}"
+    );
 }

@@ -8,7 +8,7 @@ use super::read::{self, JointReader};
 use super::schema::{FileToml, JointToml, SCHEMA};
 use super::{Fitted, ModelError, Revision};
 use crate::effect::Effect;
-use crate::experiment::read_text;
+use crate::experiment::{Joint, read_text};
 use crate::model::JointModel;
 
 /// The models of several joints, read from a file.
@@ -136,6 +136,29 @@ impl ModelFile {
     /// What its numbers were fitted to; none of a model that was written by hand.
     pub fn fitted(&self, joint: &str) -> Option<&Fitted> {
         self.joints.get(joint)?.fitted.as_ref()
+    }
+
+    /// Checks that `joint` was logged in the units in which its model was fitted, where both say them.
+    ///
+    /// # Errors
+    /// [`ModelError`] with both: numbers of a model mean nothing in other units.
+    pub fn check_units(&self, joint: &Joint) -> Result<(), ModelError> {
+        let Some(fitted) = self.fitted(&joint.name) else { return Ok(()) };
+        let pairs = [
+            ("input", &fitted.input_unit, &joint.input_unit),
+            ("output", &fitted.output_unit, &joint.output_unit),
+        ];
+        for (signal, of_model, of_log) in pairs {
+            if let Some((of_model, of_log)) = of_model.as_ref().zip(of_log.as_ref())
+                && of_model != of_log
+            {
+                return Err(Place::joint(&self.path, &joint.name).error(format!(
+                    "its {signal} was in {of_model} when it was fitted, and is in {of_log} in the \
+                     log; convert that column, or fit a model to this log without `--model`"
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// Names of the joints, in order.
