@@ -30,7 +30,7 @@ use super::outcome::FitOutcome;
 use super::removal::{changed, fitted_with, replacements};
 use super::revision::Change;
 use super::workers::Workers;
-use crate::fit::{AssessedModel, Fit, FitRecord, fit_to_compare};
+use crate::fit::{AssessedModel, Fit, FitRecord};
 
 /// A model, and the one to which its effects were added.
 pub(super) struct Grown<'a, 'r> {
@@ -104,8 +104,8 @@ impl Grown<'_, '_> {
         // Which law a free form resembles is asked, though it leaves more.
         let resembling = workers.map(&changes(free), |change| {
             let model = changed(&self.whole.model, *change).into_iter().next()?;
-            let fit = fit_to_compare(self.record, &model, &self.record.range_for(&model)).ok()?;
-            Some((*change, FitOutcome::of(self.record, fit)))
+            let range = self.record.range_for(&model);
+            Some((*change, FitOutcome::fitted(self.record, &model, &range)?))
         });
         exchanged.extend(resembling.into_iter().flatten());
         exchanged
@@ -216,7 +216,7 @@ impl Grown<'_, '_> {
             return Some(self.first.clone());
         }
         let range = self.record.range_for(&model);
-        Some(FitOutcome::of(self.record, fit_to_compare(self.record, &model, &range).ok()?))
+        FitOutcome::fitted(self.record, &model, &range)
     }
 
     /// What the error is larger in `fit` than in the whole model, in parts of the misfit of the

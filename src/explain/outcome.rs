@@ -4,7 +4,11 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use super::misfit::Errors;
-use crate::fit::{AssessedModel, Assessment, Evaluation, Fit, FitRecord, Termination};
+use crate::effect::RecordRange;
+use crate::fit::{
+    AssessedModel, Assessment, Evaluation, Fit, FitRecord, Termination, fit_to_compare,
+};
+use crate::model::JointModel;
 
 /// A fitted model and its errors, without what it simulates.
 ///
@@ -36,6 +40,15 @@ impl FitOutcome {
         let errors = Errors::of(record, &fit);
         let Fit { assessment: Assessment { assessed, .. }, cost, termination } = fit;
         Self { assessed, cost, termination, errors, evaluation: None }
+    }
+
+    /// What a fit of `model` comes to; none where it cannot be fitted.
+    pub(super) fn fitted(
+        record: &FitRecord<'_>,
+        model: &JointModel,
+        range: &RecordRange<'_>,
+    ) -> Option<Self> {
+        Some(Self::of(record, fit_to_compare(record, model, range).ok()?))
     }
 
     /// The fit with its series on `record`, the one to which it was fitted.

@@ -12,8 +12,8 @@ use super::screening::fit_best;
 use super::workers::Workers;
 use crate::diagnosis::NEAR_NOISE;
 use crate::effect::{Effect, RecordRange};
-use crate::fit::{Fit, FitRecord, Part, fit_to_compare};
-use crate::model::Component;
+use crate::fit::{Fit, FitRecord, Part};
+use crate::model::{Component, JointModel};
 
 /// What is tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,14 +153,8 @@ impl<'a, 'r> Search<'a, 'r> {
 
     /// The candidates of `ranking` beside effects of a free form.
     fn beside_free_forms(&self, ranking: &[Candidate], workers: &impl Workers) -> Vec<Candidate> {
-        let with = |effect: &&'static dyn Effect| {
-            let model = self.base.model.with(Component::neutral(*effect));
-            let fit = fit_to_compare(self.record, &model, self.range).ok()?;
-            let fit = FitOutcome::of(self.record, fit);
-            Some(Extension { effects: vec![effect.spec().id], fit })
-        };
         let free = free_forms(self.record, &self.base.model, self.options);
-        let mut extensions: Vec<_> = workers.map(&free, with).into_iter().flatten().collect();
+        let mut extensions = self.with_each(&free, workers);
         extensions.extend(ranking.iter().map(Candidate::extension));
         self.compared(extensions)
     }
@@ -173,9 +167,22 @@ impl<'a, 'r> Search<'a, 'r> {
         if !effects.iter().all(is_allowed) {
             return None;
         }
-        let fit = fit_to_compare(self.record, &model, self.range).ok()?;
-        let fit = FitOutcome::of(self.record, fit);
-        (fit.cost < self.base.cost).then_some(Extension { effects, fit })
+        self.extended(effects, &model).filter(|one| one.fit.cost < self.base.cost)
+    }
+
+    /// The base with each of `effects`, fitted.
+    fn with_each(&self, effects: &[&'static dyn Effect], workers: &impl Workers) -> Vec<Extension> {
+        let with = |effect: &&'static dyn Effect| {
+            let model = self.base.model.with(Component::neutral(*effect));
+            self.extended(vec![effect.spec().id], &model)
+        };
+        workers.map(effects, with).into_iter().flatten().collect()
+    }
+
+    /// `model`, which is the base with these `effects` more, fitted.
+    fn extended(&self, effects: Vec<&'static str>, model: &JointModel) -> Option<Extension> {
+        let fit = FitOutcome::fitted(self.record, model, self.range)?;
+        Some(Extension { effects, fit })
     }
 
     /// Whether one of `extensions` comes near the noise.
@@ -192,15 +199,10 @@ impl<'a, 'r> Search<'a, 'r> {
     /// The finer forms that leave much less than all of `extensions`: a limit that only one direction
     /// reaches is hardly seen as one of both.
     fn refined(&self, extensions: &[Extension], workers: &impl Workers) -> Vec<Extension> {
-        let with = |effect: &&'static dyn Effect| {
-            let model = self.base.model.with(Component::neutral(*effect));
-            let fit = fit_to_compare(self.record, &model, self.range).ok()?;
-            let fit = FitOutcome::of(self.record, fit);
-            Some(Extension { effects: vec![effect.spec().id], fit })
-        };
         let limit = MUCH_LESS * Self::least_error(extensions);
-        let fitted = workers.map(&self.refinements, with).into_iter().flatten();
-        fitted.filter(|one| one.fit.errors.seen.is_some_and(|error| error < limit)).collect()
+        let mut refined = self.with_each(&self.refinements, workers);
+        refined.retain(|one| one.fit.errors.seen.is_some_and(|error| error < limit));
+        refined
     }
 
     /// The base with each step's own delay as it was measured, where these differ: delays may follow any
@@ -213,9 +215,7 @@ impl<'a, 'r> Search<'a, 'r> {
         if record.measured_delays(&model) == 0 || !record.delays_differ() {
             return None;
         }
-        let fit = fit_to_compare(record, &model, self.range).ok()?;
-        let fit = FitOutcome::of(record, fit);
-        Some(Extension { effects: vec![id], fit })
+        self.extended(vec![id], &model)
     }
 
     fn compared(&self, extensions: Vec<Extension>) -> Vec<Candidate> {

@@ -15,13 +15,14 @@ use super::judgement::Refusal;
 use super::misfit::{Errors, Misfit};
 use super::options::{Options, Tried};
 use super::ranking::{Scope, rank, rank_free_forms};
-use super::removal::{Exchange, Removal};
+use super::removal::Removal;
 use super::revision::Change;
 use super::verdict::Verdict;
 use super::workers::Workers;
 use crate::delay::are_strokes;
 use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, LackOfFit, lack_of, sensor_noise};
 use crate::fit::{Fit, FitRecord, fit_to_compare};
+use crate::model::JointModel;
 
 /// A model on the way.
 #[derive(Clone, Debug)]
@@ -165,7 +166,9 @@ pub(super) fn add_stepwise(
             let verdict = if explained { Verdict::MissingEffect } else { Verdict::Unexplained };
             return ended(verdict, step.fit, !goes_on);
         };
-        if let Some(alone) = first_of_pair(record, &found) {
+        if let [first, second] = found.effects[..]
+            && let Some(alone) = on_the_way(record, Change::Added(first), &found.fit.model, second)
+        {
             step = alone;
             if !visit(&step) {
                 return ended(Verdict::MissingEffect, step.fit, true);
@@ -211,7 +214,8 @@ fn exchanged(
     visit: &mut impl FnMut(&Step) -> bool,
 ) -> ControlFlow<Ended, Step> {
     while let Some((exchange, fit)) = removal.better(record, &step.fit, workers) {
-        let between = first_of_exchange(record, exchange, &fit);
+        let first = |second| on_the_way(record, exchange.change, &fit.model, second);
+        let between = exchange.then.and_then(first);
         let then = exchange.then.filter(|_| between.is_some());
         let change = then.map_or(exchange.change, Change::Added);
         for next in between.into_iter().chain([Step::new(record, change, fit)]) {
@@ -231,17 +235,15 @@ fn exchanged(
     ControlFlow::Continue(step)
 }
 
-/// The model with the first of two effects that took another's place: a step on the way.
-fn first_of_exchange(record: &FitRecord<'_>, exchange: Exchange, whole: &Fit) -> Option<Step> {
-    let model = whole.model.without(exchange.then?);
+/// The model of `whole` without the `second` of two effects: a step on the way to both, after `change`,
+/// which need not be better.
+fn on_the_way(
+    record: &FitRecord<'_>,
+    change: Change,
+    whole: &JointModel,
+    second: &str,
+) -> Option<Step> {
+    let model = whole.without(second);
     let fit = fit_to_compare(record, &model, &record.range_for(&model)).ok()?;
-    Some(Step::new(record, exchange.change, fit))
-}
-
-/// The model with the first effect of a pair alone: a step on the way, which need not be better.
-fn first_of_pair(record: &FitRecord<'_>, found: &Candidate) -> Option<Step> {
-    let [first, second] = found.effects.as_slice() else { return None };
-    let model = found.fit.model.without(second);
-    let fit = fit_to_compare(record, &model, &record.range_for(&model)).ok()?;
-    Some(Step::new(record, Change::Added(first), fit))
+    Some(Step::new(record, change, fit))
 }
