@@ -96,7 +96,7 @@ fn fit_to(
     check_record(record, &space)?;
     let slopes = record.training_samples() * space.free.len();
     let _turn = turn::wait_for(slopes);
-    let (training, short) = (record.for_training(), record.thinned().shortened());
+    let (training, short) = (record.for_training(), record.shortened());
     let searches = rough(&short, Some(&training), model, &space, range).into_iter();
     let finished = searches.map(|s| s.across_flats().onto(&training).descended(limits));
     let best = finished.min_by(|a, b| a.cost.total_cmp(&b.cost));
