@@ -2,15 +2,15 @@
 
 use std::iter::once;
 
-use rerun::log::LogMsg;
-use rerun::{ApplicationId, EntityPath};
+use rerun::EntityPath;
 
 use super::beside::{Other, weight};
+use super::blueprint::Blueprint;
 use super::chunk::{Chunks, Index, Moment, Opening};
 use super::content::{Content, Growth, Tab, hashed, name_of};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
-use super::paths::{self, against, at, drawing, joint_root, map};
+use super::paths::{self, at, joint_root};
 use super::recorded::Recording;
 use super::{
     about, decisions, delay_state, difference, doubt, headline, model, overview, place, revision,
@@ -61,9 +61,9 @@ impl<'a> Content for Recording<'a> {
         recording_id(self)
     }
 
-    fn add_about(&self, chunks: &mut Chunks) -> Result<(), RecordError> {
+    fn about(&self) -> String {
         let layouts: Vec<_> = self.layouts(Growth::Finished).map(|(_, layout)| layout).collect();
-        about::add(chunks, self, &layouts)
+        about::page(self, &layouts)
     }
 
     fn tabs(&self, growth: Growth) -> Vec<Tab<'_>> {
@@ -78,13 +78,8 @@ impl<'a> Content for Recording<'a> {
         self.layouts(growth).map(tab).collect()
     }
 
-    fn views(
-        &self,
-        growth: Growth,
-        application: &ApplicationId,
-        id: &str,
-    ) -> Result<Vec<LogMsg>, RecordError> {
-        views::messages(self, growth, application, id)
+    fn blueprint(&self, growth: Growth) -> Blueprint {
+        views::blueprint(self, growth)
     }
 
     fn views_in_words(&self, growth: Growth) -> String {
@@ -129,7 +124,7 @@ fn add_joint(
 
 /// The first sample of all, where no step begins at it.
 fn first_sample(layout: &JointLayout<'_>) -> Option<Moment> {
-    let first = layout.trials.first().and_then(|trial| trial.moments(1).next())?;
+    let first = layout.start()?;
     let mut steps = layout.segments().map(|(trial, segment)| trial.opening(segment).sample);
     steps.all(|step| step > first.sample).then_some(first)
 }
@@ -144,29 +139,28 @@ fn open_on_the_first(
     first_sample: Option<Moment>,
 ) -> Result<(), RecordError> {
     let Some(segment) = layout.shown_first() else { return Ok(()) };
-    let [map, large] = [map::ROOT, map::LARGE].map(|root| format!("{root}/{}", map::HERE));
-    let [here, step] = [against::HERE, against::STEP].map(|p| format!("{}/{p}", against::ROOT));
     let shown = [
-        (drawing::ROOT, ""),
-        (map.as_str(), ""),
-        (large.as_str(), ""),
-        (here.as_str(), ""),
-        (step.as_str(), ""),
+        (paths::DRAWING, ""),
+        ("map/here", ""),
+        ("map_of_record/here", ""),
+        ("against/here", ""),
+        ("against/step", ""),
         (paths::VERDICT, "TextDocument"),
     ];
     // On the timeline of differences the first tick is this decision's own.
     let index = Index::before_all(Opening { is_compared: false, ..layout.first });
     let index = match first_sample {
-        Some(start) => index.and_at(start),
+        Some(Moment { sample, time_ns, .. }) => {
+            index.all_at("sample", Some(sample)).all_at("time", Some(time_ns))
+        }
         None => index,
     };
     for (path, component) in shown {
         chunks.repeat((&at(root, path), component), segment.opening, &index)?;
     }
     let candidates = segment.opening + 1..=segment.verdict();
-    for path in [drawing::CANDIDATE, drawing::CANDIDATE_MARK] {
-        let path = at(root, &format!("{}/{path}", drawing::ROOT));
-        chunks.replay(&path, candidates.clone(), layout.first.tick + 1)?;
+    for path in ["drawing/candidate", "drawing/candidate/mark"] {
+        chunks.replay(&at(root, path), candidates.clone(), layout.first.tick + 1)?;
     }
     Ok(())
 }

@@ -1,10 +1,16 @@
 //! What goes into a file or to a viewer, whatever it is about.
 
-use rerun::ApplicationId;
+use rerun::external::re_log_types::external::re_tuid::Tuid;
+use rerun::external::re_log_types::{
+    BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource,
+};
 use rerun::log::{Chunk, LogMsg};
+use rerun::{ApplicationId, EntityPath, RecordingInfo, StoreId};
 
+use super::blueprint::Blueprint;
 use super::chunk::{Chunks, Ids};
 use super::error::RecordError;
+use super::paths::ABOUT;
 use crate::experiment::{Joint, Source};
 
 /// Who takes the chunks as they are made.
@@ -34,22 +40,19 @@ pub(super) trait Content {
     /// Equal for equal content: see [`hashed`].
     fn id(&self) -> String;
 
-    /// Adds the page on the whole recording.
-    fn add_about(&self, chunks: &mut Chunks) -> Result<(), RecordError>;
+    /// The page on the whole recording.
+    fn about(&self) -> String;
 
     /// The joints in the order of their tabs.
     fn tabs(&self, growth: Growth) -> Vec<Tab<'_>>;
 
-    /// The messages of its blueprint.
-    fn views(
-        &self,
-        growth: Growth,
-        application: &ApplicationId,
-        id: &str,
-    ) -> Result<Vec<LogMsg>, RecordError>;
+    /// What the viewer shows of it.
+    fn blueprint(&self, growth: Growth) -> Blueprint;
 
-    /// What decides which views there are.
-    fn views_in_words(&self, growth: Growth) -> String;
+    /// What decides which views there are, for one that grows.
+    fn views_in_words(&self, _: Growth) -> String {
+        String::new()
+    }
 }
 
 /// Makes the chunks of `content` joint by joint, so that only one joint's are in memory;
@@ -61,7 +64,7 @@ pub(super) fn for_each_chunk(
 ) -> Result<u64, RecordError> {
     let mut chunks = part.ids.chunks(part.used + 2);
     if part.joint.is_none() {
-        content.add_about(&mut chunks)?;
+        chunks.page(EntityPath::from(ABOUT), content.about())?;
     }
     let tabs = content.tabs(part.growth);
     let taken = tabs.len() as u64 + 1;
@@ -72,6 +75,28 @@ pub(super) fn for_each_chunk(
     }
     chunks.into_chunks().iter().try_for_each(take)?;
     Ok(taken)
+}
+
+/// The messages of the views of `content`, the last of which makes the viewer show them.
+pub(super) fn view_messages(
+    content: &dyn Content,
+    growth: Growth,
+    (application, id): (&ApplicationId, &str),
+) -> Result<Vec<LogMsg>, RecordError> {
+    let mut messages = content.blueprint(growth).messages(application, id)?;
+    let views = messages.first().map(|message| message.store_id().clone());
+    messages.extend(views.map(|views| LogMsg::from(activation(views))));
+    Ok(messages)
+}
+
+/// The first messages of a recording: what it is, and its name.
+pub(super) fn first_messages(store: &StoreId, name: String) -> Result<Vec<LogMsg>, RecordError> {
+    let mut chunks = Ids::of(store.recording_id().as_str()).chunks(1);
+    let info = RecordingInfo::new().with_name(name);
+    chunks.push_static(EntityPath::properties(), &info)?;
+    let chunks = chunks.into_chunks();
+    let messages = chunks.iter().map(|chunk| chunk_message(store, chunk));
+    std::iter::once(Ok(store_message(store))).chain(messages).collect()
 }
 
 /// Which of a recording's chunks are made, and which ids they have.
@@ -147,4 +172,23 @@ pub(super) fn hashed<'a>(
     part(env!("CARGO_PKG_VERSION"));
     let digest = base16ct::lower::encode_string(&hash.finalize());
     digest.chars().take(32).collect()
+}
+
+/// What a store is and who made it: the first message of each.
+pub(super) fn store_message(store: &StoreId) -> LogMsg {
+    let info = StoreInfo::new(
+        store.clone(),
+        StoreSource::Other(format!("tauscope {}", env!("CARGO_PKG_VERSION"))),
+    );
+    LogMsg::SetStoreInfo(SetStoreInfo { row_id: Tuid::from_nanos_and_inc(1, 0), info })
+}
+
+/// A chunk of a store.
+pub(super) fn chunk_message(store: &StoreId, chunk: &Chunk) -> Result<LogMsg, RecordError> {
+    Ok(LogMsg::ArrowMsg(store.clone(), chunk.to_arrow_msg()?))
+}
+
+/// What makes the viewer show a blueprint that it has been sent.
+pub(super) fn activation(blueprint_id: StoreId) -> BlueprintActivationCommand {
+    BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true }
 }

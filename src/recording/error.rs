@@ -36,12 +36,6 @@ pub enum RecordError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// A bug: an address of this machine is none to the server.
-    #[error("{address}: viewers cannot be served there")]
-    NotServed {
-        /// Where.
-        address: std::net::SocketAddr,
-    },
     /// The viewer went away.
     #[error("the viewer at {url} went away, and what was sent last may be lost")]
     Lost {

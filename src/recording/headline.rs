@@ -1,6 +1,6 @@
 //! What was found of a joint, what is doubtful, what to do next: a strip above its decisions.
 
-use rerun::{EntityPath, TextDocument};
+use rerun::EntityPath;
 
 use super::chunk::Chunks;
 use super::error::RecordError;
@@ -18,8 +18,7 @@ pub(super) fn add(
     estimated: EstimatedJoint<'_>,
     (layout, sources): (&JointLayout<'_>, &[Source]),
 ) -> Result<(), RecordError> {
-    let text = text(estimated, layout, sources);
-    chunks.push_static(at(root, paths::HEADLINE), &TextDocument::from_markdown(text))
+    chunks.page(at(root, paths::HEADLINE), text(estimated, layout, sources))
 }
 
 fn text(estimated: EstimatedJoint<'_>, layout: &JointLayout<'_>, sources: &[Source]) -> String {

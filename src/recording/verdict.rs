@@ -2,12 +2,12 @@
 
 use std::iter::once;
 
-use rerun::{Color, EntityPath, StateChange, StateConfiguration, TextDocument, TextLog};
+use rerun::{Color, EntityPath, StateConfiguration};
 
-use super::beside::{Other, decided_row, row};
+use super::beside::{Other, Shown};
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
-use super::layout::{JointLayout, SegmentLayout, TrialLayout};
+use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths::{self, at};
@@ -34,13 +34,6 @@ pub(super) fn add(
         let methods = methods(trial, segment, settings, others);
         document(Facts { joint, trial, segment, settings, typical: typical.as_deref() }, &methods)
     };
-    let texts: Vec<String> = segments.iter().map(text).collect();
-    let markdown = std::iter::repeat_n("text/markdown", texts.len());
-    let documents =
-        TextDocument::update_fields().with_many_text(texts).with_many_media_type(markdown);
-    let verdict = |(_, segment): &Placed<'_, '_>| segment.decision.verdict().to_string();
-    let states: Vec<String> = segments.iter().map(verdict).collect();
-    let states = StateChange::new().with_state(states).columns_of_unit_batches()?;
     let entity = at(root, paths::VERDICT);
     if segments.is_empty() {
         let name = plain(&joint.name);
@@ -57,10 +50,11 @@ pub(super) fn add(
             }
             [moves] => format!("### {name}\n- {moves}\n"),
         };
-        chunks.push_static(entity.clone(), &TextDocument::from_markdown(text))?;
+        chunks.page(entity.clone(), text)?;
     }
-    let columns = documents.columns_of_unit_batches()?.chain(states);
-    chunks.push(entity.clone(), opening.clone(), columns)?;
+    let states = segments.iter().map(|(_, segment)| segment.decision.verdict().to_string());
+    chunks.pages(entity.clone(), opening.clone(), segments.iter().map(text))?;
+    chunks.states(entity.clone(), opening.clone(), states)?;
     chunks.push_static(entity, &lane_colors())?;
     add_log(chunks, root, joint, (&segments, layout.last_revision))?;
     add_lanes(chunks, root, layout, &segments, opening)
@@ -77,8 +71,6 @@ fn lane_colors() -> StateConfiguration {
     StateConfiguration::new().with_values(values).with_labels(labels).with_colors(colors)
 }
 
-type Placed<'l, 'a> = (&'l TrialLayout<'a>, &'l SegmentLayout<'a>);
-
 /// One line per segment, at its opening tick: a click on it goes there, and the right arrow then to
 /// its candidates.
 fn add_log(
@@ -88,13 +80,14 @@ fn add_log(
     (segments, last_revision): (&[Placed<'_, '_>], Option<i64>),
 ) -> Result<(), RecordError> {
     let index: Index = segments.iter().map(|(trial, segment)| trial.opening(segment)).collect();
-    let lines: Vec<_> = segments.iter().map(|(t, s)| log_line(joint, t, s)).collect();
     // On the timeline of revisions, too, where a click leads away from.
-    let index = index.at_revision(last_revision);
-    let accepted = |segment: &SegmentLayout<'_>| segment.decision.verdict() == Verdict::Accepted;
-    let levels = segments.iter().map(|(_, s)| if accepted(s) { "INFO" } else { "WARN" });
-    let log = TextLog::update_fields().with_many_text(lines).with_many_level(levels);
-    chunks.push(at(root, paths::VERDICT_LOG), index, log.columns_of_unit_batches()?)
+    let index = index.all_at("revision", last_revision);
+    let level = |segment: &SegmentLayout<'_>| match segment.decision.verdict() {
+        Verdict::Accepted => "INFO",
+        Verdict::Rejected(_) => "WARN",
+    };
+    let lines = segments.iter().map(|(t, s)| (Some(level(s)), log_line(joint, t, s)));
+    chunks.lines(at(root, paths::VERDICT_LOG), index, lines)
 }
 
 fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
@@ -113,26 +106,13 @@ fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>)
     format!("{step}  {verdict}   ({at}{found}; doubt {doubt})")
 }
 
-/// Which step of which trial it is.
-pub(super) fn step_of(
-    joint: &Joint,
-    trial: &TrialLayout<'_>,
-    segment: &SegmentLayout<'_>,
-) -> String {
-    let number = segment.decision.number;
-    match joint.trials.len() {
-        1 => format!("step {number}"),
-        _ => format!("{}, step {number}", trial.trial.label()),
-    }
-}
-
 /// A step and its verdict.
 pub(super) fn in_short(
     joint: &Joint,
     trial: &TrialLayout<'_>,
     segment: &SegmentLayout<'_>,
 ) -> String {
-    format!("{} {}", step_of(joint, trial, segment), verdict(trial, segment.decision))
+    format!("{} {}", trial.step_of(joint, segment), verdict(trial, segment.decision))
 }
 
 fn verdict(trial: &TrialLayout<'_>, decision: &Decision) -> String {
@@ -175,20 +155,13 @@ fn add_lanes(
     let style = StateConfiguration::new().with_values(names.clone()).with_colors(greys);
     let entity = at(root, paths::SEGMENT);
     chunks.push_static(entity.clone(), &style)?;
-    chunks.push(
-        entity,
-        opening,
-        StateChange::new().with_state(names).columns_of_unit_batches()?,
-    )?;
-    let revision = layout.first.revision.into_iter();
+    chunks.states(entity.clone(), opening, names)?;
     let hint = ["along decision, segment, sample or time: choose it at the bottom left"];
-    let hint = StateChange::new().with_state(hint).columns_of_unit_batches()?;
     // On the timeline of revisions the lane has nothing else.
-    chunks.push_revisions(at(root, paths::SEGMENT), revision.collect(), hint)?;
+    chunks.states(entity, Index::on("revision", layout.first.revision), hint)?;
     let starts = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
-    let labels: Vec<_> = layout.trials.iter().map(|trial| trial.trial.label().to_owned()).collect();
-    let states = StateChange::new().with_state(labels).columns_of_unit_batches()?;
-    chunks.push(at(root, paths::TRIAL), starts.collect(), states)
+    let labels = layout.trials.iter().map(|trial| trial.trial.label());
+    chunks.states(at(root, paths::TRIAL), starts.collect(), labels)
 }
 
 /// The page beside the drawing: verdict first, then what it was made of.
@@ -245,12 +218,14 @@ fn methods(
     others: &[Other<'_>],
 ) -> String {
     let (label, p) = (trial.trial.label(), segment.decision.input_step.sample);
-    let found = |other: &Other<'_>| Some(row(&plain(other.name), &other.pair(label, p)?.there));
+    let found = |other: &Other<'_>| {
+        Some(Shown::there(&other.pair(label, p)?.there).row(&plain(other.name)))
+    };
     let others: Vec<String> = others.iter().filter_map(found).collect();
     if others.is_empty() {
         return String::new();
     }
-    let first = decided_row(&format!("{}, here", settings.method), segment.decision);
+    let first = Shown::of(segment.decision).row(&format!("{}, here", settings.method));
     let others = others.join("\n");
     format!("\n| result | δ, samples | verdict |\n|---|---|---|\n{first}\n{others}\n")
 }
@@ -279,7 +254,7 @@ impl Facts<'_, '_> {
         if self.joint.trials.len() < 2 {
             return in_trial;
         }
-        let joined = self.trial.time_ns(sample) as f64 * 1e-9;
+        let joined = self.trial.seconds(sample);
         format!("{in_trial} of the trial; {} = {joined:.3} s in a row", self.trial.sample(sample))
     }
 

@@ -9,21 +9,20 @@ use crate::explain::{Change, Revision};
 use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
+use crate::recording::layers::Layers;
 use crate::recording::palette::{self, color};
-use crate::recording::paths::revision::sheet;
-use crate::recording::rows::Rows;
 use crate::recording::rungs::{self, Rung};
 use crate::report::{ImprovedJoint, change_in_words};
 
 const COLUMNS: Columns = Columns { left: 0.0, names: (300.0, 370.0), right: 630.0 };
 
 /// Adds the ladder, the revision at hand being bright.
-pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(), RecordError> {
+pub(super) fn add(rows: &mut Layers<'_>, improved: &ImprovedJoint<'_>) -> Result<(), RecordError> {
     let ladder = Ladder::of(improved);
     let count = improved.revisions.len();
-    rows.colored(sheet::LADDER, HATCH, (0..count).map(|at| ladder.bars(at)))?;
+    rows.colored("ladder", HATCH, (0..count).map(|at| ladder.bars(at)))?;
     let marks = ladder.training();
-    rows.strips(sheet::TRAINING, palette::BORDER, 1.6, (0..count).map(|_| marks.clone()))
+    rows.strips("training", palette::BORDER, 1.6, (0..count).map(|_| marks.clone()))
 }
 
 /// Lines of names that there is room for, one below another.

@@ -9,16 +9,15 @@ use crate::explain::{Candidate, Revision, Verdict};
 use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
+use crate::recording::layers::Layers;
 use crate::recording::palette::{self, Rgb, color};
-use crate::recording::paths::revision::sheet;
-use crate::recording::rows::Rows;
 use crate::recording::rungs::judged;
 use crate::report::{ImprovedJoint, change_in_words};
 
 const COLUMNS: Columns = Columns { left: 1270.0, names: (1570.0, 1660.0), right: 1890.0 };
 
 /// Adds the bars of all revisions: the model as it is, then each candidate.
-pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(), RecordError> {
+pub(super) fn add(rows: &mut Layers<'_>, improved: &ImprovedJoint<'_>) -> Result<(), RecordError> {
     let of_each = improved.revisions.iter().enumerate().map(|(at, revision)| {
         let all = tried(improved, at);
         let bars = bars_of(revision, &all);
@@ -35,7 +34,7 @@ pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(
             own.chain(candidates).enumerate().flat_map(bar).collect();
         all
     });
-    rows.colored(sheet::RANKING, HATCH, of_each.collect::<Vec<_>>().into_iter())
+    rows.colored("ranking", HATCH, of_each.collect::<Vec<_>>().into_iter())
 }
 
 /// The line of the noise and the texts of the ranking at a revision.

@@ -14,9 +14,6 @@ use crate::report::level_text;
 /// Rows and columns that a picture may have; of those that share one, the farthest is seen.
 const MOST: usize = 2000;
 
-/// How high above its plot a title is put.
-pub(super) const TITLE: f32 = 44.0;
-
 /// Combinations that follow one another and have the same values of the slowest settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Block {

@@ -1,6 +1,6 @@
 //! A joint over all settings, as it is recorded.
 
-use super::recorded::SweepRecording;
+use super::recording::SweepRecording;
 use crate::delay::sweep::{Agreement, Grid, ReportedDelay, SweptStep};
 use crate::experiment::Trial;
 use crate::recording::chunk::Index;
@@ -33,13 +33,11 @@ impl<'a> Swept<'a> {
         let trial_of = |step: &SweptStep| trials.iter().find(|trial| trial.label() == step.trial);
         let steps = reported.sweep.steps.iter();
         let steps: Vec<_> = steps.filter_map(|step| Some((step, trial_of(step)?))).collect();
-        let mut index = Index::default();
-        for ((step, trial), number) in steps.iter().zip(1..) {
-            let start = starts.of_trial(trial);
-            index.segment.push(number);
-            index.sample.push(start.sample(step.sample));
-            index.time_ns.push(start.time_ns(trial, step.sample));
-        }
+        let start = |trial: &Trial| starts.of_trial(trial);
+        let samples = steps.iter().map(|(step, trial)| start(trial).sample(step.sample));
+        let times = steps.iter().map(|(step, trial)| start(trial).time_ns(trial, step.sample));
+        let index = Index::on("segment", (1..).take(steps.len()));
+        let index = index.with("sample", samples).with("time", times);
         let mut votes = vec![0; grid.runs().len()];
         for one in grid.combinations() {
             votes.get_mut(one.run).into_iter().for_each(|votes| *votes += 1);
@@ -50,7 +48,7 @@ impl<'a> Swept<'a> {
 
     /// A tick per run.
     pub(super) fn settings(&self) -> Index {
-        Index::of_settings(self.names.len())
+        Index::on("setting", (1..).take(self.names.len()))
     }
 
     /// What a run reports of a step.
