@@ -6,7 +6,7 @@ use super::layout::{Detail, JointLayout};
 use super::markdown::{plain, prose};
 use super::origin::made_from;
 use super::recorded::Recording;
-use crate::recording::rungs::judged;
+use super::revision::judged;
 use crate::report::{
     EstimatedJoint, JointSummary, LEVEL_HEADER, ReviewCount, SUMMARY_HEADER, change_in_words,
     chosen_line, dead_time_sentences, doubtful_lines, kind_sentence, level_cells, settings_rows,

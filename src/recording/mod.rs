@@ -50,7 +50,6 @@ mod place;
 mod preview;
 mod recorded;
 mod revision;
-mod rungs;
 mod scatter;
 mod segment_view;
 mod shaded;

@@ -2,9 +2,7 @@
 
 use rerun::datatypes::Vec2D;
 
-use crate::diagnosis::sensor_noise;
 use crate::recording::canvas::{HALF_LETTER, Labels, Plot, Span, Strips};
-use crate::report::ImprovedJoint;
 
 /// Left, right and lower end of the plot on the sheet.
 const PLACE: ((f32, f32), f32) = ((760.0, 1235.0), 450.0);
@@ -33,11 +31,6 @@ pub(super) struct Held {
     pub(super) fell: bool,
     /// What the revision makes of the speed, where that is a point of its own.
     pub(super) simulated: Option<f64>,
-}
-
-/// The noise of the sensor, from the record alone: one for all revisions.
-pub(super) fn noise(improved: &ImprovedJoint<'_>) -> Option<f64> {
-    sensor_noise(&improved.finding.compared.joint.trials)
 }
 
 /// Level of the input, and the speed that a model makes of it.

@@ -3,7 +3,7 @@
 use rerun::{EntityPath, TextDocument};
 
 use super::figure::Held;
-use super::{evidence, ladder, ranking, record, words};
+use super::{evidence, ladder, record, words};
 use crate::diagnosis::Comparison;
 use crate::explain::{Change, Revision};
 use crate::recording::canvas::Labels;
@@ -59,7 +59,6 @@ pub(in crate::recording) fn add(
     steps.evidence(&evidence)?;
     let mut rows = steps.layers(paths::REVISION_SHEET);
     ladder::add(&mut rows, improved)?;
-    ranking::add(&mut rows, improved)?;
     evidence::add(&mut rows, &evidence)?;
     around(&mut rows, improved, &evidence)?;
     steps.shares(improved)
@@ -76,10 +75,8 @@ fn around(
     for at in 0..improved.revisions.len() {
         let (grid, mut labels) = evidence.sheet(at).into_parts();
         let mut floor = Labels::default();
-        let mut lines = ladder::around(improved, at, &mut labels, &mut floor);
-        lines.extend(ranking::around(improved, at, &mut labels, &mut floor));
+        noise.push(ladder::around(improved, at, &mut labels, &mut floor));
         grids.push(grid);
-        noise.push(lines);
         names.push(floor);
         texts.push(labels);
     }

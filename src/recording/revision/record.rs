@@ -5,6 +5,7 @@ use std::ops::{Range, RangeInclusive};
 use crate::diagnosis::failure::WorstSegment;
 use rerun::datatypes::Vec2D;
 
+use super::ladder::judged;
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
 use crate::recording::canvas::{Plot, SHEET, Span, Strips};
@@ -13,7 +14,6 @@ use crate::recording::error_share::{HATCH, short};
 use crate::recording::layers::{Ink, Layers};
 use crate::recording::layout::{JointLayout, TrialLayout};
 use crate::recording::palette;
-use crate::recording::rungs::judged;
 use crate::recording::shaded::{Spans, areas, condition, validation, where_it_fails};
 use crate::recording::sheet::Sheet;
 use crate::report::MANY_TIMES_NOISE;
