@@ -2,15 +2,13 @@
 
 use std::iter::once;
 
-use rerun::EntityPath;
-
 use super::beside::{Other, weight};
 use super::blueprint::Blueprint;
 use super::chunk::{Chunks, Index, Moment, Opening};
 use super::content::{Content, Growth, Tab, hashed, name_of};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
-use super::paths::{self, at, joint_root};
+use super::paths;
 use super::recorded::Recording;
 use super::{
     about, decisions, delay_state, difference, doubt, headline, model, overview, place, revision,
@@ -73,7 +71,7 @@ impl<'a> Content for Recording<'a> {
                 layout.rank_by_difference(|label, p| weight(&others, label, p));
             }
             let add = move |chunks: &mut Chunks| add_joint(chunks, self, joint, (&layout, &others));
-            Tab { joint: &joint.joint.name, add: Box::new(add) }
+            Tab { joint: Some(&joint.joint.name), add: Box::new(add) }
         };
         self.layouts(growth).map(tab).collect()
     }
@@ -94,30 +92,29 @@ fn add_joint(
     (layout, others): (&JointLayout<'_>, &[Other<'_>]),
 ) -> Result<(), RecordError> {
     let joint = estimated.joint;
-    let root = joint_root(&joint.name);
-    place::add(chunks, &root, layout)?;
-    headline::add(chunks, &root, estimated, (layout, recording.sources))?;
-    signals::add(chunks, &root, joint, layout)?;
-    decisions::add(chunks, &root, joint, layout)?;
-    verdict::add(chunks, &root, estimated, layout, others)?;
-    segment_view::add(chunks, &root, joint, layout, (recording.settings.method, others))?;
-    overview::add(chunks, &root, joint, layout)?;
-    delay_state::add(chunks, &root, estimated, layout)?;
-    doubt::add(chunks, &root, joint, layout)?;
-    difference::add(chunks, &root, joint, layout, others)?;
+    place::add(chunks, layout)?;
+    headline::add(chunks, estimated, (layout, recording.sources))?;
+    signals::add(chunks, joint, layout)?;
+    decisions::add(chunks, joint, layout)?;
+    verdict::add(chunks, estimated, layout, others)?;
+    segment_view::add(chunks, joint, layout, (recording.settings.method, others))?;
+    overview::add(chunks, joint, layout)?;
+    delay_state::add(chunks, estimated, layout)?;
+    doubt::add(chunks, joint, layout)?;
+    difference::add(chunks, joint, layout, others)?;
     let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
     let models: Vec<_> = models.collect();
     let first_sample = first_sample(layout).filter(|_| !models.is_empty());
-    open_on_the_first(chunks, &root, layout, first_sample)?;
+    open_on_the_first(chunks, layout, first_sample)?;
     let revisions = recording.revisions_of(joint);
     // Of several revisions the last one is what there is to judge.
     let judged = if revisions.is_some() { models.last() } else { models.first() };
     if let Some(judged) = judged {
-        model::add(chunks, &root, layout, &models, judged)?;
+        model::add(chunks, layout, &models, judged)?;
     }
     match (revisions, judged) {
-        (Some(improved), _) => revision::add(chunks, &root, layout, improved),
-        (None, Some(judged)) => model::add_map(chunks, &root, layout, judged),
+        (Some(improved), _) => revision::add(chunks, layout, improved),
+        (None, Some(judged)) => model::add_map(chunks, layout, judged),
         (None, None) => Ok(()),
     }
 }
@@ -134,7 +131,6 @@ fn first_sample(layout: &JointLayout<'_>) -> Option<Moment> {
 /// `first_sample` where it opens on `time`.
 fn open_on_the_first(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     first_sample: Option<Moment>,
 ) -> Result<(), RecordError> {
@@ -156,11 +152,11 @@ fn open_on_the_first(
         None => index,
     };
     for (path, component) in shown {
-        chunks.repeat((&at(root, path), component), segment.opening, &index)?;
+        chunks.repeat((&path, component), segment.opening, &index)?;
     }
     let candidates = segment.opening + 1..=segment.verdict();
     for path in ["drawing/candidate", "drawing/candidate/mark"] {
-        chunks.replay(&at(root, path), candidates.clone(), layout.first.tick + 1)?;
+        chunks.replay(&path, candidates.clone(), layout.first.tick + 1)?;
     }
     Ok(())
 }

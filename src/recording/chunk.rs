@@ -152,23 +152,30 @@ impl Ids {
 
     /// Collects chunks of `namespace`: those of one recording must differ; 0 is not allowed.
     pub(super) fn chunks(self, namespace: u64) -> Chunks {
-        Chunks { namespace, tag: self.tag << 32, rows: 0, made: Vec::new() }
+        let root = EntityPath::root();
+        Chunks { namespace, root, tag: self.tag << 32, rows: 0, made: Vec::new() }
     }
 }
 
-/// Collects chunks of one namespace.
+/// Collects chunks of one namespace, whose entities lie below one root.
 pub(super) struct Chunks {
     namespace: u64,
+    root: EntityPath,
     tag: u64,
     rows: u64,
     made: Vec<Chunk>,
 }
 
 impl Chunks {
+    /// These chunks, with their entities below `root`.
+    pub(super) fn rooted(self, root: EntityPath) -> Self {
+        Self { root, ..self }
+    }
+
     /// Rows of `columns` at the moments of `index`; nothing when there is none.
     pub(super) fn push(
         &mut self,
-        entity: EntityPath,
+        entity: impl Into<EntityPath>,
         index: Index,
         columns: impl IntoIterator<Item = SerializedComponentColumn>,
     ) -> Result<(), RecordError> {
@@ -181,7 +188,7 @@ impl Chunks {
     /// Data that is there at all times.
     pub(super) fn push_static(
         &mut self,
-        entity: EntityPath,
+        entity: impl Into<EntityPath>,
         data: &dyn AsComponents,
     ) -> Result<(), RecordError> {
         let columns = data.as_serialized_batches().into_iter().map(Into::into);
@@ -189,14 +196,18 @@ impl Chunks {
     }
 
     /// A page in Markdown that is there at all times.
-    pub(super) fn page(&mut self, entity: EntityPath, text: String) -> Result<(), RecordError> {
+    pub(super) fn page(
+        &mut self,
+        entity: impl Into<EntityPath>,
+        text: String,
+    ) -> Result<(), RecordError> {
         self.push_static(entity, &TextDocument::from_markdown(text))
     }
 
     /// A page in Markdown per row.
     pub(super) fn pages(
         &mut self,
-        entity: EntityPath,
+        entity: impl Into<EntityPath>,
         index: Index,
         texts: impl IntoIterator<Item = String>,
     ) -> Result<(), RecordError> {
@@ -209,7 +220,7 @@ impl Chunks {
     /// A line of a list per row; its level says in which colour.
     pub(super) fn lines(
         &mut self,
-        entity: EntityPath,
+        entity: impl Into<EntityPath>,
         index: Index,
         lines: impl IntoIterator<Item = (Option<&'static str>, String)>,
     ) -> Result<(), RecordError> {
@@ -223,7 +234,7 @@ impl Chunks {
     /// A state of a lane per row.
     pub(super) fn states(
         &mut self,
-        entity: EntityPath,
+        entity: impl Into<EntityPath>,
         index: Index,
         states: impl IntoIterator<Item = impl Into<String>>,
     ) -> Result<(), RecordError> {
@@ -235,7 +246,7 @@ impl Chunks {
     /// A number per row, or an empty one.
     pub(super) fn scalars(
         &mut self,
-        entity: EntityPath,
+        entity: impl Into<EntityPath>,
         index: Index,
         values: &[Option<f64>],
     ) -> Result<(), RecordError> {
@@ -247,27 +258,28 @@ impl Chunks {
     /// A curve of a plot: its style, and a number per row, or an empty one where it breaks.
     pub(super) fn series(
         &mut self,
-        entity: EntityPath,
+        entity: impl Into<EntityPath>,
         style: &SeriesLines,
         (index, values): (Index, Vec<Option<f64>>),
     ) -> Result<(), RecordError> {
+        let entity = entity.into();
         self.push_static(entity.clone(), style)?;
         self.scalars(entity, index, &values)
     }
 
-    /// Adds a row at `index` of what the entities below `root` have at the tick `decision`: only
+    /// Adds a row at `index` of what the entities below `path` have at the tick `decision`: only
     /// of components whose name begins so.
     pub(super) fn repeat(
         &mut self,
-        (root, component): (&EntityPath, &str),
+        (path, component): (&str, &str),
         decision: i64,
         index: &Index,
     ) -> Result<(), RecordError> {
         let rows: Vec<_> = self
-            .below(root)
+            .below(path)
             .filter_map(|(chunk, ticks)| {
                 let row = ticks.iter().rposition(|tick| *tick <= decision)?;
-                Some((chunk.entity_path().clone(), cells(chunk, row, component)))
+                Some((self.relative(chunk), cells(chunk, row, component)))
             })
             .collect();
         for (entity, columns) in rows.into_iter().filter(|(_, columns)| !columns.is_empty()) {
@@ -276,35 +288,41 @@ impl Chunks {
         Ok(())
     }
 
-    /// Adds once more, from the tick `from` on, the rows that the entities below `root` have at `ticks`
+    /// Adds once more, from the tick `from` on, the rows that the entities below `path` have at `ticks`
     /// of decisions, on that timeline alone.
     pub(super) fn replay(
         &mut self,
-        root: &EntityPath,
+        path: &str,
         ticks: RangeInclusive<i64>,
         from: i64,
     ) -> Result<(), RecordError> {
         let mut rows = Vec::new();
-        for (chunk, at) in self.below(root) {
+        for (chunk, at) in self.below(path) {
             for (row, tick) in at.iter().enumerate().filter(|(_, tick)| ticks.contains(*tick)) {
                 let index = Index::on("decision", [tick - ticks.start() + from]);
-                rows.push((chunk.entity_path().clone(), index, cells(chunk, row, "")));
+                rows.push((self.relative(chunk), index, cells(chunk, row, "")));
             }
         }
         rows.into_iter().try_for_each(|(entity, index, columns)| self.push(entity, index, columns))
     }
 
-    /// The chunks of the entities below `root` that have ticks of decisions, with these.
-    fn below(&self, root: &EntityPath) -> impl Iterator<Item = (&Chunk, &[i64])> {
-        let shown = self.made.iter().filter(|chunk| chunk.entity_path().starts_with(root));
+    /// The chunks of the entities below `path` that have ticks of decisions, with these.
+    fn below(&self, path: &str) -> impl Iterator<Item = (&Chunk, &[i64])> {
+        let root = self.root.join(&path.into());
+        let shown = self.made.iter().filter(move |chunk| chunk.entity_path().starts_with(&root));
         shown.filter_map(|chunk| {
             Some((chunk, chunk.timelines().get(&"decision".into())?.times_raw()))
         })
     }
 
+    /// The entity of one of these chunks below their root.
+    fn relative(&self, chunk: &Chunk) -> EntityPath {
+        chunk.entity_path().iter().skip(self.root.len()).cloned().collect()
+    }
+
     fn push_rows(
         &mut self,
-        entity: EntityPath,
+        entity: impl Into<EntityPath>,
         rows: usize,
         timelines: impl IntoIterator<Item = TimeColumn>,
         columns: impl IntoIterator<Item = SerializedComponentColumn>,
@@ -317,6 +335,7 @@ impl Chunks {
         let timelines = timelines.into_iter().map(|column| (*column.timeline().name(), column));
         let components = columns.into_iter().map(|c| (c.descriptor, c.list_array)).collect();
         let timelines = timelines.collect();
+        let entity = self.root.join(&entity.into());
         let chunk = Chunk::from_native_row_ids(id, entity, None, &row_ids, timelines, components)?;
         self.made.push(chunk);
         Ok(())

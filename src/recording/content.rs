@@ -10,7 +10,7 @@ use rerun::{ApplicationId, EntityPath, RecordingInfo, StoreId};
 use super::blueprint::Blueprint;
 use super::chunk::{Chunks, Ids};
 use super::error::RecordError;
-use super::paths::ABOUT;
+use super::paths::{ABOUT, joint_root};
 use crate::experiment::{Joint, Source};
 
 /// Who takes the chunks as they are made.
@@ -24,9 +24,10 @@ pub(super) enum Growth {
     Growing,
 }
 
-/// A joint of a recording, and what adds all of it.
+/// A joint of a recording, and what adds all of it below the joint's root.
 pub(super) struct Tab<'c> {
-    pub(super) joint: &'c str,
+    /// None where it belongs to no joint.
+    pub(super) joint: Option<&'c str>,
     pub(super) add: Box<Add<'c>>,
 }
 
@@ -64,13 +65,14 @@ pub(super) fn for_each_chunk(
 ) -> Result<u64, RecordError> {
     let mut chunks = part.ids.chunks(part.used + 2);
     if part.joint.is_none() {
-        chunks.page(EntityPath::from(ABOUT), content.about())?;
+        chunks.page(ABOUT, content.about())?;
     }
     let tabs = content.tabs(part.growth);
     let taken = tabs.len() as u64 + 1;
     for (namespace, tab) in (part.used + 3..).zip(tabs).filter(|(_, tab)| part.has(tab.joint)) {
         chunks.into_chunks().iter().try_for_each(&mut *take)?;
-        chunks = part.ids.chunks(namespace);
+        let root = tab.joint.map_or_else(EntityPath::root, joint_root);
+        chunks = part.ids.chunks(namespace).rooted(root);
         (tab.add)(&mut chunks)?;
     }
     chunks.into_chunks().iter().try_for_each(take)?;
@@ -117,8 +119,8 @@ impl Part<'_> {
         Self { ids, growth: Growth::Finished, used: 0, joint: None }
     }
 
-    fn has(self, joint: &str) -> bool {
-        self.joint.is_none_or(|name| joint == name)
+    fn has(self, joint: Option<&str>) -> bool {
+        self.joint.is_none_or(|name| joint == Some(name))
     }
 }
 

@@ -1,6 +1,5 @@
 //! How the residual is correlated with itself and with the input, lag by lag.
 
-use rerun::EntityPath;
 use rerun::datatypes::Vec2D;
 
 use super::canvas::Plot;
@@ -8,7 +7,7 @@ use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layers::Layers;
 use super::palette;
-use super::paths::of_model;
+use super::paths::{self, of_model};
 use super::sheet::Sheet;
 use crate::figure::correlogram::{Correlogram, TITLES};
 use crate::report::ComparedJoint;
@@ -24,11 +23,7 @@ const BOTTOM: f32 = 430.0;
 const NOT_KNOWN: &str = "not computed,\nsince sample periods differ\nor samples are too few";
 
 /// Draws the correlations of `models` below `root`: a curve and a band per model.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    models: &[&ComparedJoint<'_>],
-) -> Result<(), RecordError> {
+pub(super) fn add(chunks: &mut Chunks, models: &[&ComparedJoint<'_>]) -> Result<(), RecordError> {
     let of_each: Vec<_> = models.iter().map(|model| Correlogram::all(model.comparison)).collect();
     let mut sheet = Sheet::of_width(SIZE.0);
     let mut axes = Vec::new();
@@ -52,7 +47,7 @@ pub(super) fn add(
             bands.extend(found.into_iter().flat_map(|found| band(&plot, found.band)));
         }
     }
-    let mut layers = Layers::fixed(chunks, root.clone());
+    let mut layers = Layers::fixed(chunks, paths::CORRELATION);
     layers.sheets([sheet])?;
     layers.strips("axes", palette::RAW, 0.8, [axes])?;
     let models = curves.into_iter().zip(bands).zip(palette::models()).zip(0_usize..);

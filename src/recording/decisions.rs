@@ -1,12 +1,12 @@
 //! The numbers of every candidate and every decision.
 
-use rerun::{EntityPath, SeriesLines};
+use rerun::SeriesLines;
 
 use super::chunk::{Chunks, Moment, fine_columns, integers, numbers, shown, texts};
 use super::error::RecordError;
 use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
-use super::paths::{self, at};
+use super::paths;
 use crate::delay::{Candidate, Decision, Verdict};
 use crate::experiment::Joint;
 use crate::units::signed;
@@ -15,19 +15,17 @@ use crate::wording::{doubt_percent, number};
 /// Adds `/decision/sse` and `/decision/table`.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     joint: &Joint,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
-    add_errors(chunks, root, layout)?;
-    add_page(chunks, root, joint, layout)?;
-    add_table(chunks, root, layout)
+    add_errors(chunks, layout)?;
+    add_page(chunks, joint, layout)?;
+    add_table(chunks, layout)
 }
 
 /// All decisions as a person reads them: what the table has, in five digits.
 fn add_page(
     chunks: &mut Chunks,
-    root: &EntityPath,
     joint: &Joint,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
@@ -37,7 +35,7 @@ fn add_page(
     let all = layout.segments().count();
     let more = if all > MOST { format!("\n\nThe first {MOST} of {all}.") } else { String::new() };
     let page = format!("{}\n{}{more}", page_header(joint), rows.join("\n"));
-    chunks.page(at(root, paths::DECISION_PAGE), page)
+    chunks.page(paths::DECISION_PAGE, page)
 }
 
 /// The head of the table, with the units of `joint`.
@@ -77,16 +75,12 @@ fn slopes(best: Candidate) -> String {
 }
 
 /// SSE at each candidate's tick; empty at the first and last tick of a segment.
-fn add_errors(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
+fn add_errors(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     let ticks = layout.segments().flat_map(|(trial, segment)| trial.ticks(segment));
     let (moments, errors): (Vec<_>, Vec<_>) =
         ticks.map(|(moment, candidate)| (moment, candidate.map(|it| it.sse))).unzip();
     let name = SeriesLines::new().with_names(["SSE"]);
-    chunks.series(at(root, "decision/sse"), &name, (moments.into_iter().collect(), errors))
+    chunks.series("decision/sse", &name, (moments.into_iter().collect(), errors))
 }
 
 /// A row of `/decision/table`: a candidate, or the verdict with the best one, which has no `j`.
@@ -150,11 +144,7 @@ fn ranks(errors: &[f64]) -> Vec<i64> {
 
 /// A row per candidate, and one per verdict: without `j`, but with `accepted` (1 or 0),
 /// `trial` and `verdict`, and the delay between samples where there is one.
-fn add_table(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
+fn add_table(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     type Whole = fn(&Row<'_, '_>) -> Option<i64>;
     type Real = fn(&Row<'_, '_>) -> Option<f64>;
     let (moments, rows): (Vec<_>, Vec<_>) = layout.segments().flat_map(Row::of).unzip();
@@ -191,5 +181,5 @@ fn add_table(
     columns.extend(real.map(|(name, value)| numbers(name, rows.iter().map(value))));
     columns.extend(rounded.map(|(name, value)| shown(name, rows.iter().map(value))));
     columns.extend(fine_columns(&fine));
-    chunks.push(at(root, paths::DECISION_TABLE), moments.into_iter().collect(), columns)
+    chunks.push(paths::DECISION_TABLE, moments.into_iter().collect(), columns)
 }

@@ -1,7 +1,6 @@
 //! The decisions by how much they differ from those of other results: both delays over the
 //! record and by rank, lines to click, and what there is to say.
 
-use rerun::EntityPath;
 use rerun::datatypes::Vec2D;
 
 use super::beside::Other;
@@ -12,7 +11,7 @@ use super::layers::Layers;
 use super::layout::{JointLayout, Placed};
 use super::markdown::plain;
 use super::palette::{self, Rgb};
-use super::paths::{self, at};
+use super::paths;
 use super::sheet::Sheet;
 use crate::delay::Verdict;
 use crate::experiment::Joint;
@@ -25,7 +24,6 @@ pub(super) const SIZE: (f32, f32) = (SHEET.0, 344.0);
 /// Adds `/difference`, `/difference/log` and the drawing.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     joint: &Joint,
     layout: &JointLayout<'_>,
     others: &[Other<'_>],
@@ -41,9 +39,9 @@ pub(super) fn add(
         .all_at("doubt", Some(1));
     let lines =
         shown.iter().map(|placed| (Some(level(placed, others)), line(joint, placed, others)));
-    chunks.lines(at(root, paths::DIFFERENCE_LOG), index, lines)?;
-    chunks.page(at(root, paths::DIFFERENCE), page(joint, others))?;
-    draw(chunks, &at(root, paths::DIFFERENCE_SHEET), layout, others)
+    chunks.lines(paths::DIFFERENCE_LOG, index, lines)?;
+    chunks.page(paths::DIFFERENCE, page(joint, others))?;
+    draw(chunks, layout, others)
 }
 
 /// What others say of a step.
@@ -101,7 +99,6 @@ click on a number in the list leads to its step.";
 /// Both delays over the record (above), and their difference by rank (below).
 fn draw(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     others: &[Other<'_>],
 ) -> Result<(), RecordError> {
@@ -113,7 +110,7 @@ fn draw(
         10.0,
         "delay here − there [s], the largest first; red: one accepts what the other rejects",
     );
-    let mut fixed = Layers::fixed(chunks, root.clone());
+    let mut fixed = Layers::fixed(chunks, paths::DIFFERENCE_SHEET);
     fixed.sheets([sheet])?;
     for (path, rgb, shown) in figure.layers() {
         fixed.strips(path, rgb, 1.8, [shown])?;
@@ -123,7 +120,7 @@ fn draw(
         let rank = (segment.difference as f64).min(figure.ranks.x_span().high);
         vec![figure.delays.vertical(time).to_vec(), figure.ranks.vertical(rank).to_vec()]
     });
-    let mut rows = Layers::rows(chunks, root.clone(), layout.openings());
+    let mut rows = Layers::rows(chunks, paths::DIFFERENCE_SHEET, layout.openings());
     rows.strips("here", palette::CANDIDATE, 1.6, here)
 }
 

@@ -1,12 +1,10 @@
 //! The decisions by doubt: lines to click, and a page with a table.
 
-use rerun::EntityPath;
-
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
-use super::paths::{self, at};
+use super::paths;
 use super::verdict::in_short;
 use crate::delay::Verdict;
 use crate::experiment::Joint;
@@ -15,7 +13,6 @@ use crate::wording::{DOUBT_MEANS, doubt_percent, doubtful_sentence};
 /// Adds `/doubt` and `/doubt/log`.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     joint: &Joint,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
@@ -35,8 +32,8 @@ pub(super) fn add(
     };
     let lines =
         ranked.iter().map(|(trial, segment)| (Some(level(segment)), line(joint, trial, segment)));
-    chunks.lines(at(root, paths::DOUBT_LOG), index, lines)?;
-    chunks.page(at(root, paths::DOUBT), page(joint, &ranked))
+    chunks.lines(paths::DOUBT_LOG, index, lines)?;
+    chunks.page(paths::DOUBT, page(joint, &ranked))
 }
 
 /// Doubt from which on a line is red; what is doubtful below it is yellow. Chosen: on synthetic

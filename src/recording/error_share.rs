@@ -1,14 +1,14 @@
 //! Where the error arises: its share in each part of each feature, beside the share of time.
 
+use rerun::Color;
 use rerun::datatypes::Vec2D;
-use rerun::{Color, EntityPath};
 
 use super::canvas::{Plot, Span};
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layers::Layers;
 use super::palette::{self, Rgb, color};
-use super::paths::of_model;
+use super::paths::{self, of_model};
 use super::sheet::{Sheet, TITLE};
 use crate::diagnosis::failure::{Feature, Region};
 use crate::figure::error_share::{FeatureShares, Share, is_level};
@@ -72,16 +72,12 @@ impl Drawing {
 }
 
 /// Draws the regions of `models` below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    models: &[&ComparedJoint<'_>],
-) -> Result<(), RecordError> {
+pub(super) fn add(chunks: &mut Chunks, models: &[&ComparedJoint<'_>]) -> Result<(), RecordError> {
     if models.is_empty() {
         return Ok(());
     }
     let Drawing { sheet, bars, marks } = Drawing::of(models);
-    let mut layers = Layers::fixed(chunks, root.clone());
+    let mut layers = Layers::fixed(chunks, paths::ERROR_SHARE);
     layers.sheets([sheet])?;
     for ((bars, rgb), number) in bars.iter().zip(palette::models()).zip(0..) {
         layers.colored(&of_model("bars", number), HATCH, [bars.filling(rgb)])?;

@@ -1,12 +1,10 @@
 //! What was found of a joint, what is doubtful, what to do next: a strip above its decisions.
 
-use rerun::EntityPath;
-
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layout::JointLayout;
 use super::markdown::plain;
-use super::paths::{self, at};
+use super::paths;
 use crate::experiment::Source;
 use crate::report::{EstimatedJoint, delay_answer};
 use crate::wording::capitalized;
@@ -14,11 +12,10 @@ use crate::wording::capitalized;
 /// Adds `/headline`.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     estimated: EstimatedJoint<'_>,
     (layout, sources): (&JointLayout<'_>, &[Source]),
 ) -> Result<(), RecordError> {
-    chunks.page(at(root, paths::HEADLINE), text(estimated, layout, sources))
+    chunks.page(paths::HEADLINE, text(estimated, layout, sources))
 }
 
 fn text(estimated: EstimatedJoint<'_>, layout: &JointLayout<'_>, sources: &[Source]) -> String {

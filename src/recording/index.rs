@@ -83,10 +83,10 @@ impl Content for IndexRecording<'_> {
     fn tabs(&self, _: Growth) -> Vec<Tab<'_>> {
         let add = |chunks: &mut Chunks| {
             let layouts = self.layouts();
-            chunks.page(EntityPath::from(JOINTS), page(self, &layouts).unwrap_or_default())?;
+            chunks.page(JOINTS, page(self, &layouts).unwrap_or_default())?;
             add_doubtful(chunks, self, &layouts)
         };
-        vec![Tab { joint: "", add: Box::new(add) }]
+        vec![Tab { joint: None, add: Box::new(add) }]
     }
 
     fn blueprint(&self, _: Growth) -> Blueprint {
@@ -164,16 +164,15 @@ fn add_doubtful(
     if all.is_empty() {
         return Ok(());
     }
-    let root = EntityPath::from(ROOT);
     let ranks = || Index::on("doubt", (1..).take(all.len()));
-    chunks.pages(at(&root, paths::VERDICT), ranks(), all.iter().map(Doubted::page))?;
+    chunks.pages("doubtful/verdict", ranks(), all.iter().map(Doubted::page))?;
     let lines = all.iter().map(|found| (Some("INFO"), found.line()));
-    chunks.lines(at(&root, "log"), ranks(), lines)?;
+    chunks.lines("doubtful/log", ranks(), lines)?;
     let drawings: Vec<_> = all
         .iter()
         .map(|found| Drawing::new(found.joint.joint, found.trial, found.segment))
         .collect();
-    let mut layers = Layers::rows(chunks, at(&root, paths::DRAWING), ranks());
+    let mut layers = Layers::rows(chunks, "doubtful/drawing", ranks());
     segment_view::add_drawings(&mut layers, &drawings)
 }
 

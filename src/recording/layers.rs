@@ -50,12 +50,19 @@ pub(super) struct Layers<'c> {
 
 impl<'c> Layers<'c> {
     /// A drawing below `root` that stays.
-    pub(super) fn fixed(chunks: &'c mut Chunks, root: EntityPath) -> Self {
-        Self { chunks, root, index: None, order: None, counts: false, opens_on_last: false }
+    pub(super) fn fixed(chunks: &'c mut Chunks, root: impl Into<EntityPath>) -> Self {
+        Self {
+            chunks,
+            root: root.into(),
+            index: None,
+            order: None,
+            counts: false,
+            opens_on_last: false,
+        }
     }
 
     /// A drawing with a row at each moment of `index`.
-    pub(super) fn rows(chunks: &'c mut Chunks, root: EntityPath, index: Index) -> Self {
+    pub(super) fn rows(chunks: &'c mut Chunks, root: impl Into<EntityPath>, index: Index) -> Self {
         Self { index: Some(index), ..Self::fixed(chunks, root) }
     }
 

@@ -31,14 +31,13 @@ const BAND: f64 = 1.96;
 /// `judged` has the first word.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     models: &[&ComparedJoint<'_>],
     judged: &ComparedJoint<'_>,
 ) -> Result<(), RecordError> {
     for (compared, rgb) in models.iter().zip(palette::models()) {
         let (name, comparison) = (compared.model, compared.comparison);
-        let model = child(&at(root, paths::MODEL), name);
+        let model = child(paths::MODEL, name);
         let simulated = layout.series(|trial| known(trial.simulated(comparison)));
         let style = line(format!("{name}: simulated"), rgb, 1.5);
         chunks.series(at(&model, paths::SIMULATED), &style, simulated)?;
@@ -47,35 +46,34 @@ pub(super) fn add(
         chunks.series(at(&model, paths::RESIDUAL), &style, residual)?;
         figures(chunks, &model, comparison)?;
     }
-    band(chunks, root, layout, sensor_noise(&judged.joint.trials))?;
+    band(chunks, layout, sensor_noise(&judged.joint.trials))?;
     // Each on a page of its own: below one another the last is off a small window.
     for (path, page) in [
         (paths::MODEL_PAGE, page(models, judged)),
         (paths::MODEL_WORST, worst_segments(layout, judged)),
         (paths::MODEL_PARAMETERS, parameters(judged.joint, &reported(models, judged))),
     ] {
-        chunks.page(at(root, path), page.unwrap_or_default())?;
+        chunks.page(path, page.unwrap_or_default())?;
     }
-    scatter::add(chunks, &at(root, paths::SCATTER), models, judged)?;
-    error_share::add(chunks, &at(root, paths::ERROR_SHARE), models)?;
-    correlogram::add(chunks, &at(root, paths::CORRELATION), models)?;
+    scatter::add(chunks, models, judged)?;
+    error_share::add(chunks, models)?;
+    correlogram::add(chunks, models)?;
     if is_first(models, judged) {
-        differences(chunks, root, layout, models)?;
+        differences(chunks, layout, models)?;
     }
-    model_lanes::add(chunks, root, layout, (judged.joint, judged.comparison))
+    model_lanes::add(chunks, layout, (judged.joint, judged.comparison))
 }
 
 /// Adds what is seen of the record on every timeline of a model that has no revisions, whose own
 /// drawings are.
 pub(super) fn add_map(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     judged: &ComparedJoint<'_>,
 ) -> Result<(), RecordError> {
     let Some(start) = layout.start() else { return Ok(()) };
     let index = Index::everywhere(start, layout.first);
-    let mut layers = Layers::rows(chunks, at(root, paths::MODEL_MAP), index).back_to_front();
+    let mut layers = Layers::rows(chunks, paths::MODEL_MAP, index).back_to_front();
     revision::add_record(&mut layers, layout, judged.joint, &[judged.comparison])
 }
 
@@ -125,7 +123,6 @@ fn figures(
 /// Two level lines between which noise alone would keep the residual.
 fn band(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     noise: Option<f64>,
 ) -> Result<(), RecordError> {
@@ -137,7 +134,7 @@ fn band(
         let ends = layout.trials.iter().flat_map(|t| [t.moment_of(1), t.moment_of(t.trial.len())]);
         let index = ends.collect::<Index>().without_segment();
         let levels = vec![Some(level); index.len()];
-        chunks.series(at(root, path), &line(name, palette::BORDER, 1.0), (index, levels))?;
+        chunks.series(path, &line(name, palette::BORDER, 1.0), (index, levels))?;
     }
     Ok(())
 }
@@ -146,7 +143,6 @@ fn band(
 /// rises where the first model is better.
 fn differences(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     models: &[&ComparedJoint<'_>],
 ) -> Result<(), RecordError> {
@@ -163,7 +159,7 @@ fn differences(
             sums.collect()
         });
         let name = format!("{} − {}", other.model, first.model);
-        let entity = child(&at(root, paths::MODEL_DIFFERENCE), other.model);
+        let entity = child(paths::MODEL_DIFFERENCE, other.model);
         chunks.series(entity, &line(name, rgb, 1.5), sums)?;
     }
     Ok(())

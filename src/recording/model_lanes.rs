@@ -3,13 +3,13 @@
 
 use std::ops::RangeInclusive;
 
-use rerun::{EntityPath, StateConfiguration};
+use rerun::StateConfiguration;
 
 use super::chunk::{Chunks, Index, Moment};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
 use super::palette::{self, color};
-use super::paths::{self, at};
+use super::paths;
 use super::shaded::{condition, validation, where_it_fails};
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::WorstSegment;
@@ -19,11 +19,10 @@ use crate::wording::misfit_units;
 /// Adds `/worst`, `/part` and `/fails`.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     (joint, comparison): (&Joint, &Comparison),
 ) -> Result<(), RecordError> {
-    worst(chunks, root, layout, comparison)?;
+    worst(chunks, layout, comparison)?;
     let grey = palette::dimmed(palette::SMOOTHED);
     let mut lanes = vec![(paths::PART, validation(comparison), "not fitted".to_owned(), grey)];
     if let Some(condition) = condition(comparison) {
@@ -43,8 +42,8 @@ pub(super) fn add(
         let marks: Vec<_> = marks.flatten().collect();
         if !marks.is_empty() {
             let style = StateConfiguration::new().with_values([name.clone()]);
-            chunks.push_static(at(root, path), &style.with_colors([color(rgb)]))?;
-            push(chunks, at(root, path), marks)?;
+            chunks.push_static(path, &style.with_colors([color(rgb)]))?;
+            push(chunks, path, marks)?;
         }
     }
     Ok(())
@@ -52,18 +51,17 @@ pub(super) fn add(
 
 fn push(
     chunks: &mut Chunks,
-    entity: EntityPath,
+    path: &str,
     mut marks: Vec<(Moment, String)>,
 ) -> Result<(), RecordError> {
     marks.sort_by_key(|(moment, name)| (moment.sample, !name.is_empty()));
     let (moments, names): (Vec<_>, Vec<_>) = marks.into_iter().unzip();
-    chunks.states(entity, moments.into_iter().collect::<Index>().without_segment(), names)
+    chunks.states(path, moments.into_iter().collect::<Index>().without_segment(), names)
 }
 
 /// A lane that is marked where the model's worst segments are.
 fn worst(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     comparison: &Comparison,
 ) -> Result<(), RecordError> {
@@ -79,9 +77,9 @@ fn worst(
         let adequate = "none: the model is adequate".to_owned();
         marks.extend(layout.start().map(|start| (start, adequate)));
     }
-    push(chunks, at(root, paths::WORST), marks)?;
+    push(chunks, paths::WORST, marks)?;
     let hint = ["on `sample`, `time` or `decision`: choose it at the bottom left"];
-    chunks.states(at(root, paths::WORST), Index::off_the_record(layout.first), hint)
+    chunks.states(paths::WORST, Index::off_the_record(layout.first), hint)
 }
 
 /// The samples of `worst` in its trial, counted from 1.

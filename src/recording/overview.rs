@@ -3,7 +3,7 @@
 
 use rerun::components::MarkerShape;
 use rerun::datatypes::Vec2D;
-use rerun::{Boxes2D, EntityPath, SeriesPoints};
+use rerun::{Boxes2D, SeriesPoints};
 
 use super::canvas::{CURVE_POINTS, Plot, Span, thinned_to};
 use super::chunk::{Chunks, Index, line};
@@ -11,7 +11,7 @@ use super::error::RecordError;
 use super::layers::Layers;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, Rgb, color};
-use super::paths::{self, at};
+use super::paths;
 use super::sheet::Sheet;
 use crate::delay::{Candidate, Line, Verdict};
 use crate::experiment::Joint;
@@ -20,12 +20,11 @@ use crate::wording::bracketed;
 /// Adds everything of the overview below `root`.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     joint: &Joint,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
     type Place = fn(&SegmentLayout<'_>) -> Option<(usize, f64)>;
-    add_lines(chunks, root, layout)?;
+    add_lines(chunks, layout)?;
     let breakpoint: Place = |segment| {
         let best = segment.decision.shown_candidate()?;
         Some((best.breakpoint, best.after.at(best.breakpoint as f64)))
@@ -50,12 +49,12 @@ pub(super) fn add(
         let (name, rgb, marker) = kind.style();
         let style = SeriesPoints::new().with_names([name]).with_colors([color(rgb)]);
         let style = style.with_markers([marker]).with_marker_sizes([4.0]);
-        chunks.push_static(at(root, path), &style)?;
+        chunks.push_static(path, &style)?;
         let index = moments.into_iter().collect::<Index>().without_segment();
-        chunks.scalars(at(root, path), index, &values)?;
+        chunks.scalars(path, index, &values)?;
     }
-    Map::small(layout).add(chunks, &at(root, paths::MAP), layout)?;
-    Map::large(layout, joint).add(chunks, &at(root, paths::LARGE_MAP), layout)
+    Map::small(layout).add(chunks, layout)?;
+    Map::large(layout, joint).add(chunks, layout)
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -82,11 +81,7 @@ impl Kind {
 }
 
 /// The chosen pair of lines of every segment, each from end to end.
-fn add_lines(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
+fn add_lines(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     type Side = fn(&Candidate, &SegmentLayout<'_>) -> (Line, [usize; 2]);
     let before = |best: &Candidate, segment: &SegmentLayout<'_>| {
         (best.before, [segment.decision.segment.first, best.breakpoint])
@@ -115,7 +110,7 @@ fn add_lines(
             values.push(None);
         }
         let index = moments.into_iter().collect::<Index>().without_segment();
-        chunks.series(at(root, path), &line(name, rgb, 2.0), (index, values))?;
+        chunks.series(path, &line(name, rgb, 2.0), (index, values))?;
     }
     Ok(())
 }
@@ -130,6 +125,7 @@ fn vertices([first, last]: [usize; 2], steps: [usize; 2]) -> Vec<usize> {
 
 /// The record on one sheet, drawn once: it stays whatever the timeline.
 struct Map {
+    root: &'static str,
     output: Plot,
     input: Plot,
     /// Delays, in seconds, where there is room for them.
@@ -153,6 +149,7 @@ impl Map {
     fn small(layout: &JointLayout<'_>) -> Self {
         let [x, output, input] = spans(layout);
         Self {
+            root: paths::MAP,
             output: Plot::new(6.0..=96.0, x, output),
             input: Plot::new(104.0..=138.0, x, input),
             delay: None,
@@ -192,6 +189,7 @@ impl Map {
             titles.filter_map(|(plot, title)| Some((plot?.above(plot?.middle(), TITLE), title)));
         let titles = titles.collect();
         Self {
+            root: paths::LARGE_MAP,
             output: output_plot,
             input: input_plot,
             delay: delay_plot,
@@ -200,12 +198,7 @@ impl Map {
         }
     }
 
-    fn add(
-        &self,
-        chunks: &mut Chunks,
-        root: &EntityPath,
-        layout: &JointLayout<'_>,
-    ) -> Result<(), RecordError> {
+    fn add(&self, chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
         let mut sheet = Sheet::default();
         let x_ticks = self.output.x_span().ticks(12.0);
         sheet.outline(&self.output, &x_ticks, &self.output.y_ticks(3.0));
@@ -222,7 +215,7 @@ impl Map {
             sheet.put(*place, title.clone());
         }
         let (grid, labels) = sheet.into_parts();
-        let mut layers = Layers::fixed(chunks, root.clone());
+        let mut layers = Layers::fixed(chunks, self.root);
         layers.strips("grid", palette::GRID, 0.7, [grid])?;
         let outputs = layout.trials.iter().map(|trial| self.output_curve(trial)).collect();
         layers.strips("output", palette::SMOOTHED, 1.2, [outputs])?;
@@ -237,7 +230,7 @@ impl Map {
             layers.points(name, rgb, 3.0, [breaks.chain(delays).collect()])?;
         }
         layers.texts("ticks", palette::BORDER, [labels])?;
-        self.add_frames(chunks, root, layout)
+        self.add_frames(chunks, layout)
     }
 
     fn output_curve(&self, trial: &TrialLayout<'_>) -> Vec<Vec2D> {
@@ -268,12 +261,7 @@ impl Map {
         Some(self.output.at(trial.sample(best.breakpoint) as f64, y))
     }
 
-    fn add_frames(
-        &self,
-        chunks: &mut Chunks,
-        root: &EntityPath,
-        layout: &JointLayout<'_>,
-    ) -> Result<(), RecordError> {
+    fn add_frames(&self, chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
         let (mut centers, mut halves) = (Vec::new(), Vec::new());
         for (trial, segment) in layout.segments() {
             let ends = segment.decision.segment;
@@ -285,7 +273,7 @@ impl Map {
         }
         let style = Boxes2D::update_fields().with_colors([color(palette::CANDIDATE)]);
         let lengths = vec![1; centers.len()];
-        let mut layers = Layers::rows(chunks, root.clone(), layout.openings());
+        let mut layers = Layers::rows(chunks, self.root, layout.openings());
         layers.stays("here", &style.with_radii([1.5]))?;
         let boxes = Boxes2D::update_fields().with_centers(centers).with_half_sizes(halves);
         layers.push("here", &boxes, &lengths)

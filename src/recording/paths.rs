@@ -17,8 +17,8 @@ pub(crate) fn at(root: &EntityPath, path: &str) -> EntityPath {
 }
 
 /// The entity `name` below `root`, whatever characters the name has.
-pub(crate) fn child(root: &EntityPath, name: &str) -> EntityPath {
-    root.join(&EntityPath::from(vec![name.into()]))
+pub(crate) fn child(root: impl Into<EntityPath>, name: &str) -> EntityPath {
+    root.into().join(&EntityPath::from(vec![name.into()]))
 }
 
 /// The part `path` of a drawing that the model `number` has.

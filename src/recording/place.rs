@@ -1,22 +1,15 @@
 //! Where the cursor is: a line above plots that do not say it themselves, or on which timeline
 //! they run where they have nothing.
 
-use rerun::EntityPath;
-
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::markdown::plain;
-use super::paths::{self, at};
+use super::paths;
 use crate::wording::to_place;
 
 /// Adds `/place`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
-    let entity = at(root, paths::PLACE);
+pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     let mut steps = layout.segments().peekable();
     // The first row of all: a viewer that knows a timeline begins at its first tick, and chooses
     // among those that it knows.
@@ -25,14 +18,14 @@ pub(super) fn add(
         Some(_) if layout.first.is_compared => (OPENING_COMPARED, BEFORE),
         Some(_) => (OPENING, BEFORE),
     };
-    chunks.pages(entity.clone(), Index::before_all(layout.first), [opening.to_owned()])?;
+    chunks.pages(paths::PLACE, Index::before_all(layout.first), [opening.to_owned()])?;
     let start = layout.start().map(|moment| (moment, start.to_owned()));
     let steps =
         steps.map(|(trial, segment)| (trial.opening(segment), words(layout, trial, segment)));
     let (moments, texts): (Vec<_>, Vec<_>) = start.into_iter().chain(steps).unzip();
     let index = moments.into_iter().collect::<Index>().without_segment();
-    chunks.pages(entity.clone(), index, texts)?;
-    chunks.pages(entity, Index::off_the_record(layout.first), [HINT.to_owned()])
+    chunks.pages(paths::PLACE, index, texts)?;
+    chunks.pages(paths::PLACE, Index::off_the_record(layout.first), [HINT.to_owned()])
 }
 
 const BEFORE: &str = "before the first step";

@@ -1,6 +1,5 @@
 //! The residual against what it may depend on: input, angle, speed, time since the step.
 
-use rerun::EntityPath;
 use rerun::datatypes::Vec2D;
 
 use super::canvas::{Plot, SHEET, Span};
@@ -8,7 +7,7 @@ use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layers::Layers;
 use super::palette;
-use super::paths::of_model;
+use super::paths::{self, of_model};
 use super::sheet::Sheet;
 use crate::numerics::quantile;
 use crate::report::ComparedJoint;
@@ -34,7 +33,6 @@ struct Pairs {
 /// those of the one that is `judged`, the curves those of all.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     models: &[&ComparedJoint<'_>],
     judged: &ComparedJoint<'_>,
 ) -> Result<(), RecordError> {
@@ -52,7 +50,7 @@ pub(super) fn add(
             curves.extend(all.get(place).map(|pairs| curve(&plot, pairs)));
         }
     }
-    let mut layers = Layers::fixed(chunks, root.clone());
+    let mut layers = Layers::fixed(chunks, paths::SCATTER);
     layers.sheets([sheet])?;
     layers.points("points", palette::RAW, 1.2, [points])?;
     for ((curves, rgb), number) in curves.into_iter().zip(palette::models()).zip(0..) {

@@ -5,7 +5,6 @@
 //! what belongs to a candidate is set at each of its ticks and cleared before and after,
 //! so that nothing leaks into the next segment.
 
-use rerun::EntityPath;
 use rerun::datatypes::Vec2D;
 
 use super::beside::{Other, Shown};
@@ -18,7 +17,7 @@ use super::error::RecordError;
 use super::layers::Layers;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette;
-use super::paths::{self, at};
+use super::paths;
 use super::sheet::Sheet;
 use crate::delay::{Candidate, Line, Method};
 use crate::diagnosis::sensor_noise;
@@ -38,20 +37,18 @@ const SIDES: (f32, f32) = (120.0, 960.0);
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     joint: &Joint,
     layout: &JointLayout<'_>,
     (method, others): (Method, &[Other<'_>]),
 ) -> Result<(), RecordError> {
     let drawings: Vec<_> =
         layout.segments().map(|(trial, segment)| Drawing::new(joint, trial, segment)).collect();
-    let root = at(root, paths::DRAWING);
-    let mut layers = Layers::rows(chunks, root.clone(), layout.openings());
+    let mut layers = Layers::rows(chunks, paths::DRAWING, layout.openings());
     add_drawings(&mut layers, &drawings)?;
     if !others.is_empty() {
         add_others(&mut layers, &drawings, method, others)?;
     }
-    add_candidates(chunks, root, &drawings)
+    add_candidates(chunks, &drawings)
 }
 
 /// What belongs to each segment, without its candidates.
@@ -421,11 +418,7 @@ fn apart(ticks: Vec<(f64, String)>, plot: &Plot) -> Vec<(f64, String)> {
 }
 
 /// A row per candidate; empty ones at the opening and the verdict tick.
-fn add_candidates(
-    chunks: &mut Chunks,
-    root: EntityPath,
-    drawings: &[Drawing<'_, '_>],
-) -> Result<(), RecordError> {
+fn add_candidates(chunks: &mut Chunks, drawings: &[Drawing<'_, '_>]) -> Result<(), RecordError> {
     let ticks = drawings.iter().flat_map(|drawing| {
         let (trial, segment) = (drawing.trial, drawing.segment);
         trial
@@ -445,7 +438,7 @@ fn add_candidates(
         }
         marks
     });
-    let mut layers = Layers::rows(chunks, root, moments.into_iter().collect());
+    let mut layers = Layers::rows(chunks, paths::DRAWING, moments.into_iter().collect());
     layers.strips("candidate", palette::CANDIDATE, 2.0, lines)?;
     layers.named_points("candidate/mark", palette::CANDIDATE, 7.0, marks)
 }

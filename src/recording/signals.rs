@@ -1,19 +1,18 @@
 //! Input, output, delay and covariates, sample by sample.
 
-use rerun::{EntityPath, SeriesLines, components::InterpolationMode};
+use rerun::{SeriesLines, components::InterpolationMode};
 
 use super::chunk::{Chunks, line};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
 use super::palette::{self, Rgb};
-use super::paths::{self, at, child};
+use super::paths::{self, child};
 use crate::experiment::Joint;
 use crate::wording::bracketed;
 
 /// Adds all signals of `joint` below the entity `root`.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     joint: &Joint,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
@@ -42,10 +41,10 @@ pub(super) fn add(
     ];
     for (path, name, (rgb, width), mode, values) in signals {
         let style = line(name, rgb, width).with_interpolation_mode(mode);
-        chunks.series(at(root, path), &style, layout.series(values))?;
+        chunks.series(path, &style, layout.series(values))?;
     }
     for (index, signal) in joint.covariates.iter().enumerate() {
-        let entity = child(&at(root, paths::COVARIATE), &signal.name);
+        let entity = child(paths::COVARIATE, &signal.name);
         let style =
             SeriesLines::new().with_names([format!("{}{}", signal.name, unit(&signal.unit))]);
         let values = layout.series(|trial| {

@@ -2,7 +2,7 @@
 
 use std::iter::once;
 
-use rerun::{Color, EntityPath, StateConfiguration};
+use rerun::{Color, StateConfiguration};
 
 use super::beside::{Other, Shown};
 use super::chunk::{Chunks, Index};
@@ -10,7 +10,7 @@ use super::error::RecordError;
 use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::palette::{self, color};
-use super::paths::{self, at};
+use super::paths;
 use crate::delay::{Check, Condition, Decision, FineDelay, OnsetModel, Outcome};
 use crate::delay::{Settings, Tracking, Verdict};
 use crate::experiment::Joint;
@@ -21,7 +21,6 @@ use crate::wording::{counted, doubt_percent, number, remedy_text, rounded, sampl
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     estimated: EstimatedJoint<'_>,
     layout: &JointLayout<'_>,
     others: &[Other<'_>],
@@ -34,7 +33,6 @@ pub(super) fn add(
         let methods = methods(trial, segment, settings, others);
         document(Facts { joint, trial, segment, settings, typical: typical.as_deref() }, &methods)
     };
-    let entity = at(root, paths::VERDICT);
     if segments.is_empty() {
         let name = plain(&joint.name);
         let text = match dead_time_sentences(&estimated).as_slice() {
@@ -50,14 +48,14 @@ pub(super) fn add(
             }
             [moves] => format!("### {name}\n- {moves}\n"),
         };
-        chunks.page(entity.clone(), text)?;
+        chunks.page(paths::VERDICT, text)?;
     }
     let states = segments.iter().map(|(_, segment)| segment.decision.verdict().to_string());
-    chunks.pages(entity.clone(), opening.clone(), segments.iter().map(text))?;
-    chunks.states(entity.clone(), opening.clone(), states)?;
-    chunks.push_static(entity, &lane_colors())?;
-    add_log(chunks, root, joint, (&segments, layout.last_revision))?;
-    add_lanes(chunks, root, layout, &segments, opening)
+    chunks.pages(paths::VERDICT, opening.clone(), segments.iter().map(text))?;
+    chunks.states(paths::VERDICT, opening.clone(), states)?;
+    chunks.push_static(paths::VERDICT, &lane_colors())?;
+    add_log(chunks, joint, (&segments, layout.last_revision))?;
+    add_lanes(chunks, layout, &segments, opening)
 }
 
 fn lane_colors() -> StateConfiguration {
@@ -75,7 +73,6 @@ fn lane_colors() -> StateConfiguration {
 /// its candidates.
 fn add_log(
     chunks: &mut Chunks,
-    root: &EntityPath,
     joint: &Joint,
     (segments, last_revision): (&[Placed<'_, '_>], Option<i64>),
 ) -> Result<(), RecordError> {
@@ -87,7 +84,7 @@ fn add_log(
         Verdict::Rejected(_) => "WARN",
     };
     let lines = segments.iter().map(|(t, s)| (Some(level(s)), log_line(joint, t, s)));
-    chunks.lines(at(root, paths::VERDICT_LOG), index, lines)
+    chunks.lines(paths::VERDICT_LOG, index, lines)
 }
 
 fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
@@ -141,7 +138,6 @@ fn seconds(decision: &Decision, samples: f64, period: f64) -> String {
 
 fn add_lanes(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     segments: &[Placed<'_, '_>],
     opening: Index,
@@ -153,15 +149,14 @@ fn add_lanes(
         if n % 2 == 0 { Color::from_rgb(72, 84, 96) } else { Color::from_rgb(98, 110, 122) }
     });
     let style = StateConfiguration::new().with_values(names.clone()).with_colors(greys);
-    let entity = at(root, paths::SEGMENT);
-    chunks.push_static(entity.clone(), &style)?;
-    chunks.states(entity.clone(), opening, names)?;
+    chunks.push_static(paths::SEGMENT, &style)?;
+    chunks.states(paths::SEGMENT, opening, names)?;
     let hint = ["along decision, segment, sample or time: choose it at the bottom left"];
     // On the timeline of revisions the lane has nothing else.
-    chunks.states(entity, Index::on("revision", layout.first.revision), hint)?;
+    chunks.states(paths::SEGMENT, Index::on("revision", layout.first.revision), hint)?;
     let starts = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
     let labels = layout.trials.iter().map(|trial| trial.trial.label());
-    chunks.states(at(root, paths::TRIAL), starts.collect(), labels)
+    chunks.states(paths::TRIAL, starts.collect(), labels)
 }
 
 /// The page beside the drawing: verdict first, then what it was made of.

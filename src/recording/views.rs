@@ -291,7 +291,7 @@ impl Tab<'_> {
         let joint = self.joint();
         if !joint.covariates.is_empty() {
             let root = self.at(paths::COVARIATE);
-            let all = joint.covariates.iter().map(|signal| child(&root, &signal.name));
+            let all = joint.covariates.iter().map(|signal| child(root.clone(), &signal.name));
             rows.push((1.5, plot("Covariates", &all.collect::<Vec<_>>(), Legend::Apart)));
         }
         let (shown, share) = match joint.trials.len() {
@@ -355,7 +355,7 @@ impl Tab<'_> {
             shown.iter().filter_map(|number| Some(self.models.get(*number)?.model)).collect();
         let root = self.at(paths::MODEL);
         let with_models = |others: &[&str], part| -> Vec<EntityPath> {
-            let models = names.iter().map(|name| at(&child(&root, name), part));
+            let models = names.iter().map(|name| at(&child(root.clone(), name), part));
             others.iter().map(|path| self.at(path)).chain(models).collect()
         };
         // A model keeps its colour where others are not drawn.
@@ -452,7 +452,7 @@ impl Tab<'_> {
         let difference = names.split_first().filter(|_| self.are_side_by_side());
         let difference = difference.map(|(first, others)| {
             let root = self.at(paths::MODEL_DIFFERENCE);
-            let others: Vec<_> = others.iter().map(|name| child(&root, name)).collect();
+            let others: Vec<_> = others.iter().map(|name| child(root.clone(), name)).collect();
             let name = format!(
                 "Squared error so far less that of {first}: it rises where {first} is better"
             );

@@ -1,7 +1,7 @@
 //! The page of plots, and the cursor in it.
 
+use rerun::Points2D;
 use rerun::datatypes::Vec2D;
-use rerun::{EntityPath, Points2D};
 
 use super::placed::{Placed, add_numbers, placed};
 use super::quantity::Quantity;
@@ -15,7 +15,7 @@ use crate::recording::error::RecordError;
 use crate::recording::layers::{HIDDEN, Ink, Layers};
 use crate::recording::layout::JointLayout;
 use crate::recording::palette::{self, Rgb, color};
-use crate::recording::paths::{self, at};
+use crate::recording::paths;
 use crate::recording::sheet::Sheet;
 use crate::report::{EstimatedJoint, variable_text};
 use crate::units::SamplePeriod;
@@ -30,18 +30,16 @@ const PLOTS: usize = 12;
 /// Adds the page below `/against`, and its numbers at `/delay/state`.
 pub(in crate::recording) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     joint: EstimatedJoint<'_>,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
     let found = joint.against_state();
     let placed = placed(layout, &found.steps);
-    add_numbers(chunks, &at(root, "delay/state"), joint.joint, &placed)?;
+    add_numbers(chunks, joint.joint, &placed)?;
     let page = Page::of(joint.joint, &found, &placed);
-    let root = at(root, paths::AGAINST);
-    page.add_plots(chunks, &root)?;
-    page.add_texts(chunks, &root, joint.joint)?;
-    page.add_cursor(chunks, &root, joint.joint, (layout, &placed))
+    page.add_plots(chunks)?;
+    page.add_texts(chunks, joint.joint)?;
+    page.add_cursor(chunks, joint.joint, (layout, &placed))
 }
 
 /// All plots on their sheet.
@@ -85,7 +83,7 @@ impl<'f> Page<'f> {
     }
 
     /// What stays: grid, points, medians.
-    fn add_plots(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+    fn add_plots(&self, chunks: &mut Chunks) -> Result<(), RecordError> {
         let (mut sheet, mut depends) = (Sheet::default(), Vec::new());
         let (mut bands, mut medians) = (Vec::new(), Vec::new());
         for (quantity, plot) in &self.plots {
@@ -101,7 +99,7 @@ impl<'f> Page<'f> {
                 medians.push(plot.places(bins.iter().map(|bin| (bin.x, bin.median))));
             }
         }
-        let mut layers = Layers::fixed(chunks, root.clone());
+        let mut layers = Layers::fixed(chunks, paths::AGAINST);
         for (path, rgb, radius, order, strips) in [
             ("band", palette::BAND, 0.6 * STROKE, 5.0, bands),
             ("grid", palette::GRID, 0.7, 10.0, sheet.grid),
@@ -132,12 +130,7 @@ impl<'f> Page<'f> {
         points
     }
 
-    fn add_texts(
-        &self,
-        chunks: &mut Chunks,
-        root: &EntityPath,
-        joint: &Joint,
-    ) -> Result<(), RecordError> {
+    fn add_texts(&self, chunks: &mut Chunks, joint: &Joint) -> Result<(), RecordError> {
         let (mut ticks, mut titles) = (Labels::default(), Labels::default());
         for (place, (quantity, plot)) in self.plots.iter().enumerate() {
             for (x, text) in quantity.x_ticks() {
@@ -148,7 +141,7 @@ impl<'f> Page<'f> {
             titles.put_in(shade, plot.above(plot.middle(), 56.0), clipped(&quantity.title));
             titles.put_in(shade, plot.above(plot.middle(), 28.0), quantity.finding());
         }
-        let mut layers = Layers::fixed(chunks, root.clone());
+        let mut layers = Layers::fixed(chunks, paths::AGAINST);
         layers.texts("ticks", palette::RAW, [ticks])?;
         layers.texts("titles", Ink::Own, [titles])?;
         layers.texts("legend", Ink::Own, [self.legend(joint)])
@@ -235,7 +228,6 @@ impl<'f> Page<'f> {
     fn add_cursor(
         &self,
         chunks: &mut Chunks,
-        root: &EntityPath,
         joint: &Joint,
         (layout, placed): (&JointLayout<'_>, &[Placed<'_, '_>]),
     ) -> Result<(), RecordError> {
@@ -246,7 +238,7 @@ impl<'f> Page<'f> {
             });
             of_step.collect()
         });
-        let mut layers = Layers::rows(chunks, root.clone(), layout.openings());
+        let mut layers = Layers::rows(chunks, paths::AGAINST, layout.openings());
         layers.order(50.0).points("here", palette::CANDIDATE, 8.0, here)?;
         let style = Points2D::new([Vec2D::new(SHEET.0 - 280.0, LEGEND)]).with_show_labels(true);
         let style = style.with_colors([color(palette::CANDIDATE)]).with_radii([HIDDEN]);

@@ -1,14 +1,12 @@
 //! Accepted steps among all segments: their names, and their state as numbers.
 
-use rerun::EntityPath;
-
 use crate::delay::{StepState, Verdict};
 use crate::experiment::Joint;
 use crate::figure::delay_against::Way;
 use crate::recording::chunk::{Chunks, Index, fine_columns, integers, numbers};
 use crate::recording::error::RecordError;
 use crate::recording::layout::{JointLayout, SegmentLayout, TrialLayout};
-use crate::recording::paths::{self, at, child};
+use crate::recording::paths::child;
 use crate::wording::{number, samples_text};
 
 /// A segment, and its step among the accepted ones, with its place there.
@@ -62,7 +60,6 @@ pub(super) fn placed<'l, 'a>(
 /// A row per accepted step, at its input step.
 pub(super) fn add_numbers(
     chunks: &mut Chunks,
-    entity: &EntityPath,
     joint: &Joint,
     placed: &[Placed<'_, '_>],
 ) -> Result<(), RecordError> {
@@ -88,12 +85,12 @@ pub(super) fn add_numbers(
         |value: fn(&StepState) -> Option<f64>| accepted().map(move |(.., step)| value(step));
     columns.extend(quantities.map(|(name, value)| numbers(name, of_steps(value))));
     columns.extend(fine_columns(&fine));
-    chunks.push(entity.clone(), index, columns)?;
+    chunks.push("delay/state", index, columns)?;
     for (number, signal) in joint.covariates.iter().enumerate() {
         let measured = accepted()
             .filter_map(|(moment, _, step)| Some((moment, Some((*step.covariates.get(number)?)?))));
         let (moments, values): (Vec<_>, Vec<_>) = measured.unzip();
-        let entity = child(&at(entity, paths::COVARIATE), &signal.name);
+        let entity = child("delay/state/covariate", &signal.name);
         chunks.scalars(entity, moments.into_iter().collect(), &values)?;
     }
     Ok(())

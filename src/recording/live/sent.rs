@@ -91,13 +91,13 @@ mod tests {
         let mut chunks = Ids::of("1").chunks(1);
         let revisions = Index::on("revision", (0..).take(values.len()));
         let values: Vec<_> = values.iter().copied().map(Some).collect();
-        chunks.scalars("error".into(), revisions, &values).unwrap();
+        chunks.scalars("error", revisions, &values).unwrap();
         chunks.into_chunks().pop().unwrap()
     }
 
     fn document(text: &str) -> Chunk {
         let mut chunks = Ids::of("1").chunks(1);
-        chunks.push_static("page".into(), &TextDocument::new(text)).unwrap();
+        chunks.push_static("page", &TextDocument::new(text)).unwrap();
         chunks.into_chunks().pop().unwrap()
     }
 

@@ -12,11 +12,7 @@ use crate::recording::signals::known;
 use crate::wording::bracketed;
 
 /// Adds all signals below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    preview: &Preview<'_>,
-) -> Result<(), RecordError> {
+pub(super) fn add(chunks: &mut Chunks, preview: &Preview<'_>) -> Result<(), RecordError> {
     let mut add = |entity: EntityPath, style: SeriesLines, values: &[f64]| {
         let style = match style.interpolation_mode {
             Some(_) => style,
@@ -27,10 +23,10 @@ pub(super) fn add(
     let rig = &preview.joint.rig;
     let input = line(bracketed("input", rig.input_unit.as_deref()), palette::INPUT, 1.5);
     let input = input.with_interpolation_mode(InterpolationMode::StepAfter);
-    add(at(root, paths::INPUT), input, &preview.joint.schedule.input())?;
+    add(paths::INPUT.into(), input, &preview.joint.schedule.input())?;
     let unit = bracketed("", rig.output_unit.as_deref());
     for Expectation { name, prediction, rgb } in &preview.expected {
-        let output = child(&at(root, paths::EXPECTED), name);
+        let output = child(paths::EXPECTED, name);
         for (part, sign) in [(paths::LOW, -1.0), (paths::HIGH, 1.0)] {
             let both = prediction.output.iter().zip(&prediction.margin);
             let edge: Vec<f64> = both.map(|(output, margin)| output + sign * margin).collect();
@@ -41,7 +37,7 @@ pub(super) fn add(
         add(at(&output, paths::OUTPUT), style, &prediction.output)?;
     }
     if let Some((low, high)) = rig.range {
-        let range = at(root, paths::RANGE);
+        let range = EntityPath::from(paths::RANGE);
         for (part, value) in [(paths::LOW, low), (paths::HIGH, high)] {
             let all = vec![value; preview.joint.schedule.samples()];
             let style = line(format!("range, {part}{unit}"), palette::REJECTED, 1.5);
@@ -50,5 +46,5 @@ pub(super) fn add(
     }
     let Some(apart) = &preview.apart else { return Ok(()) };
     let style = line("difference over noise", palette::ERROR, 1.5);
-    add(at(root, paths::APART), style, &apart.over_noise)
+    add(paths::APART.into(), style, &apart.over_noise)
 }

@@ -57,7 +57,7 @@ impl Content for PreviewRecording<'_> {
     fn tabs(&self, _: Growth) -> Vec<Tab<'_>> {
         let tab = |joint| {
             let add = move |chunks: &mut Chunks| add(chunks, &Preview::of(joint));
-            Tab { joint: &joint.rig.name, add: Box::new(add) }
+            Tab { joint: Some(&joint.rig.name), add: Box::new(add) }
         };
         self.joints.iter().map(tab).collect()
     }
@@ -70,10 +70,9 @@ impl Content for PreviewRecording<'_> {
 }
 
 fn add(chunks: &mut Chunks, preview: &Preview<'_>) -> Result<(), RecordError> {
-    let root = joint_root(&preview.joint.rig.name);
-    data::add(chunks, &root, preview)?;
-    sheet::add(chunks, &root, preview)?;
-    words::add(chunks, &root, preview)
+    data::add(chunks, preview)?;
+    sheet::add(chunks, preview)?;
+    words::add(chunks, preview)
 }
 
 /// The page of a joint and its signals; beside them what they distinguish, and the holds.
@@ -84,7 +83,7 @@ fn tab(joint: &DesignedJoint) -> Page {
     let expected = joint.expected();
     if !expected.is_empty() {
         let expected = expected.iter().flat_map(|(name, _)| {
-            let output = child(&path(paths::EXPECTED), name);
+            let output = child(path(paths::EXPECTED), name);
             [paths::OUTPUT, paths::LOW, paths::HIGH].map(|part| at(&output, part))
         });
         let range = [paths::LOW, paths::HIGH].map(|part| at(&path(paths::RANGE), part));

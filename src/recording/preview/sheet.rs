@@ -1,6 +1,5 @@
 //! The page of a joint: input, expected outputs with their margin, and their difference.
 
-use rerun::EntityPath;
 use rerun::datatypes::Vec2D;
 
 use super::expected::{Expectation, Preview};
@@ -10,7 +9,7 @@ use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
 use crate::recording::layers::{Ink, Layers};
 use crate::recording::palette::{self, Rgb, between, color};
-use crate::recording::paths::{self, at};
+use crate::recording::paths;
 use crate::recording::sheet::Sheet;
 use crate::wording::{bracketed, measure, number};
 
@@ -35,20 +34,15 @@ struct Page<'p> {
 }
 
 /// Draws the page below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    preview: &Preview<'_>,
-) -> Result<(), RecordError> {
-    let root = at(root, paths::SHEET);
+pub(super) fn add(chunks: &mut Chunks, preview: &Preview<'_>) -> Result<(), RecordError> {
     let page = Page::of(preview);
-    let mut layers = Layers::fixed(chunks, root.clone());
+    let mut layers = Layers::fixed(chunks, paths::SHEET);
     page.add_bands(&mut layers)?;
     layers.sheets([page.sheet()])?;
     page.add_lines(&mut layers)?;
     layers.texts("legend", Ink::Own, [page.legend()])?;
     page.add_shares(&mut layers)?;
-    page.add_here(&mut Layers::rows(chunks, root, preview.hold_rows()))
+    page.add_here(&mut Layers::rows(chunks, paths::SHEET, preview.hold_rows()))
 }
 
 impl<'p> Page<'p> {

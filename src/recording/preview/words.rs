@@ -2,31 +2,25 @@
 
 use std::fmt::Write as _;
 
-use rerun::EntityPath;
-
 use super::expected::Preview;
 use crate::design::Hold;
 use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
 use crate::recording::markdown::plain;
-use crate::recording::paths::{self, at};
+use crate::recording::paths;
 use crate::report::{SIDE_HEADER, design_sentences, side_rows};
 use crate::wording::measure;
 
 /// Adds all words below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    preview: &Preview<'_>,
-) -> Result<(), RecordError> {
-    chunks.page(at(root, paths::SAYS), says(preview).unwrap_or_default())?;
+pub(super) fn add(chunks: &mut Chunks, preview: &Preview<'_>) -> Result<(), RecordError> {
+    chunks.page(paths::SAYS, says(preview).unwrap_or_default())?;
     let holds = preview.joint.schedule.holds().iter().zip(preview.holds()).enumerate();
     let pages = holds
         .clone()
         .map(|(place, (hold, ends))| page(preview, place, *hold, ends).unwrap_or_default());
-    chunks.pages(at(root, paths::HERE), preview.hold_rows(), pages)?;
+    chunks.pages(paths::HERE, preview.hold_rows(), pages)?;
     let lines = holds.map(|(place, (hold, _))| (None, line(preview, place, *hold)));
-    chunks.lines(at(root, paths::HOLDS), preview.hold_rows(), lines)
+    chunks.lines(paths::HOLDS, preview.hold_rows(), lines)
 }
 
 type Written = Result<String, std::fmt::Error>;

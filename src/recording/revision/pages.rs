@@ -1,6 +1,6 @@
 //! All pages on the revisions of a model, and what a program reads of them.
 
-use rerun::{EntityPath, TextDocument};
+use rerun::TextDocument;
 
 use super::figure::Held;
 use super::{evidence, ladder, record, words};
@@ -13,7 +13,7 @@ use crate::recording::error_share;
 use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
 use crate::recording::palette;
-use crate::recording::paths::{self, at};
+use crate::recording::paths;
 use crate::report::{ComparedJoint, ImprovedJoint};
 
 /// Width and height of the sheet with ladder, evidence and ranking.
@@ -22,7 +22,6 @@ pub(in crate::recording) const SIZE: (f32, f32) = (1900.0, 520.0);
 /// Rows of the joint that is recorded.
 struct Steps<'c> {
     chunks: &'c mut Chunks,
-    root: EntityPath,
     /// The timeline of revisions alone.
     numbers: Index,
     index: Index,
@@ -33,7 +32,6 @@ struct Steps<'c> {
 /// Adds everything on the revisions of `improved` below `root`/revision.
 pub(in crate::recording) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     improved: &ImprovedJoint<'_>,
 ) -> Result<(), RecordError> {
@@ -49,7 +47,7 @@ pub(in crate::recording) fn add(
     let index = index.all_at("doubt", layout.segments().next().map(|_| 1));
     let numbers = Index::on("revision", numbers);
     let opens_on_last = opening.is_some();
-    let mut steps = Steps { chunks, root: root.clone(), numbers, index, opens_on_last };
+    let mut steps = Steps { chunks, numbers, index, opens_on_last };
     steps.figures(improved)?;
     steps.words(layout, improved)?;
     let models: Vec<_> = improved.revisions.iter().map(|revision| &revision.comparison).collect();
@@ -88,8 +86,7 @@ fn around(
 
 impl Steps<'_> {
     fn layers(&mut self, path: &str) -> Layers<'_> {
-        let root = at(&self.root, path);
-        let layers = Layers::rows(self.chunks, root, self.index.clone()).back_to_front();
+        let layers = Layers::rows(self.chunks, path, self.index.clone()).back_to_front();
         if self.opens_on_last { layers.opening_on_last() } else { layers }
     }
 
@@ -104,7 +101,7 @@ impl Steps<'_> {
         ];
         for (path, figure) in figures {
             let all = improved.revisions.iter().map(|revision| figure(&revision.comparison));
-            let entity = at(&self.root, &format!("revision/{path}"));
+            let entity = format!("revision/{path}");
             self.chunks.scalars(entity, self.numbers.clone(), &all.collect::<Vec<_>>())?;
         }
         let changes: [(&str, Effect); 2] = [("added", added), ("removed", removed)];
@@ -113,7 +110,7 @@ impl Steps<'_> {
             let lengths = effects.iter().map(|effect| usize::from(effect.is_some()));
             let texts =
                 TextDocument::update_fields().with_many_text(effects.iter().flatten().copied());
-            let entity = at(&self.root, &format!("revision/{path}"));
+            let entity = format!("revision/{path}");
             self.chunks.push(entity, self.numbers.clone(), texts.columns(lengths)?)?;
         }
         Ok(())
@@ -136,7 +133,7 @@ impl Steps<'_> {
             lists("law_input", &law(|point| point.0)),
             lists("law_speed", &law(|point| point.1)),
         ];
-        self.chunks.push(at(&self.root, "revision/evidence"), self.numbers.clone(), columns)
+        self.chunks.push("revision/evidence", self.numbers.clone(), columns)
     }
 
     fn words(
@@ -151,7 +148,7 @@ impl Steps<'_> {
             [(paths::REVISION_WORDS, words::page), (paths::REVISION_PARAMETERS, words::parameters)];
         for (path, page) in pages {
             let texts = shown.iter().map(|at| page(layout, improved, *at));
-            self.chunks.pages(at(&self.root, path), self.index.clone(), texts)?;
+            self.chunks.pages(path, self.index.clone(), texts)?;
         }
         Ok(())
     }

@@ -1,23 +1,16 @@
 //! What a program reads: a row per setting, and a row per step.
 
-use rerun::EntityPath;
-
 use super::swept::Swept;
 use crate::delay::Settings;
 use crate::delay::sweep::{Agreement, RunSummary, Spread, SweptStep};
 use crate::recording::chunk::{Chunks, integers, lists, numbers, texts};
 use crate::recording::error::RecordError;
-use crate::recording::paths::at;
 use crate::units::{Length, signed};
 
 /// Adds `/sweep/setting` and `/sweep/step` below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    swept: &Swept<'_>,
-) -> Result<(), RecordError> {
-    add_settings(chunks, at(root, "sweep/setting"), swept)?;
-    add_steps(chunks, at(root, "sweep/step"), swept)
+pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
+    add_settings(chunks, swept)?;
+    add_steps(chunks, swept)
 }
 
 /// A number of samples; none of what is in seconds.
@@ -32,11 +25,7 @@ fn has_rows(run: &Settings) -> bool {
     !run.method.spec().has_intervals
 }
 
-fn add_settings(
-    chunks: &mut Chunks,
-    entity: EntityPath,
-    swept: &Swept<'_>,
-) -> Result<(), RecordError> {
+fn add_settings(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
     let runs = || swept.grid.runs().iter();
     let whole = |of: fn(&Settings) -> Option<usize>| runs().map(move |run| of(run).map(signed));
     let summaries = || swept.reported.sweep.runs.iter().map(Option::as_ref);
@@ -59,14 +48,10 @@ fn add_settings(
         numbers("lag_mean_s", number(|run| run.lag_s)),
         lists("delays", &(0..runs().len()).map(delays).collect::<Vec<_>>()),
     ];
-    chunks.push(entity, swept.settings(), columns)
+    chunks.push("sweep/setting", swept.settings(), columns)
 }
 
-fn add_steps(
-    chunks: &mut Chunks,
-    entity: EntityPath,
-    swept: &Swept<'_>,
-) -> Result<(), RecordError> {
+fn add_steps(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
     let steps = || swept.steps.iter().map(|(step, _)| *step);
     let whole = |of: fn(&SweptStep) -> usize| steps().map(move |step| Some(signed(of(step))));
     let agreed = |of: fn(Agreement) -> f64| steps().map(move |step| step.agreement.map(of));
@@ -94,5 +79,5 @@ fn add_steps(
         ),
         lists("delays", &steps().map(delays).collect::<Vec<_>>()),
     ];
-    chunks.push(entity, swept.index.clone(), columns)
+    chunks.push("sweep/step", swept.index.clone(), columns)
 }

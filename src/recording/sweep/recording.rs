@@ -53,7 +53,7 @@ impl Content for SweepRecording<'_> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
         let tab = |joint| {
             let swept = Swept::of(self, joint, &starts);
-            Tab { joint: &joint.joint.name, add: Box::new(move |chunks| add(chunks, &swept)) }
+            Tab { joint: Some(&joint.joint.name), add: Box::new(move |chunks| add(chunks, &swept)) }
         };
         self.joints.iter().copied().map(tab).collect()
     }
@@ -66,11 +66,10 @@ impl Content for SweepRecording<'_> {
 }
 
 fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
-    let root = joint_root(&swept.reported.joint.name);
-    data::add(chunks, &root, swept)?;
-    sheet::add(chunks, &root, swept)?;
-    step::add(chunks, &root, swept)?;
-    words::add(chunks, &root, swept)
+    data::add(chunks, swept)?;
+    sheet::add(chunks, swept)?;
+    step::add(chunks, swept)?;
+    words::add(chunks, swept)
 }
 
 /// All steps and one step; beside them what is found, what is under the cursor, and the

@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
+use rerun::Points2D;
 use rerun::components::DrawOrder;
 use rerun::datatypes::Vec2D;
-use rerun::{EntityPath, Points2D};
 
 use super::map::{Block, beside, blocks, named, picture, rows_of};
 use super::swept::{Opinion, Swept};
@@ -16,7 +16,7 @@ use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
 use crate::recording::layers::{Ink, Layers};
 use crate::recording::palette::{self, Rgb, color};
-use crate::recording::paths::{self, at};
+use crate::recording::paths;
 use crate::recording::sheet::{Sheet, TITLE};
 use crate::report::settings_in_words;
 use crate::wording::number;
@@ -32,21 +32,16 @@ const SIDES: (f32, f32) = (196.0, SHEET.0 - 70.0);
 const NAMED: usize = 20_000_000;
 
 /// Draws the page below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    swept: &Swept<'_>,
-) -> Result<(), RecordError> {
-    let root = at(root, paths::SHEET);
+pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
     let page = Page::of(swept);
-    let mut layers = Layers::fixed(chunks, root.clone());
+    let mut layers = Layers::fixed(chunks, paths::SHEET);
     layers.sheets([page.grid()])?;
     page.add_delays(&mut layers)?;
     page.add_sensitive(&mut layers)?;
     page.add_map(&mut layers)?;
     layers.texts("legend", Ink::Own, [legend(swept)])?;
-    page.add_setting(&mut Layers::rows(chunks, root.clone(), swept.settings()))?;
-    page.add_step(&mut Layers::rows(chunks, root, swept.index.clone()))
+    page.add_setting(&mut Layers::rows(chunks, paths::SHEET, swept.settings()))?;
+    page.add_step(&mut Layers::rows(chunks, paths::SHEET, swept.index.clone()))
 }
 
 /// The three plots on their sheet, which share the axis of steps.

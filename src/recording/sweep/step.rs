@@ -1,6 +1,5 @@
 //! The output around one step, and what each setting makes of it.
 
-use rerun::EntityPath;
 use rerun::datatypes::Vec2D;
 
 use super::map::{Block, beside, blocks, named};
@@ -12,7 +11,7 @@ use crate::recording::chunk::{Chunks, Index};
 use crate::recording::error::RecordError;
 use crate::recording::layers::Layers;
 use crate::recording::palette::{self, dimmed};
-use crate::recording::paths::{self, at};
+use crate::recording::paths;
 use crate::recording::sheet::{Sheet, TITLE};
 use crate::wording::{bracketed, number as shown};
 
@@ -24,17 +23,12 @@ const SIDES: (f32, f32) = (196.0, SHEET.0 - 40.0);
 
 /// Draws each step below `root`. On the timeline of settings, where one step is all that can
 /// be seen, it is the one that is most sensitive to a setting.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    swept: &Swept<'_>,
-) -> Result<(), RecordError> {
-    let root = at(root, paths::ONE);
+pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
     let (index, order) = worst_last(swept);
     let drawn = order.iter().filter_map(|place| swept.steps.get(*place));
     let drawings: Vec<_> = drawn.map(|(step, trial)| Drawing::of(swept, step, trial)).collect();
-    add_row_names(&mut Layers::fixed(chunks, root.clone()), swept)?;
-    let mut layers = Layers::rows(chunks, root, index).back_to_front();
+    add_row_names(&mut Layers::fixed(chunks, paths::ONE), swept)?;
+    let mut layers = Layers::rows(chunks, paths::ONE, index).back_to_front();
     let sheets = drawings.iter().map(|drawing| drawing.sheet(swept.reported.joint).into_parts());
     let (grids, texts): (Vec<_>, Vec<_>) = sheets.unzip();
     layers.strips("grid", palette::GRID, 0.7, grids)?;

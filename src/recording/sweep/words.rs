@@ -2,29 +2,22 @@
 
 use std::fmt::Write as _;
 
-use rerun::EntityPath;
-
 use super::swept::{Opinion, Swept};
 use crate::delay::sweep::{Factor, SweptStep};
 use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
 use crate::recording::markdown::plain;
-use crate::recording::paths::{self, at};
+use crate::recording::paths;
 use crate::report::{depends_on, level_cell, level_text, sweep_sentences};
 use crate::wording::{capitalized, number};
 
 /// Adds all words below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    swept: &Swept<'_>,
-) -> Result<(), RecordError> {
-    chunks.page(at(root, paths::FOUND), found(swept).unwrap_or_default())?;
-    let here = at(root, paths::HERE);
+pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
+    chunks.page(paths::FOUND, found(swept).unwrap_or_default())?;
     let settings = (0..swept.names.len()).map(|run| setting(swept, run).unwrap_or_default());
-    chunks.pages(here.clone(), swept.settings(), settings)?;
+    chunks.pages(paths::HERE, swept.settings(), settings)?;
     let steps = swept.steps.iter().map(|(step, _)| one_step(swept, step).unwrap_or_default());
-    chunks.pages(here, swept.index.clone(), steps)?;
+    chunks.pages(paths::HERE, swept.index.clone(), steps)?;
     // A line for each step that is sensitive to a setting, in the order of the record.
     let sensitive: Vec<usize> = (0..swept.steps.len())
         .filter(|place| {
@@ -35,7 +28,7 @@ pub(super) fn add(
     // All of them are there from the first setting on.
     let index = swept.index.rows(&sensitive).all_at("setting", Some(1));
     let lines = sensitive.iter().map(|place| (None, line(swept, swept.steps[*place].0)));
-    chunks.lines(at(root, paths::SENSITIVE_LOG), index, lines)
+    chunks.lines(paths::SENSITIVE_LOG, index, lines)
 }
 
 /// A step, and what it is sensitive to.
