@@ -99,6 +99,17 @@ impl Plot {
         [Vec2D::new(self.left, self.y(y)), Vec2D::new(self.right, self.y(y))]
     }
 
+    /// A bar so far above the plot from one value of the horizontal axis to another, as far as it reaches,
+    /// with a tick at each end.
+    pub(super) fn interval(&self, ends: [f64; 2], above: f32, half_tick: f32) -> Strips {
+        let [low, high] = ends.map(|x| x.clamp(self.x.low, self.x.high));
+        let bar = [low, high].map(|x| self.above(x, above)).to_vec();
+        let tick = |x: f64| {
+            [above - half_tick, above + half_tick].map(|above| self.above(x, above)).to_vec()
+        };
+        vec![tick(low), bar, tick(high)]
+    }
+
     /// The part of a line between two places that is in the plot: none of it lies on the frame.
     pub(super) fn clipped(&self, [from, to]: [Place; 2]) -> Option<[Vec2D; 2]> {
         let parts = |place: Place| (self.x.part(place.0), self.y.part(place.1));

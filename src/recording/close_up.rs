@@ -77,11 +77,7 @@ impl<'a> CloseUp<'a> {
         let mut strips: Strips = self.vertical(p + delay).into_iter().collect();
         let own = self.decision.fine.filter(|_| self.decision.delay_before_review().is_none());
         if let Some(fine) = own {
-            let Span { low: first, high: last } = self.plot.x_span();
-            let [low, high] = [fine.low, fine.high].map(|by| (p + by).clamp(first, last));
-            let tick = |k: f64| [-4.0, -20.0].map(|up| self.plot.above(k, up)).to_vec();
-            strips.push([low, high].map(|k| self.plot.above(k, -12.0)).to_vec());
-            strips.extend([tick(low), tick(high)]);
+            strips.extend(self.plot.interval([p + fine.low, p + fine.high], -12.0, 8.0));
         }
         strips
     }

@@ -44,12 +44,9 @@ pub enum RecordError {
         /// What the connection says.
         source: Box<SinkFlushError>,
     },
-    /// A bug: columns of a chunk do not fit together.
-    #[error("the recording's columns do not fit together")]
-    Chunk(#[source] Box<ChunkError>),
-    /// A bug: a value has no place in the recording.
+    /// A bug: a value has no place in the recording, or columns do not fit together.
     #[error("a value cannot be recorded")]
-    Serialize(#[source] Box<SerializationError>),
+    Value(#[source] Box<dyn std::error::Error + Send + Sync>),
 }
 
 impl From<EncodeError> for RecordError {
@@ -60,12 +57,12 @@ impl From<EncodeError> for RecordError {
 
 impl From<ChunkError> for RecordError {
     fn from(error: ChunkError) -> Self {
-        Self::Chunk(Box::new(error))
+        Self::Value(Box::new(error))
     }
 }
 
 impl From<SerializationError> for RecordError {
     fn from(error: SerializationError) -> Self {
-        Self::Serialize(Box::new(error))
+        Self::Value(Box::new(error))
     }
 }

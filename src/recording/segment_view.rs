@@ -291,18 +291,12 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let (low, high) = step.interval.unwrap_or((0.0, delay));
         // Below the edge, so that it is not taken for the first method's above.
         let depth = -10.0 - 12.0 * index as f32;
-        let tick = |k: f64| [depth - 4.0, depth + 4.0].map(|up| self.output.above(k, up)).to_vec();
-        let [low, high] = [low, high].map(|by| within(p + by));
         let lines =
             step.lines.filter(|_| step.p == own).map_or_else(Vec::new, |[before, after]| {
                 vec![vec![at(&before, start), at(&before, q)], vec![at(&after, q), at(&after, end)]]
             });
-        let bar = [
-            self.output.vertical(q).to_vec(),
-            tick(low),
-            [low, high].map(|k| self.output.above(k, depth)).to_vec(),
-            tick(high),
-        ];
+        let bar = self.output.interval([p + low, p + high], depth, 4.0);
+        let bar = std::iter::once(self.output.vertical(q).to_vec()).chain(bar);
         lines.into_iter().chain(bar).chain(self.close_up.vertical(p + delay)).collect()
     }
 
@@ -318,11 +312,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
     fn interval(&self) -> Vec<Vec<Vec2D>> {
         let decision = self.segment.decision;
         let Some(fine) = decision.fine else { return Vec::new() };
-        let Span { low: first, high: last } = self.output.x_span();
-        let end = |delay: f64| (decision.input_step.sample as f64 + delay).clamp(first, last);
-        let [low, high] = [end(fine.low), end(fine.high)];
-        let tick = |k: f64| [3.0, 13.0].map(|up| self.output.above(k, up)).to_vec();
-        vec![tick(low), [low, high].map(|k| self.output.above(k, 8.0)).to_vec(), tick(high)]
+        let p = decision.input_step.sample as f64;
+        self.output.interval([p + fine.low, p + fine.high], 8.0, 5.0)
     }
 
     /// The chosen pair if its verdict is the wanted one.

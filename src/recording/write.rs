@@ -7,6 +7,7 @@ use rerun::external::re_build_info::CrateVersion;
 use rerun::external::re_log_encoding::{Encoder, EncodingOptions};
 use rerun::{RecordingStream, StoreId, StoreKind};
 
+use super::assembly::Recording;
 use super::chunk::Ids;
 use super::content::{
     Content, Growth, Part, activation, application, chunk_message, first_messages, for_each_chunk,
@@ -16,7 +17,6 @@ use super::end::EndHeld;
 use super::error::RecordError;
 use super::index::IndexRecording;
 use super::preview::PreviewRecording;
-use super::recorded::Recording;
 use super::sweep::SweepRecording;
 
 /// Writes `recording` to `out` as a whole `.rrd` file, footer included.
@@ -83,7 +83,7 @@ fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {
 /// Entities lie at `/<joint>/…` and `/about`, beside whatever the caller logs.
 ///
 /// # Errors
-/// [`RecordError::Chunk`] and [`RecordError::Serialize`], which would be bugs. What
+/// [`RecordError::Value`], which would be a bug. What
 /// becomes of the data is the stream's business.
 pub fn log_recording(
     recording: &Recording<'_>,

@@ -11,13 +11,13 @@ use rerun::{MemoryLimit, ServerOptions, StoreId, StoreKind};
 
 use super::address;
 use super::sent::Sent;
+use crate::recording::assembly::Recording;
 use crate::recording::chunk::Ids;
 use crate::recording::content::{
     Content, Growth, Part, application, chunk_message, first_messages, for_each_chunk,
     view_messages,
 };
 use crate::recording::error::RecordError;
-use crate::recording::recorded::Recording;
 use crate::recording::sweep::SweepRecording;
 
 /// Longest time that a viewer may take to answer.
@@ -121,7 +121,7 @@ impl Live {
     /// Sends what is new of `recording`: all of it at first.
     ///
     /// # Errors
-    /// [`RecordError::Chunk`] and [`RecordError::Serialize`], which would be bugs. Whether
+    /// [`RecordError::Value`], which would be a bug. Whether
     /// it arrives, [`flush`](Self::flush) reports.
     pub(crate) fn send(&mut self, recording: &Recording<'_>) -> Result<(), RecordError> {
         self.send_part(recording, None)

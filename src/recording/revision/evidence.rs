@@ -10,17 +10,16 @@ use super::residual;
 use crate::experiment::Joint;
 use crate::recording::canvas::Span;
 use crate::recording::error::RecordError;
-use crate::recording::error_share::short;
 use crate::recording::layers::{Ink, Layers};
 use crate::recording::palette;
-use crate::recording::sheet::Sheet;
 use crate::report::ImprovedJoint;
+use crate::wording::bracketed;
 
 /// Speeds and laws of each revision, and what is drawn of them.
 pub(super) struct Evidence {
     pub(super) held: Vec<Vec<Held>>,
     pub(super) laws: Vec<Law>,
-    figures: Vec<Figure>,
+    pub(super) figures: Vec<Figure>,
 }
 
 /// What is measured, and what the models of `improved` make of it.
@@ -66,18 +65,13 @@ pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
 }
 
 fn title(joint: &Joint, shown: Shown) -> String {
-    let unit = |unit: &Option<String>, per: &str| {
-        unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}{per}]"))
+    let (what, per) = match shown {
+        Shown::Speed => ("measured speed", "/s"),
+        Shown::Output => ("measured output", ""),
     };
-    let input = unit(&joint.input_unit, "");
-    match shown {
-        Shown::Speed => {
-            format!("measured speed{} at held input{input}", unit(&joint.output_unit, "/s"))
-        }
-        Shown::Output => {
-            format!("measured output{} at held input{input}", unit(&joint.output_unit, ""))
-        }
-    }
+    let unit = joint.output_unit.as_ref().map(|unit| format!("{unit}{per}"));
+    let input = bracketed("held input", joint.input_unit.as_deref());
+    format!("{} at {input}", bracketed(what, unit.as_deref()))
 }
 
 /// Adds the points, and the laws drawn through them.
@@ -108,23 +102,4 @@ pub(super) fn add(rows: &mut Layers<'_>, evidence: &Evidence) -> Result<(), Reco
         rows.texts(name, Ink::ByRow(rgbs), figures().map(|figure| figure.legend(which)))?;
     }
     Ok(())
-}
-
-impl Evidence {
-    /// Grid and title of the plot of the revision at `place`.
-    pub(super) fn sheet(&self, place: usize) -> Sheet {
-        let mut drawn = Sheet::default();
-        if let Some(figure) = self.figures.get(place) {
-            let plot = figure.plot();
-            let ticks = |ticks: Vec<f64>| ticks.into_iter().map(|tick| (tick, short(tick)));
-            let x_ticks = plot.x_span().ticks(5.0);
-            let y_ticks: Vec<_> = ticks(plot.y_span().ticks(4.0)).collect();
-            drawn.outline(&plot, &x_ticks, &y_ticks);
-            drawn.put(Figure::title_place(), figure.title.clone());
-            for (x, text) in ticks(x_ticks) {
-                drawn.put(plot.below(x, 2.0), text);
-            }
-        }
-        drawn
-    }
 }

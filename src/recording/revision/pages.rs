@@ -70,8 +70,8 @@ fn around(
 ) -> Result<(), RecordError> {
     let (mut noise, mut names, mut texts) = (Vec::new(), Vec::new(), Vec::new());
     let mut grids = Vec::new();
-    for at in 0..improved.revisions.len() {
-        let (grid, mut labels) = evidence.sheet(at).into_parts();
+    for (at, figure) in evidence.figures.iter().enumerate() {
+        let (grid, mut labels) = figure.sheet().into_parts();
         let mut floor = Labels::default();
         noise.push(ladder::around(improved, at, &mut labels, &mut floor));
         grids.push(grid);

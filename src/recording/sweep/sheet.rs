@@ -297,7 +297,7 @@ impl Group {
         let mut groups: BTreeMap<(u64, Opinion), Self> = BTreeMap::new();
         for run in 0..step.delays.len() {
             let Some(delay) = Swept::delay(step, run) else { continue };
-            let opinion = Swept::cell(step, run).opinion();
+            let opinion = Swept::cell(step, run).opinion;
             let empty = Self { delay, opinion, runs: Vec::new(), votes: 0 };
             let group = groups.entry((delay.to_bits(), opinion)).or_insert(empty);
             group.runs.push(run);

@@ -170,7 +170,7 @@ impl<'s> Drawing<'s> {
     /// A point in the row of each combination of this opinion.
     fn delays(&self, opinion: Opinion) -> Vec<Vec2D> {
         let rows = self.swept.grid.combinations().iter().enumerate();
-        let own = rows.filter(|(_, one)| Swept::cell(self.step, one.run).opinion() == opinion);
+        let own = rows.filter(|(_, one)| Swept::cell(self.step, one.run).opinion == opinion);
         let place = |(row, one): (usize, &crate::delay::sweep::Combination)| {
             let delay = Swept::delay(self.step, one.run)?;
             Some(self.delays.at(delay, self.delays.y_span().high - row as f64 - 0.5))

@@ -53,8 +53,12 @@ impl<'a> Swept<'a> {
 
     /// What a run reports of a step.
     pub(super) fn cell(step: &SweptStep, run: usize) -> Cell {
-        let Some(found) = step.delays.get(run).copied().flatten() else { return Cell::Silent };
-        step.agreement.map_or(Cell::Same, |agreed| Cell::of(&found, &agreed))
+        let found = step.delays.get(run).copied().flatten();
+        match (found, step.agreement) {
+            (None, _) => Cell { opinion: Opinion::Silent, by: 0.0 },
+            (Some(_), None) => Cell { opinion: Opinion::Same, by: 0.0 },
+            (Some(found), Some(agreed)) => Cell::of(&found, &agreed),
+        }
     }
 
     /// The delay that a run reports of a step; samples.
@@ -65,52 +69,38 @@ impl<'a> Swept<'a> {
 
 /// What a setting reports of a step, beside what most report.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Cell {
-    /// Nothing: it did not accept it.
-    Silent,
-    /// What most say.
-    Same,
-    /// A longer delay, by so many samples more than it allows.
-    Longer(f64),
-    /// A shorter one.
-    Shorter(f64),
+pub(super) struct Cell {
+    pub(super) opinion: Opinion,
+    /// By how many samples more than it allows its delay differs.
+    pub(super) by: f64,
 }
 
 impl Cell {
     fn of(found: &ReportedDelay, agreed: &Agreement) -> Self {
         let (longer, shorter) = (found.low - agreed.low, agreed.high - found.high);
-        if longer.max(shorter) <= 0.0 {
-            Self::Same
-        } else if longer >= shorter {
-            Self::Longer(longer)
-        } else {
-            Self::Shorter(shorter)
-        }
+        let by = longer.max(shorter);
+        let opinion = match by {
+            ..=0.0 => Opinion::Same,
+            _ if longer >= shorter => Opinion::Longer,
+            _ => Opinion::Shorter,
+        };
+        Self { opinion, by }
     }
 
     /// How far it is from what most say; what is not accepted is next to what agrees.
     pub(super) fn weight(self) -> f64 {
-        match self {
-            Self::Same => -2.0,
-            Self::Silent => -1.0,
-            Self::Longer(by) | Self::Shorter(by) => by,
-        }
-    }
-
-    /// Which way it differs, if at all.
-    pub(super) fn opinion(self) -> Opinion {
-        match self {
-            Self::Silent => Opinion::Silent,
-            Self::Same => Opinion::Same,
-            Self::Longer(_) => Opinion::Longer,
-            Self::Shorter(_) => Opinion::Shorter,
+        match self.opinion {
+            Opinion::Same => -2.0,
+            Opinion::Silent => -1.0,
+            Opinion::Longer | Opinion::Shorter => self.by,
         }
     }
 }
 
-/// A [`Cell`] without its distance.
+/// Which way it differs, if at all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Opinion {
+    /// It did not accept the step.
     Silent,
     Same,
     Longer,
@@ -139,10 +129,11 @@ mod tests {
         let cell = |low, high| {
             Cell::of(&ReportedDelay { delay: f64::midpoint(low, high), low, high }, &agreed)
         };
-        assert_eq!(cell(9.0, 11.0), Cell::Same);
-        assert_eq!(cell(12.0, 14.0), Cell::Longer(2.5));
-        assert_eq!(cell(4.0, 6.0), Cell::Shorter(5.0));
-        assert!(cell(4.0, 6.0).weight() > Cell::Silent.weight());
-        assert!(Cell::Silent.weight() > Cell::Same.weight());
+        assert_eq!(cell(9.0, 11.0).opinion, Opinion::Same);
+        assert_eq!(cell(12.0, 14.0), Cell { opinion: Opinion::Longer, by: 2.5 });
+        assert_eq!(cell(4.0, 6.0), Cell { opinion: Opinion::Shorter, by: 5.0 });
+        let silent = Cell { opinion: Opinion::Silent, by: 0.0 };
+        assert!(cell(4.0, 6.0).weight() > silent.weight());
+        assert!(silent.weight() > cell(9.0, 11.0).weight());
     }
 }

@@ -96,7 +96,7 @@ fn setting(swept: &Swept<'_>, run: usize) -> Written {
 /// A step on which a run differs, and what it says.
 fn differing(step: &SweptStep, run: usize) -> Option<String> {
     let delay = Swept::delay(step, run)? * step.period_s;
-    match Swept::cell(step, run).opinion() {
+    match Swept::cell(step, run).opinion {
         Opinion::Longer | Opinion::Shorter => Some(format!("{} ({delay:.3} s)", step.number)),
         Opinion::Same | Opinion::Silent => None,
     }
