@@ -154,44 +154,34 @@ impl<'s> Page<'s> {
         }
         layers.strips("range", palette::GRID, 1.0, [ranges])?;
         layers.order(45.0).strips("agreed", palette::ACCEPTED, 1.8, [agreed])?;
-        let dots = self.dots();
+        // A point for all settings that report one delay of a step.
+        let mut groups: Vec<(f64, &SweptStep, Group)> = Vec::new();
+        for (x, step) in self.steps() {
+            groups.extend(Group::all(self.swept, step).into_iter().map(|group| (x, step, group)));
+        }
+        let is_named = groups.len().saturating_mul(self.swept.grid.combinations().len()) <= NAMED;
         for (path, opinion, order) in [
             ("same", Opinion::Same, 30.0),
             ("longer", Opinion::Longer, 40.0),
             ("shorter", Opinion::Shorter, 40.0),
         ] {
-            let own: Vec<&Dot> = dots.iter().filter(|dot| dot.opinion == opinion).collect();
-            let points = Points2D::new(own.iter().map(|dot| dot.place));
-            let points = points.with_radii(own.iter().map(|dot| dot.radius));
-            let points = points.with_labels(own.iter().map(|dot| dot.name.as_str()));
-            let points = points.with_colors([color(opinion.rgb())]).with_show_labels(false);
-            let points = points.with_draw_order(DrawOrder::from(order));
+            let own = || groups.iter().filter(|(.., group)| group.opinion == opinion);
+            let place = |x: f64, step: &SweptStep, group: &Group| {
+                self.delays.at(x, group.delay * step.period_s)
+            };
+            let name = |step: &SweptStep, group: &Group| {
+                let words = is_named.then(|| format!(": {}", group.in_words(self.swept)));
+                group.name(step) + &words.unwrap_or_default()
+            };
+            let points = Points2D::new(own().map(|(x, step, group)| place(*x, step, group)))
+                .with_radii(own().map(|(_, step, group)| group.radius(step)))
+                .with_labels(own().map(|(_, step, group)| name(step, group)))
+                .with_colors([color(opinion.rgb())])
+                .with_show_labels(false)
+                .with_draw_order(DrawOrder::from(order));
             layers.stays(path, &points)?;
         }
         Ok(())
-    }
-
-    /// A point for all settings that report one delay of a step.
-    fn dots(&self) -> Vec<Dot> {
-        let mut groups: Vec<(f64, &SweptStep, Group)> = Vec::new();
-        for (x, step) in self.steps() {
-            groups.extend(Group::all(self.swept, step).into_iter().map(|group| (x, step, group)));
-        }
-        let named = groups.len().saturating_mul(self.swept.grid.combinations().len()) <= NAMED;
-        let dot = |(x, step, group): &(f64, &SweptStep, Group)| {
-            let seconds = group.delay * step.period_s;
-            let mut name = group.name(step);
-            if named {
-                name = format!("{name}: {}", group.in_words(self.swept));
-            }
-            Dot {
-                place: self.delays.at(*x, seconds),
-                opinion: group.opinion,
-                radius: group.radius(step),
-                name,
-            }
-        };
-        groups.iter().map(dot).collect()
     }
 
     /// A mark for each step beside what it is sensitive to, and how many they are.
@@ -327,14 +317,6 @@ impl Group {
         }
         settings_in_words(swept.grid, &chosen)
     }
-}
-
-/// A point of the plot of delays.
-struct Dot {
-    place: Vec2D,
-    opinion: Opinion,
-    radius: f32,
-    name: String,
 }
 
 /// The range of the delays in seconds: all that are agreed on, and all others but for a few
