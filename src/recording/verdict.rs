@@ -12,7 +12,7 @@ use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths;
 use crate::delay::{Check, Condition, Decision, FineDelay, OnsetModel, Outcome};
-use crate::delay::{Settings, Tracking, Verdict};
+use crate::delay::{Settings, Verdict};
 use crate::experiment::Joint;
 use crate::numerics::quantile;
 use crate::report::{EstimatedJoint, JointSummary, dead_time_sentences};
@@ -334,71 +334,61 @@ impl Facts<'_, '_> {
 
     fn quantities(&self) -> String {
         let decision = self.segment.decision;
-        let step = decision.input_step;
-        let unit = self.joint.input_unit.as_deref();
-        let input = |value| with_unit(value, unit, "");
-        let (first, last) = (decision.segment.first, decision.segment.last);
-        let mut rows = vec![
-            ("input step p".to_owned(), self.at(step.sample)),
-            ("input".to_owned(), format!("{} → {}", input(step.before), input(step.after))),
-            (
-                "input keeps this level for".to_owned(),
-                format!(
-                    "{} = {}",
-                    counted(decision.hold, "sample"),
-                    self.seconds(decision.hold as f64)
-                ),
-            ),
-            (
-                "segment r … end".to_owned(),
-                format!("{first} … {last}: {} samples", decision.segment.len()),
-            ),
-        ];
+        let (step, segment, hold) = (decision.input_step, decision.segment, decision.hold);
+        let input = |value| with_unit(value, self.joint.input_unit.as_deref(), "");
+        let (before, after) = (input(step.before), input(step.after));
+        let mut page = "| quantity | value |\n|---|---|".to_owned();
+        let mut row = |name: &str, value: String| page.extend(["\n| ", name, " | ", &value, " |"]);
+        row("input step p", self.at(step.sample));
+        row("input", format!("{before} → {after}"));
+        let held = self.seconds(hold as f64);
+        row("input keeps this level for", format!("{} = {held}", counted(hold, "sample")));
+        let (first, last, samples) = (segment.first, segment.last, segment.len());
+        row("segment r … end", format!("{first} … {last}: {samples} samples"));
         if let Some(best) = decision.breakpoint() {
             let candidate = best.candidate;
-            let slope = |slope| with_unit(slope, self.joint.output_unit.as_deref(), "/sample");
-            let samples = decision.delay().unwrap_or(best.delay as f64);
-            let delay = format!("**{} = {}**", samples_text(samples), self.delay(samples));
-            let count = decision.candidates.len();
+            let output = |value, per| with_unit(value, self.joint.output_unit.as_deref(), per);
+            let delay =
+                |samples: f64| format!("{} = {}", samples_text(samples), self.delay(samples));
+            if let Some(program) = decision.delay_before_review() {
+                let place = self.at(candidate.breakpoint);
+                row("the program's δ and q", format!("{}; {place}", delay(program)));
+            }
             let breakpoint = match decision.delay_before_review().and(self.segment.place()) {
                 Some(place) => format!("sample {place}, by a reviewer"),
                 None => self.breakpoint(candidate.breakpoint),
             };
-            if let Some(delay) = decision.delay_before_review() {
-                let program = format!("{} = {}", samples_text(delay), self.delay(delay));
-                let place = self.at(candidate.breakpoint);
-                rows.push(("the program's δ and q".to_owned(), format!("{program}; {place}")));
-            }
-            rows.extend([
-                ("breakpoint q".to_owned(), breakpoint),
-                ("candidate f".to_owned(), format!("{} of {count}", candidate.f)),
-                ("**delay δ = q − p**".to_owned(), delay),
-                (
-                    "SSE of both lines".to_owned(),
-                    with_unit(candidate.sse, self.joint.output_unit.as_deref(), "²"),
-                ),
-                ("slope before".to_owned(), slope(candidate.before.slope)),
-                ("slope after".to_owned(), slope(candidate.after.slope)),
-            ]);
+            row("breakpoint q", breakpoint);
+            row("candidate f", format!("{} of {}", candidate.f, decision.candidates.len()));
+            let own = delay(decision.delay().unwrap_or(best.delay as f64));
+            row("**delay δ = q − p**", format!("**{own}**"));
+            row("SSE of both lines", output(candidate.sse, "²"));
+            row("slope before", output(candidate.before.slope, "/sample"));
+            row("slope after", output(candidate.after.slope, "/sample"));
         }
-        rows.extend(decision.fine.map(|fine| self.interval(fine)));
-        rows.extend(self.by_lines());
-        rows.extend(self.trial.estimate.onset_model.as_deref().map(onset_row));
-        rows.extend(self.trial.estimate.tracking.as_ref().map(tracking_row));
-        rows.extend(self.how_near());
-        let typical = |words: &str| ("median delay of the joint".to_owned(), words.to_owned());
-        rows.extend(self.typical.map(typical));
-        let rows: Vec<_> =
-            rows.iter().map(|(name, value)| format!("| {name} | {value} |")).collect();
-        format!("| quantity | value |\n|---|---|\n{}", rows.join("\n"))
-    }
-
-    /// Algorithm 1's delay, where the answer is an onset's.
-    fn by_lines(&self) -> Option<(String, String)> {
-        let decision = self.segment.decision;
-        decision.onset.as_ref()?;
-        let delay = decision.breakpoint()?.delay as f64;
-        Some(("Algorithm 1's δ for comparison".to_owned(), self.delay(delay)))
+        if let Some(FineDelay { low, high, confidence, .. }) = decision.fine {
+            let samples = format!("{} … {} samples", number(low), number(high));
+            let seconds = format!("{} … {}", self.delay(low), self.delay(high));
+            let name = format!("{} % interval of δ", number(100.0 * confidence));
+            row(&name, format!("{samples} = {seconds}"));
+        }
+        if let (Some(_), Some(best)) = (&decision.onset, decision.breakpoint()) {
+            row("Algorithm 1's δ for comparison", self.delay(best.delay as f64));
+        }
+        if let Some(model) = self.trial.estimate.onset_model.as_deref() {
+            row("response behind the delay", response(model));
+        }
+        if let Some(tracking) = &self.trial.estimate.tracking {
+            let (offset, gain) = (number(tracking.offset()), number(tracking.gain()));
+            row("output tracks the input, at rest", format!("{offset} + {gain}·u"));
+        }
+        if let Some((name, near)) = self.how_near() {
+            row(name, near);
+        }
+        if let Some(typical) = self.typical {
+            row("median delay of the joint", typical.to_owned());
+        }
+        page
     }
 
     /// The breakpoint as finely as it is known.
@@ -413,28 +403,18 @@ impl Facts<'_, '_> {
         format!("sample {place} = {seconds:.5} s")
     }
 
-    fn interval(&self, fine: FineDelay) -> (String, String) {
-        let FineDelay { low, high, confidence, .. } = fine;
-        let samples = format!("{} … {} samples", number(low), number(high));
-        let seconds = format!("{} … {}", self.delay(low), self.delay(high));
-        (
-            format!("{} % interval of δ", number(100.0 * confidence)),
-            format!("{samples} = {seconds}"),
-        )
-    }
-
     /// What would have accepted the step, or by how much the second-best breakpoint is worse.
-    fn how_near(&self) -> Option<(String, String)> {
+    fn how_near(&self) -> Option<(&'static str, String)> {
         let decision = self.segment.decision;
         if decision.verdict() == Verdict::Accepted {
             let second = decision.runner_up().filter(|second| second.margin.is_finite())?;
             let (percent, q) = (number(100.0 * second.margin), second.breakpoint);
             let near = format!("q = {q}, with an SSE {percent} % above");
-            return Some(("second-best breakpoint".to_owned(), near));
+            return Some(("second-best breakpoint", near));
         }
         let remedies = decision.remedies(self.settings, self.trial.output());
         let remedies: Vec<_> = remedies.into_iter().map(|it| remedy_text(it, "`")).collect();
-        Some(("would be accepted with".to_owned(), remedies.join(", ")))
+        Some(("would be accepted with", remedies.join(", ")))
     }
 
     fn conditions(&self) -> String {
@@ -515,22 +495,11 @@ impl Facts<'_, '_> {
 }
 
 /// The response behind the dead times.
-fn onset_row(model: &OnsetModel) -> (String, String) {
+fn response(model: &OnsetModel) -> String {
     let named = model.parameters();
     let named = named.iter().map(|(name, value)| format!(", {name} {}", number(*value)));
-    let parameters: String = named.collect();
-    let text = format!(
-        "{}{parameters}; residual {} times the noise",
-        model.shape(),
-        number(model.misfit())
-    );
-    ("response behind the delay".to_owned(), text)
-}
-
-/// Where the output comes to rest.
-fn tracking_row(tracking: &Tracking) -> (String, String) {
-    let at = format!("{} + {}·u", number(tracking.offset()), number(tracking.gain()));
-    ("output tracks the input, at rest".to_owned(), at)
+    let (parameters, misfit) = (named.collect::<String>(), number(model.misfit()));
+    format!("{}{parameters}; residual {misfit} times the noise", model.shape())
 }
 
 fn with_unit(value: f64, unit: Option<&str>, per: &str) -> String {
