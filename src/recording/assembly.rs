@@ -52,10 +52,7 @@ impl<'a> Recording<'a> {
     }
 
     /// Each joint and where it lies on the timelines.
-    fn layouts(
-        &self,
-        growth: Growth,
-    ) -> impl Iterator<Item = (EstimatedJoint<'a>, JointLayout<'a>)> {
+    fn layouts(&self, growth: Growth) -> impl Iterator<Item = JointLayout<'a>> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
         let numbers = || self.revisions.iter().flat_map(ImprovedJoint::numbered);
         let numbers = || numbers().map(|(number, _)| i64::from(number));
@@ -71,9 +68,8 @@ impl<'a> Recording<'a> {
         let most = decisions.map(|decision| signed(decision.candidates.len())).max().unwrap_or(0);
         // With a tick for the segment alone, and one for its verdict.
         let first_tick = -1 - most;
-        let layout = move |joint| {
-            (joint, JointLayout::of(joint, &starts, (self.detail, revisions), first_tick))
-        };
+        let layout =
+            move |joint| JointLayout::of(joint, &starts, (self.detail, revisions), first_tick);
         self.joints.iter().copied().map(layout)
     }
 }
@@ -93,18 +89,18 @@ impl<'a> Content for Recording<'a> {
     }
 
     fn about(&self) -> String {
-        let layouts: Vec<_> = self.layouts(Growth::Finished).map(|(_, layout)| layout).collect();
+        let layouts: Vec<_> = self.layouts(Growth::Finished).collect();
         about::page(self, &layouts)
     }
 
     fn tabs(&self, growth: Growth) -> Vec<Tab<'_>> {
-        let tab = |(joint, mut layout): (EstimatedJoint<'a>, JointLayout<'a>)| {
-            let others = self.others(joint);
+        let tab = |mut layout: JointLayout<'a>| {
+            let (joint, others) = (layout.joint, self.others(layout.estimated));
             if !others.is_empty() {
                 layout.rank_by_difference(|label, p| weight(&others, label, p));
             }
-            let add = move |chunks: &mut Chunks| add_joint(chunks, self, joint, (&layout, &others));
-            Tab { joint: Some(&joint.joint.name), add: Box::new(add) }
+            let add = move |chunks: &mut Chunks| add_joint(chunks, self, &layout, &others);
+            Tab { joint: Some(&joint.name), add: Box::new(add) }
         };
         self.layouts(growth).map(tab).collect()
     }
@@ -121,20 +117,20 @@ impl<'a> Content for Recording<'a> {
 fn add_joint(
     chunks: &mut Chunks,
     recording: &Recording<'_>,
-    estimated: EstimatedJoint<'_>,
-    (layout, others): (&JointLayout<'_>, &[Other<'_>]),
+    layout: &JointLayout<'_>,
+    others: &[Other<'_>],
 ) -> Result<(), RecordError> {
-    let joint = estimated.joint;
+    let joint = layout.joint;
     place::add(chunks, layout)?;
-    headline::add(chunks, estimated, (layout, recording.sources))?;
-    signals::add(chunks, joint, layout)?;
-    decisions::add(chunks, joint, layout)?;
-    verdict::add(chunks, estimated, layout, others)?;
-    segment_view::add(chunks, joint, layout, (recording.settings.method, others))?;
-    overview::add(chunks, joint, layout)?;
-    delay_state::add(chunks, estimated, layout)?;
-    doubt::add(chunks, joint, layout)?;
-    difference::add(chunks, joint, layout, others)?;
+    headline::add(chunks, layout, recording.sources)?;
+    signals::add(chunks, layout)?;
+    decisions::add(chunks, layout)?;
+    verdict::add(chunks, layout, others)?;
+    segment_view::add(chunks, layout, (recording.settings.method, others))?;
+    overview::add(chunks, layout)?;
+    delay_state::add(chunks, layout)?;
+    doubt::add(chunks, layout)?;
+    difference::add(chunks, layout, others)?;
     let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
     let models: Vec<_> = models.collect();
     let first_sample = first_sample(layout).filter(|_| !models.is_empty());

@@ -13,28 +13,20 @@ use crate::units::signed;
 use crate::wording::{doubt_percent, number};
 
 /// Adds `/decision/sse` and `/decision/table`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    joint: &Joint,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
+pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     add_errors(chunks, layout)?;
-    add_page(chunks, joint, layout)?;
+    add_page(chunks, layout)?;
     add_table(chunks, layout)
 }
 
 /// All decisions as a person reads them: what the table has, in five digits.
-fn add_page(
-    chunks: &mut Chunks,
-    joint: &Joint,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
+fn add_page(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     /// Rows that a person still reads.
     const MOST: usize = 1000;
     let rows: Vec<_> = layout.segments().take(MOST).map(|(t, s)| page_row(t, s)).collect();
     let all = layout.segments().count();
     let more = if all > MOST { format!("\n\nThe first {MOST} of {all}.") } else { String::new() };
-    let page = format!("{}\n{}{more}", page_header(joint), rows.join("\n"));
+    let page = format!("{}\n{}{more}", page_header(layout.joint), rows.join("\n"));
     chunks.page(paths::DECISION_PAGE, page)
 }
 

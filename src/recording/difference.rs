@@ -14,7 +14,6 @@ use super::palette::{self, Rgb};
 use super::paths;
 use super::sheet::Sheet;
 use crate::delay::Verdict;
-use crate::experiment::Joint;
 use crate::study::{StepPair, StepResult};
 use crate::wording::{difference_in_short, difference_sentences, result_in_short, step_name};
 
@@ -24,7 +23,6 @@ pub(super) const SIZE: (f32, f32) = (SHEET.0, 344.0);
 /// Adds `/difference`, `/difference/log` and the drawing.
 pub(super) fn add(
     chunks: &mut Chunks,
-    joint: &Joint,
     layout: &JointLayout<'_>,
     others: &[Other<'_>],
 ) -> Result<(), RecordError> {
@@ -37,10 +35,9 @@ pub(super) fn add(
         .at_the_end(shown.len())
         .with("difference", shown.iter().map(|(_, segment)| segment.difference))
         .all_at("doubt", Some(1));
-    let lines =
-        shown.iter().map(|placed| (Some(level(placed, others)), line(joint, placed, others)));
+    let lines = shown.iter().map(|placed| (Some(level(placed, others)), line(placed, others)));
     chunks.lines(paths::DIFFERENCE_LOG, index, lines)?;
-    chunks.page(paths::DIFFERENCE, page(joint, others))?;
+    chunks.page(paths::DIFFERENCE, page(&layout.joint.name, others))?;
     draw(chunks, layout, others)
 }
 
@@ -64,8 +61,8 @@ fn level(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> &'static str {
     if pairs(placed, others).any(other_verdict) { "ERROR" } else { "INFO" }
 }
 
-fn line(joint: &Joint, placed: &Placed<'_, '_>, others: &[Other<'_>]) -> String {
-    let trials = joint.trials.len();
+fn line(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> String {
+    let trials = placed.0.estimated.joint.trials.len();
     let said = pairs(placed, others).map(|(name, pair)| {
         let there = result_in_short(&pair.there);
         format!("{name} {there} ({})", difference_in_short(pair))
@@ -77,17 +74,17 @@ fn line(joint: &Joint, placed: &Placed<'_, '_>, others: &[Other<'_>]) -> String 
     format!("{step}, {}", said.join(", "))
 }
 
-fn page(joint: &Joint, others: &[Other<'_>]) -> String {
+fn page(joint: &str, others: &[Other<'_>]) -> String {
     let parts = others.iter().map(|other| part(joint, other));
     format!("{}\n{HOW}", parts.collect::<String>())
 }
 
-fn part(joint: &Joint, other: &Other<'_>) -> String {
+fn part(joint: &str, other: &Other<'_>) -> String {
     let settings = other.settings.filter(|settings| *settings != other.name);
     let settings = settings.map_or_else(String::new, |settings| format!(" ({})", plain(settings)));
     let sentences = difference_sentences(&other.differences).into_iter();
     let sentences: Vec<_> = sentences.map(|sentence| plain(&sentence)).collect();
-    let (name, other) = (plain(&joint.name), plain(other.name));
+    let (name, other) = (plain(joint), plain(other.name));
     format!("**{name} against {other}**{settings}\n\n- {}\n\n", sentences.join("\n- "))
 }
 

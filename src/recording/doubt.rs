@@ -7,15 +7,10 @@ use super::markdown::plain;
 use super::paths;
 use super::verdict::in_short;
 use crate::delay::Verdict;
-use crate::experiment::Joint;
 use crate::wording::{DOUBT_MEANS, doubt_percent, doubtful_sentence};
 
 /// Adds `/doubt` and `/doubt/log`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    joint: &Joint,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
+pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     let ranked = layout.ranked(|segment| segment.rank);
     if ranked.is_empty() {
         return Ok(());
@@ -30,36 +25,35 @@ pub(super) fn add(
         _ if segment.doubt.is_doubtful() => "WARN",
         _ => "INFO",
     };
-    let lines =
-        ranked.iter().map(|(trial, segment)| (Some(level(segment)), line(joint, trial, segment)));
+    let lines = ranked.iter().map(|(trial, segment)| (Some(level(segment)), line(trial, segment)));
     chunks.lines(paths::DOUBT_LOG, index, lines)?;
-    chunks.page(paths::DOUBT, page(joint, &ranked))
+    chunks.page(paths::DOUBT, page(&layout.joint.name, &ranked))
 }
 
 /// Doubt from which on a line is red; what is doubtful below it is yellow. Chosen: on synthetic
 /// records about every second accepted step above it is off by more than one and a half rows of β.
 const LIKELY: f64 = 0.6;
 
-fn line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+fn line(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let doubt = doubt_percent(&segment.doubt);
     let not = if segment.doubt.is_doubtful() { "" } else { " (not doubtful)" };
     // A line is cut where its list ends: the delay is in the verdict, the whole reason on the page.
     let mark = if segment.decision.verdict() == Verdict::Accepted { '✓' } else { '✗' };
-    let (step, why) = (trial.step_of(joint, segment), trial.reason_in_short(segment));
+    let (step, why) = (trial.step(segment), trial.reason_in_short(segment));
     format!("{doubt:>5} {mark} {step}: {why}{not}")
 }
 
-fn page(joint: &Joint, ranked: &[Placed<'_, '_>]) -> String {
+fn page(joint: &str, ranked: &[Placed<'_, '_>]) -> String {
     /// Decisions that a person reads.
     const MOST: usize = 25;
     let row = |(trial, segment): &Placed<'_, '_>| {
         let (doubt, reason) = (doubt_percent(&segment.doubt), trial.reason(segment));
         let is = if segment.doubt.is_doubtful() { "**doubtful**" } else { "" };
-        let step = plain(&in_short(joint, trial, segment));
+        let step = plain(&in_short(trial, segment));
         format!("| {} | {doubt} | {is} | {step} | {reason} |", segment.rank)
     };
     let rows: Vec<_> = ranked.iter().take(MOST).map(row).collect();
-    let (name, shown) = (plain(&joint.name), rows.len());
+    let (name, shown) = (plain(joint), rows.len());
     let count = doubtful_sentence(ranked.iter().map(|(_, segment)| &segment.doubt));
     format!(
         "## {name}: {count}\n\n{DOUBT_MEANS} The first {shown}:\n\n\

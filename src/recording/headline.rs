@@ -6,19 +6,20 @@ use super::layout::JointLayout;
 use super::markdown::plain;
 use super::paths;
 use crate::experiment::Source;
-use crate::report::{EstimatedJoint, delay_answer};
+use crate::report::delay_answer;
 use crate::wording::capitalized;
 
 /// Adds `/headline`.
 pub(super) fn add(
     chunks: &mut Chunks,
-    estimated: EstimatedJoint<'_>,
-    (layout, sources): (&JointLayout<'_>, &[Source]),
+    layout: &JointLayout<'_>,
+    sources: &[Source],
 ) -> Result<(), RecordError> {
-    chunks.page(paths::HEADLINE, text(estimated, layout, sources))
+    chunks.page(paths::HEADLINE, text(layout, sources))
 }
 
-fn text(estimated: EstimatedJoint<'_>, layout: &JointLayout<'_>, sources: &[Source]) -> String {
+fn text(layout: &JointLayout<'_>, sources: &[Source]) -> String {
+    let estimated = layout.estimated;
     let name = plain(&estimated.joint.name);
     let answer = format!("**{name}: {}**", plain(&delay_answer(estimated)));
     // The whole of a warning, with what to do, is in the report and on the terminal.

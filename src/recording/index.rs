@@ -18,7 +18,7 @@ use super::markdown::{link, plain};
 use super::paths::{self, at};
 use super::segment_view::{self, Drawing};
 use super::verdict;
-use crate::report::{EstimatedJoint, JointSummary, SUMMARY_HEADER, summary_cells};
+use crate::report::{JointSummary, SUMMARY_HEADER, summary_cells};
 use crate::wording::doubt_percent;
 
 /// What lies below it: the drawing and the verdict of a decision, and the list of all.
@@ -140,7 +140,6 @@ const MOST: usize = 200;
 
 /// A decision with its joint.
 struct Doubted<'l, 'a> {
-    joint: EstimatedJoint<'a>,
     file: &'l str,
     trial: &'l TrialLayout<'a>,
     segment: &'l SegmentLayout<'a>,
@@ -152,11 +151,10 @@ fn add_doubtful(
     recording: &IndexRecording<'_>,
     layouts: &[JointLayout<'_>],
 ) -> Result<(), RecordError> {
-    let joints = recording.all.joints.iter().zip(layouts).enumerate();
     let mut all: Vec<Doubted<'_, '_>> = Vec::new();
-    for (number, (joint, layout)) in joints {
+    for (number, layout) in layouts.iter().enumerate() {
         let file = recording.file_of(number);
-        let of_joint = |(trial, segment)| Doubted { joint: *joint, file, trial, segment };
+        let of_joint = |(trial, segment)| Doubted { file, trial, segment };
         all.extend(layout.segments().map(of_joint));
     }
     all.sort_by(|a, b| b.segment.doubt.value().total_cmp(&a.segment.doubt.value()));
@@ -168,10 +166,8 @@ fn add_doubtful(
     chunks.pages("doubtful/verdict", ranks(), all.iter().map(Doubted::page))?;
     let lines = all.iter().map(|found| (Some("INFO"), found.line()));
     chunks.lines("doubtful/log", ranks(), lines)?;
-    let drawings: Vec<_> = all
-        .iter()
-        .map(|found| Drawing::new(found.joint.joint, found.trial, found.segment))
-        .collect();
+    let drawings: Vec<_> =
+        all.iter().map(|found| Drawing::new(found.trial, found.segment)).collect();
     let mut layers = Layers::rows(chunks, "doubtful/drawing", ranks());
     segment_view::add_drawings(&mut layers, &drawings)
 }
@@ -180,13 +176,13 @@ impl Doubted<'_, '_> {
     /// The verdict as it is beside the drawing in the joint's file.
     fn page(&self) -> String {
         let place = format!("**{}** · segment {}", link(self.file), self.segment.number);
-        let page = verdict::page(self.joint, self.trial, self.segment);
+        let page = verdict::page(self.trial, self.segment);
         format!("{place}\n\n{page}")
     }
 
     fn line(&self) -> String {
-        let step = verdict::in_short(self.joint.joint, self.trial, self.segment);
+        let step = verdict::in_short(self.trial, self.segment);
         let (doubt, reason) = (doubt_percent(&self.segment.doubt), self.trial.reason(self.segment));
-        format!("{doubt:>5}  {} ({}), {step}: {reason}", self.joint.joint.name, self.file)
+        format!("{doubt:>5}  {} ({}), {step}: {reason}", self.trial.estimated.joint.name, self.file)
     }
 }

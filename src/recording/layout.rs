@@ -98,6 +98,8 @@ impl TrialStarts {
 /// One joint on the timelines.
 #[derive(Debug)]
 pub(super) struct JointLayout<'a> {
+    pub(super) estimated: EstimatedJoint<'a>,
+    pub(super) joint: &'a Joint,
     pub(super) trials: Vec<TrialLayout<'a>>,
     /// What the recording opens on, beside its decisions.
     pub(super) first: Opening,
@@ -110,6 +112,8 @@ pub(super) struct JointLayout<'a> {
 pub(super) struct TrialLayout<'a> {
     /// Its place among the joint's trials.
     pub(super) index: usize,
+    /// The joint that it is of.
+    pub(super) estimated: EstimatedJoint<'a>,
     pub(super) trial: &'a Trial,
     pub(super) estimate: &'a TrialEstimate,
     pub(super) segments: Vec<SegmentLayout<'a>>,
@@ -174,7 +178,7 @@ impl SegmentLayout<'_> {
 
 impl<'a> JointLayout<'a> {
     pub(super) fn of(
-        joint: EstimatedJoint<'a>,
+        estimated: EstimatedJoint<'a>,
         starts: &TrialStarts,
         (detail, revisions): (Detail, Option<(i64, i64)>),
         first_tick: i64,
@@ -182,7 +186,8 @@ impl<'a> JointLayout<'a> {
         let mut tick = 1;
         let mut number = 0;
         let mut trials: Vec<TrialLayout<'a>> = Vec::new();
-        let results = joint.joint.trials.iter().zip(&joint.estimate.trials).enumerate();
+        let joint = estimated.joint;
+        let results = joint.trials.iter().zip(&estimated.estimate.trials).enumerate();
         for (index, (trial, result)) in results {
             let Ok(estimate) = result else { continue };
             let idle = (tick, number.max(1));
@@ -204,7 +209,7 @@ impl<'a> JointLayout<'a> {
                 segments.push(segment);
             }
             let start = starts.of_trial(trial);
-            let trial = TrialLayout { index, trial, estimate, segments, start, idle };
+            let trial = TrialLayout { index, estimated, trial, estimate, segments, start, idle };
             trials.push(trial);
         }
         let (first_revision, last_revision) = revisions.unzip();
@@ -215,7 +220,7 @@ impl<'a> JointLayout<'a> {
         for (segment, rank) in segments.into_iter().zip(1..) {
             segment.rank = rank;
         }
-        Self { trials, first, last_revision }
+        Self { estimated, joint, trials, first, last_revision }
     }
 
     /// The opening ticks of all segments, with their ranks by doubt.
@@ -357,13 +362,15 @@ impl<'a> TrialLayout<'a> {
         self.time_ns(k) as f64 * 1e-9
     }
 
-    /// Which step of which trial of `joint` it is.
-    pub(super) fn step_of(&self, joint: &Joint, segment: &SegmentLayout<'_>) -> String {
-        let number = segment.decision.number;
-        match joint.trials.len() {
-            1 => format!("step {number}"),
-            _ => format!("{}, step {number}", self.trial.label()),
-        }
+    /// Whether the joint has several trials.
+    pub(super) fn is_one_of_several(&self) -> bool {
+        self.estimated.joint.trials.len() > 1
+    }
+
+    /// Which step of which trial it is.
+    pub(super) fn step(&self, segment: &SegmentLayout<'_>) -> String {
+        let step = format!("step {}", segment.decision.number);
+        if self.is_one_of_several() { format!("{}, {step}", self.trial.label()) } else { step }
     }
 
     pub(super) fn time_ns(&self, k: usize) -> i64 {

@@ -14,15 +14,10 @@ use super::palette::{self, Rgb, color};
 use super::paths;
 use super::sheet::Sheet;
 use crate::delay::{Candidate, Line, Verdict};
-use crate::experiment::Joint;
 use crate::wording::bracketed;
 
 /// Adds everything of the overview below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    joint: &Joint,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
+pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     type Place = fn(&SegmentLayout<'_>) -> Option<(usize, f64)>;
     add_lines(chunks, layout)?;
     let breakpoint: Place = |segment| {
@@ -54,7 +49,7 @@ pub(super) fn add(
         chunks.scalars(path, index, &values)?;
     }
     Map::small(layout).add(chunks, layout)?;
-    Map::large(layout, joint).add(chunks, layout)
+    Map::large(layout).add(chunks, layout)
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -159,7 +154,7 @@ impl Map {
     }
 
     /// A page of its own, which is there on timelines that have no samples.
-    fn large(layout: &JointLayout<'_>, joint: &Joint) -> Self {
+    fn large(layout: &JointLayout<'_>) -> Self {
         let [x, output, input] = spans(layout);
         let known: Vec<f64> = delays(layout).map(|(_, delay_s, _)| delay_s).collect();
         let delay = Span::around(known.iter().copied().chain([0.0]), 0.08);
@@ -169,7 +164,7 @@ impl Map {
         let output_plot = Plot::new(output_rows, x, output);
         let input_plot = Plot::new(566.0..=634.0, x, input);
         let unit = |name: &str, unit: &Option<String>| bracketed(name, unit.as_deref());
-        let output = unit("output", &joint.output_unit);
+        let output = unit("output", &layout.joint.output_unit);
         let titles = if layout.segments().next().is_some() {
             [
                 format!("{output} over samples; breakpoints green accepted, red rejected"),
@@ -182,7 +177,7 @@ impl Map {
         let titles = [
             (Some(&output_plot), output),
             (delay_plot.as_ref(), delay),
-            (Some(&input_plot), unit("input", &joint.input_unit)),
+            (Some(&input_plot), unit("input", &layout.joint.input_unit)),
         ];
         let titles = titles.into_iter();
         let titles =

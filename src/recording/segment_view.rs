@@ -21,7 +21,6 @@ use super::paths;
 use super::sheet::Sheet;
 use crate::delay::{Candidate, Line, Method};
 use crate::diagnosis::sensor_noise;
-use crate::experiment::Joint;
 use crate::figure::segment::SegmentFigure;
 use crate::figure::{Role, power_of_ten};
 use crate::study::StepResult;
@@ -37,12 +36,11 @@ const SIDES: (f32, f32) = (120.0, 960.0);
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(
     chunks: &mut Chunks,
-    joint: &Joint,
     layout: &JointLayout<'_>,
     (method, others): (Method, &[Other<'_>]),
 ) -> Result<(), RecordError> {
     let drawings: Vec<_> =
-        layout.segments().map(|(trial, segment)| Drawing::new(joint, trial, segment)).collect();
+        layout.segments().map(|(trial, segment)| Drawing::new(trial, segment)).collect();
     let mut layers = Layers::rows(chunks, paths::DRAWING, layout.openings());
     add_drawings(&mut layers, &drawings)?;
     if !others.is_empty() {
@@ -139,7 +137,6 @@ fn add_others(
 /// One segment on its sheet: the output above, what both lines leave of it, the error curve
 /// below; and the close-up beside them.
 pub(super) struct Drawing<'l, 'a> {
-    joint: &'l Joint,
     trial: &'l TrialLayout<'a>,
     segment: &'l SegmentLayout<'a>,
     figure: SegmentFigure<'l>,
@@ -151,11 +148,7 @@ pub(super) struct Drawing<'l, 'a> {
 }
 
 impl<'l, 'a> Drawing<'l, 'a> {
-    pub(super) fn new(
-        joint: &'l Joint,
-        trial: &'l TrialLayout<'a>,
-        segment: &'l SegmentLayout<'a>,
-    ) -> Self {
+    pub(super) fn new(trial: &'l TrialLayout<'a>, segment: &'l SegmentLayout<'a>) -> Self {
         let figure = SegmentFigure::new(trial.trial, segment.decision);
         let (first, last) = figure.window;
         let x = Span::new(first as f64, last as f64);
@@ -165,9 +158,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let left = figure.residual(trial.output());
         let heights = left.iter().map(|(_, y)| *y).chain([0.0]);
         let residual = Plot::within(SIDES, 494.0..=556.0, x, Span::around(heights, 0.1));
-        let noise = sensor_noise(&joint.trials);
+        let noise = sensor_noise(&trial.estimated.joint.trials);
         Self {
-            joint,
             trial,
             segment,
             figure,
@@ -380,7 +372,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
             CloseUp::title(&mut labels, text);
         }
         self.name_places(&mut labels);
-        let output = bracketed("output", self.joint.output_unit.as_deref());
+        let output = bracketed("output", self.trial.estimated.joint.output_unit.as_deref());
         labels.put_whole(Vec2D::new(62.0, 22.0), output);
         labels.put(Vec2D::new(75.0, 442.0), "residual".to_owned());
         let least = self.segment.decision.shown_candidate();

@@ -7,18 +7,14 @@ use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
 use super::palette::{self, Rgb};
 use super::paths::{self, child};
-use crate::experiment::Joint;
 use crate::wording::bracketed;
 
 /// Adds all signals of `joint` below the entity `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    joint: &Joint,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
+pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     type Values = fn(&TrialLayout<'_>) -> Vec<Option<f64>>;
     // Input and delay are held between samples; what was measured is drawn from point to point.
     let (held, drawn) = (InterpolationMode::StepAfter, InterpolationMode::Linear);
+    let joint = layout.joint;
     let unit = |unit: &Option<String>| bracketed("", unit.as_deref());
     let (input, output) = (unit(&joint.input_unit), unit(&joint.output_unit));
     let signals: [(&str, String, (Rgb, f32), InterpolationMode, Values); 4] = [

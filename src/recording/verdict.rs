@@ -11,9 +11,8 @@ use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths;
+use crate::delay::Verdict;
 use crate::delay::{Check, Condition, Decision, FineDelay, OnsetModel, Outcome};
-use crate::delay::{Settings, Verdict};
-use crate::experiment::Joint;
 use crate::numerics::quantile;
 use crate::report::{EstimatedJoint, JointSummary, dead_time_sentences};
 use crate::wording::{counted, doubt_percent, number, remedy_text, rounded, samples_text};
@@ -21,20 +20,19 @@ use crate::wording::{counted, doubt_percent, number, remedy_text, rounded, sampl
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(
     chunks: &mut Chunks,
-    estimated: EstimatedJoint<'_>,
     layout: &JointLayout<'_>,
     others: &[Other<'_>],
 ) -> Result<(), RecordError> {
-    let (joint, settings) = (estimated.joint, &estimated.estimate.settings);
+    let estimated = layout.estimated;
     let segments: Vec<_> = layout.segments().collect();
     let opening = layout.openings();
     let typical = typical_delay(estimated);
     let text = |(trial, segment): &Placed<'_, '_>| {
-        let methods = methods(trial, segment, settings, others);
-        document(Facts { joint, trial, segment, settings, typical: typical.as_deref() }, &methods)
+        let methods = methods(trial, segment, others);
+        Facts { trial, segment, typical: typical.as_deref() }.page(&methods)
     };
     if segments.is_empty() {
-        let name = plain(&joint.name);
+        let name = plain(&layout.joint.name);
         let text = match dead_time_sentences(&estimated).as_slice() {
             [] => {
                 let why = JointSummary::of(estimated).without_steps();
@@ -54,7 +52,7 @@ pub(super) fn add(
     chunks.pages(paths::VERDICT, opening.clone(), segments.iter().map(text))?;
     chunks.states(paths::VERDICT, opening.clone(), states)?;
     chunks.push_static(paths::VERDICT, &lane_colors())?;
-    add_log(chunks, joint, (&segments, layout.last_revision))?;
+    add_log(chunks, &segments, layout.last_revision)?;
     add_lanes(chunks, layout, &segments, opening)
 }
 
@@ -73,8 +71,8 @@ fn lane_colors() -> StateConfiguration {
 /// its candidates.
 fn add_log(
     chunks: &mut Chunks,
-    joint: &Joint,
-    (segments, last_revision): (&[Placed<'_, '_>], Option<i64>),
+    segments: &[Placed<'_, '_>],
+    last_revision: Option<i64>,
 ) -> Result<(), RecordError> {
     let index: Index = segments.iter().map(|(trial, segment)| trial.opening(segment)).collect();
     // On the timeline of revisions, too, where a click leads away from.
@@ -83,14 +81,14 @@ fn add_log(
         Verdict::Accepted => "INFO",
         Verdict::Rejected(_) => "WARN",
     };
-    let lines = segments.iter().map(|(t, s)| (Some(level(s)), log_line(joint, t, s)));
+    let lines = segments.iter().map(|(t, s)| (Some(level(s)), log_line(t, s)));
     chunks.lines(paths::VERDICT_LOG, index, lines)
 }
 
-fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+fn log_line(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let decision = segment.decision;
     let trials =
-        if joint.trials.len() > 1 { format!("{} ", trial.trial.label()) } else { String::new() };
+        if trial.is_one_of_several() { format!("{} ", trial.trial.label()) } else { String::new() };
     let step = format!("{trials}step {:>3}", decision.number);
     let verdict = verdict(trial, decision);
     let at = format!("p {}", decision.input_step.sample);
@@ -104,12 +102,8 @@ fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>)
 }
 
 /// A step and its verdict.
-pub(super) fn in_short(
-    joint: &Joint,
-    trial: &TrialLayout<'_>,
-    segment: &SegmentLayout<'_>,
-) -> String {
-    format!("{} {}", trial.step_of(joint, segment), verdict(trial, segment.decision))
+pub(super) fn in_short(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+    format!("{} {}", trial.step(segment), verdict(trial, segment.decision))
 }
 
 fn verdict(trial: &TrialLayout<'_>, decision: &Decision) -> String {
@@ -159,33 +153,10 @@ fn add_lanes(
     chunks.states(paths::TRIAL, starts.collect(), labels)
 }
 
-/// The page beside the drawing: verdict first, then what it was made of.
-fn document(facts: Facts<'_, '_>, methods: &str) -> String {
-    let Facts { joint, trial, segment, .. } = facts;
-    let decision = segment.decision;
-    let of = trial.segments.len();
-    let in_trial = match joint.trials.len() {
-        1 => String::new(),
-        _ => format!(", trial {}", plain(trial.trial.label())),
-    };
-    let name = plain(&joint.name);
-    let title = format!("### {name}{in_trial}: step {} of {of}", decision.number);
-    let headline = facts.headline();
-    let (doubt, conditions, quantities) = (facts.doubt(of), facts.conditions(), facts.quantities());
-    let asked = facts.asked();
-    format!("{title}\n{headline}\n\n{doubt}\n{methods}\n{conditions}\n\n{quantities}\n\n{asked}\n")
-}
-
 /// The page on a decision, without other results.
-pub(super) fn page(
-    estimated: EstimatedJoint<'_>,
-    trial: &TrialLayout<'_>,
-    segment: &SegmentLayout<'_>,
-) -> String {
-    let settings = &estimated.estimate.settings;
-    let typical = typical_delay(estimated);
-    let typical = typical.as_deref();
-    document(Facts { joint: estimated.joint, trial, segment, settings, typical }, "")
+pub(super) fn page(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+    let typical = typical_delay(trial.estimated);
+    Facts { trial, segment, typical: typical.as_deref() }.page("")
 }
 
 /// The median delay of the accepted steps of a joint, and the range of most of them: what one of
@@ -206,12 +177,7 @@ fn typical_delay(EstimatedJoint { joint, estimate }: EstimatedJoint<'_>) -> Opti
 }
 
 /// The table of all results, where there are several.
-fn methods(
-    trial: &TrialLayout<'_>,
-    segment: &SegmentLayout<'_>,
-    settings: &Settings,
-    others: &[Other<'_>],
-) -> String {
+fn methods(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>, others: &[Other<'_>]) -> String {
     let (label, p) = (trial.trial.label(), segment.decision.input_step.sample);
     let found = |other: &Other<'_>| {
         Some(Shown::there(&other.pair(label, p)?.there).row(&plain(other.name)))
@@ -220,22 +186,40 @@ fn methods(
     if others.is_empty() {
         return String::new();
     }
-    let first = Shown::of(segment.decision).row(&format!("{}, here", settings.method));
+    let first = Shown::of(segment.decision)
+        .row(&format!("{}, here", trial.estimated.estimate.settings.method));
     let others = others.join("\n");
     format!("\n| result | δ, samples | verdict |\n|---|---|---|\n{first}\n{others}\n")
 }
 
 #[derive(Clone, Copy)]
 struct Facts<'l, 'a> {
-    joint: &'l Joint,
     trial: &'l TrialLayout<'a>,
     segment: &'l SegmentLayout<'a>,
-    settings: &'l Settings,
     /// The delays of all accepted steps of the joint, in words.
     typical: Option<&'l str>,
 }
 
 impl Facts<'_, '_> {
+    /// The page beside the drawing: verdict first, then what it was made of.
+    fn page(&self, methods: &str) -> String {
+        let (of, number) = (self.trial.segments.len(), self.segment.decision.number);
+        let in_trial = if self.trial.is_one_of_several() {
+            format!(", trial {}", plain(self.trial.trial.label()))
+        } else {
+            String::new()
+        };
+        let title = format!(
+            "### {}{in_trial}: step {number} of {of}",
+            plain(&self.trial.estimated.joint.name)
+        );
+        let (headline, doubt, asked) = (self.headline(), self.doubt(of), self.asked());
+        let (conditions, quantities) = (self.conditions(), self.quantities());
+        format!(
+            "{title}\n{headline}\n\n{doubt}\n{methods}\n{conditions}\n\n{quantities}\n\n{asked}\n"
+        )
+    }
+
     fn seconds(&self, samples: f64) -> String {
         format!("{:.3} s", samples * self.trial.trial.period().seconds())
     }
@@ -246,7 +230,7 @@ impl Facts<'_, '_> {
 
     fn at(&self, sample: usize) -> String {
         let in_trial = format!("sample {sample} = {:.3} s", self.trial.trial.time_s(sample));
-        if self.joint.trials.len() < 2 {
+        if !self.trial.is_one_of_several() {
             return in_trial;
         }
         let joined = self.trial.seconds(sample);
@@ -256,8 +240,7 @@ impl Facts<'_, '_> {
     /// How doubtful the decision is, and why.
     fn doubt(&self, of: usize) -> String {
         let (percent, rank) = (doubt_percent(&self.segment.doubt), self.segment.rank);
-        let several = self.joint.trials.len() > 1;
-        let of = if several { String::new() } else { format!(" of {of}") };
+        let of = if self.trial.is_one_of_several() { String::new() } else { format!(" of {of}") };
         format!(
             "doubt **{percent}** (rank {rank}{of} of this joint): {}",
             self.trial.reason(self.segment)
@@ -313,7 +296,8 @@ impl Facts<'_, '_> {
         let per_second = |slope: f64| rounded(slope / self.trial.trial.period().seconds());
         let [before, after] = [best.candidate.before, best.candidate.after];
         let [before, after] = [before, after].map(|line| per_second(line.slope));
-        let unit = self.joint.output_unit.as_deref().map_or_else(String::new, plain);
+        let unit =
+            self.trial.estimated.joint.output_unit.as_deref().map_or_else(String::new, plain);
         let is_set = |check: &Check| check.outcome == Outcome::Passed;
         let held = decision.checks.iter().filter(is_set).count();
         format!(
@@ -335,7 +319,7 @@ impl Facts<'_, '_> {
     fn quantities(&self) -> String {
         let decision = self.segment.decision;
         let (step, segment, hold) = (decision.input_step, decision.segment, decision.hold);
-        let input = |value| with_unit(value, self.joint.input_unit.as_deref(), "");
+        let input = |value| with_unit(value, self.trial.estimated.joint.input_unit.as_deref(), "");
         let (before, after) = (input(step.before), input(step.after));
         let mut page = "| quantity | value |\n|---|---|".to_owned();
         let mut row = |name: &str, value: String| page.extend(["\n| ", name, " | ", &value, " |"]);
@@ -347,7 +331,9 @@ impl Facts<'_, '_> {
         row("segment r … end", format!("{first} … {last}: {samples} samples"));
         if let Some(best) = decision.breakpoint() {
             let candidate = best.candidate;
-            let output = |value, per| with_unit(value, self.joint.output_unit.as_deref(), per);
+            let output = |value, per| {
+                with_unit(value, self.trial.estimated.joint.output_unit.as_deref(), per)
+            };
             let delay =
                 |samples: f64| format!("{} = {}", samples_text(samples), self.delay(samples));
             if let Some(program) = decision.delay_before_review() {
@@ -412,7 +398,8 @@ impl Facts<'_, '_> {
             let near = format!("q = {q}, with an SSE {percent} % above");
             return Some(("second-best breakpoint", near));
         }
-        let remedies = decision.remedies(self.settings, self.trial.output());
+        let remedies =
+            decision.remedies(&self.trial.estimated.estimate.settings, self.trial.output());
         let remedies: Vec<_> = remedies.into_iter().map(|it| remedy_text(it, "`")).collect();
         Some(("would be accepted with", remedies.join(", ")))
     }
@@ -455,7 +442,7 @@ impl Facts<'_, '_> {
             check.value.map_or_else(|| "none".to_owned(), |value| text(number(value)))
         };
         let output = |words: &str, per: &str| {
-            let unit = self.joint.output_unit.as_deref();
+            let unit = self.trial.estimated.joint.output_unit.as_deref();
             let unit = unit.map(|unit| format!(" {unit}{per}")).unwrap_or_default();
             said(&|value| format!("{words}{value}{unit}"))
         };
@@ -470,7 +457,10 @@ impl Facts<'_, '_> {
             }
             Condition::OutputLimit => {
                 let between = |(low, high)| format!("{} to {}", number(low), number(high));
-                (output("y = ", ""), self.settings.output_limits.map(between))
+                (
+                    output("y = ", ""),
+                    self.trial.estimated.estimate.settings.output_limits.map(between),
+                )
             }
             // Of a delay between samples the end of its interval counts.
             Condition::BeforeInput => {
@@ -481,7 +471,7 @@ impl Facts<'_, '_> {
             Condition::ShortHold => (said(&|hold| format!("{hold} samples")), needed("≥")),
             Condition::Sse => (output("", "²"), needed("<")),
             Condition::TooShort => {
-                let beta = self.settings.beta;
+                let beta = self.trial.estimated.estimate.settings.beta;
                 (said(&|rows| format!("{rows} rows of β = {beta}")), needed("≥"))
             }
             Condition::AtRest => (output("moves by ", ""), needed(">")),

@@ -17,7 +17,7 @@ use crate::recording::layout::JointLayout;
 use crate::recording::palette::{self, Rgb, color};
 use crate::recording::paths;
 use crate::recording::sheet::Sheet;
-use crate::report::{EstimatedJoint, variable_text};
+use crate::report::variable_text;
 use crate::units::SamplePeriod;
 use crate::wording::number;
 
@@ -30,20 +30,20 @@ const PLOTS: usize = 12;
 /// Adds the page below `/against`, and its numbers at `/delay/state`.
 pub(in crate::recording) fn add(
     chunks: &mut Chunks,
-    joint: EstimatedJoint<'_>,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
-    let found = joint.against_state();
+    let found = layout.estimated.against_state();
     let placed = placed(layout, &found.steps);
-    add_numbers(chunks, joint.joint, &placed)?;
-    let page = Page::of(joint.joint, &found, &placed);
+    add_numbers(chunks, layout.joint, &placed)?;
+    let page = Page::of(layout.joint, &found, &placed);
     page.add_plots(chunks)?;
-    page.add_texts(chunks, joint.joint)?;
-    page.add_cursor(chunks, joint.joint, (layout, &placed))
+    page.add_texts(chunks)?;
+    page.add_cursor(chunks, layout, &placed)
 }
 
 /// All plots on their sheet.
 struct Page<'f> {
+    joint: &'f Joint,
     found: &'f AgainstState,
     /// Each quantity that is drawn, with its plot.
     plots: Vec<(Quantity, Plot)>,
@@ -58,7 +58,7 @@ struct Page<'f> {
 }
 
 impl<'f> Page<'f> {
-    fn of(joint: &Joint, found: &'f AgainstState, placed: &[Placed<'_, '_>]) -> Self {
+    fn of(joint: &'f Joint, found: &'f AgainstState, placed: &[Placed<'_, '_>]) -> Self {
         let mut quantities = Quantity::of(found);
         let count = quantities.len();
         quantities.truncate(if found.steps.is_empty() { 0 } else { PLOTS });
@@ -73,9 +73,10 @@ impl<'f> Page<'f> {
         let first = periods.next();
         let period_s = first.filter(|first| periods.all(|other| other == *first));
         Self {
+            joint,
             found,
             plots: quantities.into_iter().enumerate().map(place).collect(),
-            names: placed.iter().filter_map(|placed| placed.name(joint)).collect(),
+            names: placed.iter().filter_map(|placed| placed.name()).collect(),
             quantities: count,
             columns,
             period_s: period_s.map(SamplePeriod::seconds),
@@ -130,7 +131,7 @@ impl<'f> Page<'f> {
         points
     }
 
-    fn add_texts(&self, chunks: &mut Chunks, joint: &Joint) -> Result<(), RecordError> {
+    fn add_texts(&self, chunks: &mut Chunks) -> Result<(), RecordError> {
         let (mut ticks, mut titles) = (Labels::default(), Labels::default());
         for (place, (quantity, plot)) in self.plots.iter().enumerate() {
             for (x, text) in quantity.x_ticks() {
@@ -144,7 +145,7 @@ impl<'f> Page<'f> {
         let mut layers = Layers::fixed(chunks, paths::AGAINST);
         layers.texts("ticks", palette::RAW, [ticks])?;
         layers.texts("titles", Ink::Own, [titles])?;
-        layers.texts("legend", Ink::Own, [self.legend(joint)])
+        layers.texts("legend", Ink::Own, [self.legend()])
     }
 
     /// Seconds at the left of a row of plots, samples at its right.
@@ -165,14 +166,14 @@ impl<'f> Page<'f> {
         }
     }
 
-    fn legend(&self, joint: &Joint) -> Labels {
+    fn legend(&self) -> Labels {
         let axis = if self.period_s.is_some() {
             "delay: seconds left, samples right; point at a dot for its step"
         } else {
             "delay in seconds; point at a dot for its step"
         };
         let entries: [(f32, f32, String, Rgb); 5] = [
-            (SHEET.0 / 2.0, 0.0, self.headline(joint), palette::BORDER),
+            (SHEET.0 / 2.0, 0.0, self.headline(), palette::BORDER),
             (90.0, LEGEND, "● step up".to_owned(), palette::UP),
             (225.0, LEGEND, "● step down".to_owned(), palette::DOWN),
             (495.0, LEGEND, "line: median; shaded: middle half".to_owned(), palette::BORDER),
@@ -186,8 +187,8 @@ impl<'f> Page<'f> {
     }
 
     /// The answer in a sentence.
-    fn headline(&self, joint: &Joint) -> String {
-        let name = &joint.name;
+    fn headline(&self) -> String {
+        let name = &self.joint.name;
         let steps = match self.found.steps.len() {
             1 => "1 accepted step".to_owned(),
             count => format!("{count} accepted steps"),
@@ -228,8 +229,8 @@ impl<'f> Page<'f> {
     fn add_cursor(
         &self,
         chunks: &mut Chunks,
-        joint: &Joint,
-        (layout, placed): (&JointLayout<'_>, &[Placed<'_, '_>]),
+        layout: &JointLayout<'_>,
+        placed: &[Placed<'_, '_>],
     ) -> Result<(), RecordError> {
         let here = placed.iter().map(|placed| {
             let step = placed.step.into_iter();
@@ -243,7 +244,7 @@ impl<'f> Page<'f> {
         let style = Points2D::new([Vec2D::new(SHEET.0 - 280.0, LEGEND)]).with_show_labels(true);
         let style = style.with_colors([color(palette::CANDIDATE)]).with_radii([HIDDEN]);
         layers.stays("step", &style)?;
-        let words: Vec<_> = placed.iter().map(|placed| placed.sentence(joint)).collect();
+        let words: Vec<_> = placed.iter().map(|placed| placed.sentence()).collect();
         let lengths = vec![1; words.len()];
         layers.push("step", &Points2D::update_fields().with_labels(words), &lengths)
     }

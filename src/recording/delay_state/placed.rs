@@ -18,16 +18,16 @@ pub(super) struct Placed<'l, 'a> {
 
 impl Placed<'_, '_> {
     /// What an accepted step is called under the pointer: with the number to go there.
-    pub(super) fn name(&self, joint: &Joint) -> Option<String> {
+    pub(super) fn name(&self) -> Option<String> {
         self.step?;
         let segment = self.segment.number;
-        Some(format!("{} (segment {segment})", self.trial.step_of(joint, self.segment)))
+        Some(format!("{} (segment {segment})", self.trial.step(self.segment)))
     }
 
     /// Which step is marked, or why none is.
-    pub(super) fn sentence(&self, joint: &Joint) -> String {
+    pub(super) fn sentence(&self) -> String {
         let decision = self.segment.decision;
-        let words = self.trial.step_of(joint, self.segment);
+        let words = self.trial.step(self.segment);
         match (decision.verdict(), self.step, decision.delay()) {
             (Verdict::Rejected(condition), ..) => {
                 format!("{words}: rejected, {}", condition.meaning())
