@@ -7,7 +7,7 @@ use super::error::RecordError;
 use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::paths;
-use crate::delay::{Candidate, Decision, Verdict};
+use crate::delay::{Candidate, Decision};
 use crate::experiment::Joint;
 use crate::units::signed;
 use crate::wording::{doubt_percent, number};
@@ -45,7 +45,7 @@ fn page_row(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let of = |value: Option<f64>| value.map_or_else(String::new, number);
     let delay = decision.delay();
     let period_s = trial.trial.period().seconds();
-    let mark = if decision.verdict() == Verdict::Accepted { "✓" } else { "✗" };
+    let mark = if segment.is_accepted() { "✓" } else { "✗" };
     let cells = [
         plain(trial.trial.label()),
         decision.number.to_string(),
@@ -149,7 +149,7 @@ fn add_table(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), Record
         ("j", |row| row.j.map(signed)),
         ("q", |row| row.q()),
         ("delta", |row| row.delta()),
-        ("accepted", |row| row.verdict(|it| i64::from(it.verdict() == Verdict::Accepted))),
+        ("accepted", |row| row.verdict(|_| i64::from(row.segment.is_accepted()))),
         ("error_rank", |row| row.rank),
         ("breakpoint", |row| row.q()),
     ];

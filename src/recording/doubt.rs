@@ -6,7 +6,6 @@ use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::paths;
 use super::verdict::in_short;
-use crate::delay::Verdict;
 use crate::wording::{DOUBT_MEANS, doubt_percent, doubtful_sentence};
 
 /// Adds `/doubt` and `/doubt/log`.
@@ -38,7 +37,7 @@ fn line(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let doubt = doubt_percent(&segment.doubt);
     let not = if segment.doubt.is_doubtful() { "" } else { " (not doubtful)" };
     // A line is cut where its list ends: the delay is in the verdict, the whole reason on the page.
-    let mark = if segment.decision.verdict() == Verdict::Accepted { '✓' } else { '✗' };
+    let mark = if segment.is_accepted() { '✓' } else { '✗' };
     let (step, why) = (trial.step(segment), trial.reason_in_short(segment));
     format!("{doubt:>5} {mark} {step}: {why}{not}")
 }

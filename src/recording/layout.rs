@@ -149,6 +149,10 @@ impl SegmentLayout<'_> {
         self.doubt.is_doubtful() && self.decision.reviewer_verdict.is_none()
     }
 
+    pub(super) fn is_accepted(&self) -> bool {
+        self.decision.verdict() == Verdict::Accepted
+    }
+
     /// Its last tick.
     pub(super) fn verdict(&self) -> i64 {
         self.opening + signed(self.kept.len()) + 1

@@ -13,7 +13,7 @@ use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, Rgb, color};
 use super::paths;
 use super::sheet::Sheet;
-use crate::delay::{Candidate, Line, Verdict};
+use crate::delay::{Candidate, Line};
 use crate::wording::bracketed;
 
 /// Adds everything of the overview below `root`.
@@ -29,19 +29,20 @@ pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), R
         let delay = segment.decision.delay().filter(|delay| *delay >= 0.0)?;
         Some((segment.decision.input_step.sample, delay))
     };
-    for (path, kind, place) in [
-        (paths::BREAKPOINT_ACCEPTED, Kind::Accepted, breakpoint),
-        (paths::DELAY_ACCEPTED, Kind::Accepted, delay),
-        (paths::BREAKPOINT_REJECTED, Kind::Rejected, breakpoint),
-        (paths::DELAY_REJECTED, Kind::Rejected, delay),
+    let [accepted, rejected] = KINDS;
+    for (path, (is_accepted, name, rgb, marker), place) in [
+        (paths::BREAKPOINT_ACCEPTED, accepted, breakpoint),
+        (paths::DELAY_ACCEPTED, accepted, delay),
+        (paths::BREAKPOINT_REJECTED, rejected, breakpoint),
+        (paths::DELAY_REJECTED, rejected, delay),
     ] {
-        let segments = layout.segments().filter(|(_, segment)| Kind::of(segment) == kind);
+        let segments =
+            layout.segments().filter(|(_, segment)| segment.is_accepted() == is_accepted);
         let marks = segments.filter_map(|(trial, segment)| {
             let (k, value) = place(segment)?;
             Some((trial.moment_of(k), Some(value)))
         });
         let (moments, values): (Vec<_>, Vec<_>) = marks.unzip();
-        let (name, rgb, marker) = kind.style();
         let style = SeriesPoints::new().with_names([name]).with_colors([color(rgb)]);
         let style = style.with_markers([marker]).with_marker_sizes([4.0]);
         chunks.push_static(path, &style)?;
@@ -52,28 +53,11 @@ pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), R
     Map::large(layout).add(chunks, layout)
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Accepted,
-    Rejected,
-}
-
-impl Kind {
-    /// Its name, colour and mark.
-    fn style(self) -> (&'static str, Rgb, MarkerShape) {
-        match self {
-            Self::Accepted => ("accepted", palette::ACCEPTED, MarkerShape::Circle),
-            Self::Rejected => ("rejected", palette::REJECTED, MarkerShape::Cross),
-        }
-    }
-
-    fn of(segment: &SegmentLayout<'_>) -> Self {
-        match segment.decision.verdict() {
-            Verdict::Accepted => Self::Accepted,
-            Verdict::Rejected(_) => Self::Rejected,
-        }
-    }
-}
+/// Whether decisions are accepted; their name, colour and mark.
+const KINDS: [(bool, &str, Rgb, MarkerShape); 2] = [
+    (true, "accepted", palette::ACCEPTED, MarkerShape::Circle),
+    (false, "rejected", palette::REJECTED, MarkerShape::Cross),
+];
 
 /// The chosen pair of lines of every segment, each from end to end.
 fn add_lines(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
@@ -216,12 +200,12 @@ impl Map {
         layers.strips("output", palette::SMOOTHED, 1.2, [outputs])?;
         let inputs = layout.trials.iter().map(|trial| self.input_curve(trial)).collect();
         layers.strips("input", palette::INPUT, 1.2, [inputs])?;
-        for kind in [Kind::Accepted, Kind::Rejected] {
-            let breaks = layout.segments().filter(|(_, segment)| Kind::of(segment) == kind);
+        for (is_accepted, name, rgb, _) in KINDS {
+            let breaks =
+                layout.segments().filter(|(_, segment)| segment.is_accepted() == is_accepted);
             let breaks = breaks.filter_map(|(t, s)| self.breakpoint(t, s));
-            let own = delays(layout).filter(|(.., of)| *of == kind);
+            let own = delays(layout).filter(|(.., of)| *of == is_accepted);
             let delays = own.filter_map(|(k, delay_s, _)| Some(self.delay?.at(k, delay_s)));
-            let (name, rgb, _) = kind.style();
             layers.points(name, rgb, 3.0, [breaks.chain(delays).collect()])?;
         }
         layers.texts("ticks", palette::BORDER, [labels])?;
@@ -288,10 +272,10 @@ fn spans(layout: &JointLayout<'_>) -> [Span; 3] {
     ]
 }
 
-/// Sample and delay in seconds of each step that has one, or of each window where there are no
+/// Sample and delay in seconds of each step that has one, and whether it is accepted; or of each window where there are no
 /// steps. A rejected one that is longer than all accepted ones, as at the end of a long hold, or
 /// before its step, is left out: it would press the others together.
-fn delays<'l>(layout: &'l JointLayout<'_>) -> impl Iterator<Item = (f64, f64, Kind)> + 'l {
+fn delays<'l>(layout: &'l JointLayout<'_>) -> impl Iterator<Item = (f64, f64, bool)> + 'l {
     let longest = layout.segments().filter_map(|(_, s)| s.decision.accepted_delay());
     let longest = longest.reduce(f64::max).map(|longest| 1.2 * longest);
     let of_steps = layout.segments().filter_map(move |(trial, segment)| {
@@ -299,7 +283,7 @@ fn delays<'l>(layout: &'l JointLayout<'_>) -> impl Iterator<Item = (f64, f64, Ki
         let is_shown = longest.is_none_or(|longest| delay <= longest);
         let k = trial.sample(segment.decision.input_step.sample) as f64;
         let delay_s = delay * trial.trial.period().seconds();
-        is_shown.then_some((k, delay_s, Kind::of(segment)))
+        is_shown.then_some((k, delay_s, segment.is_accepted()))
     });
     let without_steps = layout.trials.iter().filter(|trial| trial.segments.is_empty());
     let of_windows = without_steps.flat_map(|trial| {
@@ -307,9 +291,8 @@ fn delays<'l>(layout: &'l JointLayout<'_>) -> impl Iterator<Item = (f64, f64, Ki
         let all: Vec<Option<f64>> = trial.estimate.profile.iter().collect();
         let every = all.len().div_ceil(WINDOW_POINTS).max(1);
         let kept = all.into_iter().zip(1..).step_by(every);
-        let kept = kept.filter_map(move |(delay, k)| {
-            Some((trial.sample(k) as f64, delay? * period_s, Kind::Accepted))
-        });
+        let kept = kept
+            .filter_map(move |(delay, k)| Some((trial.sample(k) as f64, delay? * period_s, true)));
         kept.collect::<Vec<_>>()
     });
     of_steps.chain(of_windows)

@@ -77,10 +77,7 @@ fn add_log(
     let index: Index = segments.iter().map(|(trial, segment)| trial.opening(segment)).collect();
     // On the timeline of revisions, too, where a click leads away from.
     let index = index.all_at("revision", last_revision);
-    let level = |segment: &SegmentLayout<'_>| match segment.decision.verdict() {
-        Verdict::Accepted => "INFO",
-        Verdict::Rejected(_) => "WARN",
-    };
+    let level = |segment: &SegmentLayout<'_>| if segment.is_accepted() { "INFO" } else { "WARN" };
     let lines = segments.iter().map(|(t, s)| (Some(level(s)), log_line(t, s)));
     chunks.lines(paths::VERDICT_LOG, index, lines)
 }
