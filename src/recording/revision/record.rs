@@ -113,16 +113,12 @@ impl CloseUp {
             Window::worst(&residuals.collect::<Vec<_>>())
         });
         let trial = layout.trials.get(window.place).filter(|_| layout.trials.len() > 1);
-        let title = trial.map_or_else(
-            || match worst {
-                Some(_) => "close up: worst segment 1".to_owned(),
-                None => "close up: where the residual is largest".to_owned(),
-            },
-            |trial| match worst {
-                Some(_) => format!("segment 1: trial {}", trial.trial.label()),
-                None => format!("largest residual: trial {}", trial.trial.label()),
-            },
-        );
+        let title = match (worst, trial.map(|trial| trial.trial.label())) {
+            (Some(_), None) => "close up: worst segment 1".to_owned(),
+            (None, None) => "close up: where the residual is largest".to_owned(),
+            (Some(_), Some(trial)) => format!("segment 1: trial {trial}"),
+            (None, Some(trial)) => format!("largest residual: trial {trial}"),
+        };
         let all = trial_values(layout, &window, |trial| trial.simulated(comparison));
         Self { plot: close_up(layout, &window, all), window, title }
     }
