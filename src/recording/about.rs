@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::assembly::Recording;
 use super::layout::{Detail, JointLayout};
 use super::markdown::{plain, prose};
 use super::origin::made_from;
+use super::recorded::Recording;
 use super::revision::judged;
 use crate::report::{
     EstimatedJoint, JointSummary, LEVEL_HEADER, ReviewCount, SUMMARY_HEADER, change_in_words,

@@ -1,4 +1,4 @@
-//! A recording of decisions and models: what it is made of, joint by joint.
+//! A recording of decisions and models, joint by joint.
 
 use std::iter::once;
 
@@ -7,50 +7,17 @@ use super::blueprint::Blueprint;
 use super::chunk::{Chunks, Index, Moment, Opening};
 use super::content::{Content, Growth, Tab, hashed, name_of};
 use super::error::RecordError;
-use super::layout::{Detail, JointLayout, TrialStarts};
+use super::layout::{JointLayout, TrialStarts};
 use super::paths;
+use super::recorded::Recording;
 use super::{
     about, decisions, delay_state, difference, doubt, headline, model, overview, place, revision,
     segment_view, signals, verdict, views,
 };
-use crate::delay::Settings;
-use crate::experiment::{Joint, ReadOptions, Source};
-use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint, settings_in_short};
-use crate::study::OtherResult;
+use crate::report::{ImprovedJoint, settings_in_short};
 use crate::units::signed;
 
-/// Everything that a recording holds.
-#[derive(Clone, Copy, Debug)]
-pub struct Recording<'a> {
-    /// What was done, in a word: the name of the command.
-    pub command: &'a str,
-    /// The joints, in the order of their tabs.
-    pub joints: &'a [EstimatedJoint<'a>],
-    /// The settings of the algorithm.
-    pub settings: &'a Settings,
-    /// The files that were read.
-    pub sources: &'a [Source],
-    /// How they were read.
-    pub reading: &'a ReadOptions,
-    /// How many candidates are recorded.
-    pub detail: Detail,
-    /// Models beside the measurement; those of a joint that is not recorded are left out.
-    pub models: &'a [ComparedJoint<'a>],
-    /// What other methods, settings or logs gave, drawn beside these decisions.
-    pub also: &'a [OtherResult],
-    /// Models as they grew, on a timeline of their own; at most one per joint.
-    pub revisions: &'a [ImprovedJoint<'a>],
-}
-
 impl<'a> Recording<'a> {
-    /// The revisions of the model of `joint`.
-    pub(super) fn revisions_of(&self, joint: &Joint) -> Option<&'a ImprovedJoint<'a>> {
-        let of_joint = |improved: &&ImprovedJoint<'_>| {
-            improved.finding.compared.joint.name == joint.name && !improved.revisions.is_empty()
-        };
-        self.revisions.iter().find(of_joint)
-    }
-
     /// Each joint and where it lies on the timelines.
     fn layouts(&self, growth: Growth) -> impl Iterator<Item = JointLayout<'a>> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));

@@ -1,7 +1,7 @@
 //! What other methods, settings or logs gave for a step, beside the decision.
 
-use super::assembly::Recording;
 use super::palette::{self, Rgb};
+use super::recorded::Recording;
 use crate::delay::{Decision, Verdict};
 use crate::report::EstimatedJoint;
 use crate::study::{JointDifferences, JointResult, StepPair, StepResult};

@@ -19,8 +19,7 @@ use rerun::log::LogMsg;
 use rerun::{ApplicationId, AsComponents, EntityPath, StoreId, StoreKind};
 use sha2::{Digest as _, Sha256};
 
-use super::chunk::{Chunks, Ids, Index};
-use super::content::{chunk_message, store_message};
+use super::chunk::{Chunks, Ids, Index, chunk_message, store_message};
 use super::error::RecordError;
 
 use super::paths::ABOUT;

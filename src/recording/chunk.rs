@@ -14,10 +14,11 @@ use rerun::external::arrow::array::{
 use rerun::external::arrow::buffer::{NullBuffer, OffsetBuffer};
 use rerun::external::arrow::datatypes::Field;
 use rerun::external::re_log_types::external::re_tuid::Tuid;
-use rerun::log::{Chunk, ChunkId, RowId, TimeColumn};
+use rerun::external::re_log_types::{SetStoreInfo, StoreInfo, StoreSource};
+use rerun::log::{Chunk, ChunkId, LogMsg, RowId, TimeColumn};
 use rerun::{
     AsComponents, ComponentDescriptor, EntityPath, Scalars, SerializedComponentBatch,
-    SerializedComponentColumn, SeriesLines, StateChange, TextDocument, TextLog,
+    SerializedComponentColumn, SeriesLines, StateChange, StoreId, TextDocument, TextLog,
 };
 
 use super::error::RecordError;
@@ -348,6 +349,20 @@ impl Chunks {
     pub(super) fn into_chunks(self) -> Vec<Chunk> {
         self.made
     }
+}
+
+/// What a store is and who made it: the first message of each.
+pub(super) fn store_message(store: &StoreId) -> LogMsg {
+    let info = StoreInfo::new(
+        store.clone(),
+        StoreSource::Other(format!("tauscope {}", env!("CARGO_PKG_VERSION"))),
+    );
+    LogMsg::SetStoreInfo(SetStoreInfo { row_id: Tuid::from_nanos_and_inc(1, 0), info })
+}
+
+/// A chunk of a store.
+pub(super) fn chunk_message(store: &StoreId, chunk: &Chunk) -> Result<LogMsg, RecordError> {
+    Ok(LogMsg::ArrowMsg(store.clone(), chunk.to_arrow_msg()?))
 }
 
 /// A curve of a plot: its name in legends, colour and width.

@@ -1,14 +1,11 @@
 //! What goes into a file or to a viewer, whatever it is about.
 
-use rerun::external::re_log_types::external::re_tuid::Tuid;
-use rerun::external::re_log_types::{
-    BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource,
-};
+use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::log::{Chunk, LogMsg};
 use rerun::{ApplicationId, EntityPath, RecordingInfo, StoreId};
 
 use super::blueprint::Blueprint;
-use super::chunk::{Chunks, Ids};
+use super::chunk::{Chunks, Ids, chunk_message, store_message};
 use super::error::RecordError;
 use super::paths::{ABOUT, joint_root};
 use crate::experiment::{Joint, Source};
@@ -174,20 +171,6 @@ pub(super) fn hashed<'a>(
     part(env!("CARGO_PKG_VERSION"));
     let digest = base16ct::lower::encode_string(&hash.finalize());
     digest.chars().take(32).collect()
-}
-
-/// What a store is and who made it: the first message of each.
-pub(super) fn store_message(store: &StoreId) -> LogMsg {
-    let info = StoreInfo::new(
-        store.clone(),
-        StoreSource::Other(format!("tauscope {}", env!("CARGO_PKG_VERSION"))),
-    );
-    LogMsg::SetStoreInfo(SetStoreInfo { row_id: Tuid::from_nanos_and_inc(1, 0), info })
-}
-
-/// A chunk of a store.
-pub(super) fn chunk_message(store: &StoreId, chunk: &Chunk) -> Result<LogMsg, RecordError> {
-    Ok(LogMsg::ArrowMsg(store.clone(), chunk.to_arrow_msg()?))
 }
 
 /// What makes the viewer show a blueprint that it has been sent.

@@ -7,7 +7,6 @@ use rerun::EntityPath;
 use rerun::external::re_sdk_types::blueprint::components::PlayState;
 
 use super::about;
-use super::assembly::Recording;
 use super::blueprint::{Blueprint, Page};
 use super::chunk::{Chunks, Index};
 use super::content::{Content, Growth, Tab, hashed, name_of};
@@ -16,6 +15,7 @@ use super::layers::Layers;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout, TrialStarts};
 use super::markdown::{link, plain};
 use super::paths::{self, at};
+use super::recorded::Recording;
 use super::segment_view::{self, Drawing};
 use super::verdict;
 use crate::report::{JointSummary, SUMMARY_HEADER, summary_cells};

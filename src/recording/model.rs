@@ -11,17 +11,16 @@ use super::layout::JointLayout;
 use super::markdown::plain;
 use super::model_lanes::samples_of;
 use super::palette;
+use super::parameter_table::parameter_table;
 use super::paths::{self, at, child};
 use super::signals::known;
 use super::{correlogram, error_share, model_lanes, revision, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
 use crate::experiment::Joint;
-use crate::fit::AssessedModel;
-use crate::report::{ComparedJoint, delay_of_steps, model_differences, telling_parameters};
+use crate::report::{ComparedJoint, model_differences};
 use crate::wording::{
-    capitalized, correlation_sentences, fails_or_errs, measure, misfit_units, number,
-    parameter_value, rounded,
+    capitalized, correlation_sentences, fails_or_errs, measure, misfit_units, number, rounded,
 };
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
@@ -377,26 +376,4 @@ fn headline(judged: &ComparedJoint<'_>) -> String {
         (_, Some(_)) => format!("{followed}the error is {error}"),
         _ => "there is an error that is no noise".to_owned(),
     }
-}
-
-/// Writes what was fitted to `joint`, a row for each parameter.
-pub(super) fn parameter_table(
-    page: &mut String,
-    joint: &Joint,
-    fit: &AssessedModel,
-) -> std::fmt::Result {
-    writeln!(page, "| parameter | value ± standard error |\n|---|---|")?;
-    let delays = delay_of_steps(joint, &fit.model);
-    for (parameter, unit) in telling_parameters(joint, fit) {
-        let (name, value) = (plain(&parameter.name), parameter_value(parameter, &unit));
-        // Beside a law it is that of a step of no size, which may be none of the record. In short
-        // words: the values are beside the widest name in a narrow panel.
-        let delays = delays.as_ref().filter(|_| name == "delay");
-        let of = if delays.is_some() { ", step of size 0" } else { "" };
-        if let Some(delays) = delays {
-            writeln!(page, "| delay of the steps | {delays} |")?;
-        }
-        writeln!(page, "| {name}{of} | {} |", plain(&value))?;
-    }
-    Ok(())
 }

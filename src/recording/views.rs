@@ -12,12 +12,12 @@ use rerun::external::re_sdk_types::blueprint::datatypes::{
     ComponentColumnSelector, SelectedColumns,
 };
 
-use super::assembly::Recording;
 use super::blueprint::{Blueprint, Page};
 use super::canvas::SHEET;
 use super::content::Growth;
 use super::overview::{LARGE_HEIGHT, MAP_HEIGHT};
 use super::paths::{self, at, child, joint_root, of_model};
+use super::recorded::Recording;
 use super::{
     correlogram, delay_state, difference, error_share, palette, revision, scatter, segment_view,
 };

@@ -7,16 +7,15 @@ use rerun::external::re_build_info::CrateVersion;
 use rerun::external::re_log_encoding::{Encoder, EncodingOptions};
 use rerun::{RecordingStream, StoreId, StoreKind};
 
-use super::assembly::Recording;
-use super::chunk::Ids;
+use super::chunk::{Ids, chunk_message};
 use super::content::{
-    Content, Growth, Part, activation, application, chunk_message, first_messages, for_each_chunk,
-    view_messages,
+    Content, Growth, Part, activation, application, first_messages, for_each_chunk, view_messages,
 };
 use super::end::EndHeld;
 use super::error::RecordError;
 use super::index::IndexRecording;
 use super::preview::PreviewRecording;
+use super::recorded::Recording;
 use super::sweep::SweepRecording;
 
 /// Writes `recording` to `out` as a whole `.rrd` file, footer included.

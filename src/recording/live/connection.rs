@@ -11,13 +11,12 @@ use rerun::{MemoryLimit, ServerOptions, StoreId, StoreKind};
 
 use super::address;
 use super::sent::Sent;
-use crate::recording::assembly::Recording;
-use crate::recording::chunk::Ids;
+use crate::recording::chunk::{Ids, chunk_message};
 use crate::recording::content::{
-    Content, Growth, Part, application, chunk_message, first_messages, for_each_chunk,
-    view_messages,
+    Content, Growth, Part, application, first_messages, for_each_chunk, view_messages,
 };
 use crate::recording::error::RecordError;
+use crate::recording::recorded::Recording;
 use crate::recording::sweep::SweepRecording;
 
 /// Longest time that a viewer may take to answer.

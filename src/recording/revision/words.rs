@@ -12,7 +12,7 @@ use crate::model::Component;
 use crate::recording::error_share::short;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
-use crate::recording::model::parameter_table;
+use crate::recording::parameter_table::parameter_table;
 use crate::report::{ImprovedJoint, MANY_TIMES_NOISE, Passage, Topic, change_in_words};
 use crate::wording::{measure, percent, rounded, unit_suffix, worst_segment_text};
 

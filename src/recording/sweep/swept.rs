@@ -1,6 +1,5 @@
 //! A joint over all settings, as it is recorded.
 
-use super::recording::SweepRecording;
 use crate::delay::sweep::{Agreement, Grid, ReportedDelay, SweptStep};
 use crate::experiment::Trial;
 use crate::recording::chunk::Index;
@@ -23,12 +22,7 @@ pub(super) struct Swept<'a> {
 }
 
 impl<'a> Swept<'a> {
-    pub(super) fn of(
-        recording: &SweepRecording<'a>,
-        reported: ReportedSweep<'a>,
-        starts: &TrialStarts,
-    ) -> Self {
-        let grid = recording.grid;
+    pub(super) fn of(grid: &'a Grid, reported: ReportedSweep<'a>, starts: &TrialStarts) -> Self {
         let trials = &reported.joint.trials;
         let trial_of = |step: &SweptStep| trials.iter().find(|trial| trial.label() == step.trial);
         let steps = reported.sweep.steps.iter();

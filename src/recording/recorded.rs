@@ -1,0 +1,40 @@
+//! What a recording of decisions and models is made of.
+
+use super::layout::Detail;
+use crate::delay::Settings;
+use crate::experiment::{Joint, ReadOptions, Source};
+use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
+use crate::study::OtherResult;
+
+/// Everything that a recording holds.
+#[derive(Clone, Copy, Debug)]
+pub struct Recording<'a> {
+    /// What was done, in a word: the name of the command.
+    pub command: &'a str,
+    /// The joints, in the order of their tabs.
+    pub joints: &'a [EstimatedJoint<'a>],
+    /// The settings of the algorithm.
+    pub settings: &'a Settings,
+    /// The files that were read.
+    pub sources: &'a [Source],
+    /// How they were read.
+    pub reading: &'a ReadOptions,
+    /// How many candidates are recorded.
+    pub detail: Detail,
+    /// Models beside the measurement; those of a joint that is not recorded are left out.
+    pub models: &'a [ComparedJoint<'a>],
+    /// What other methods, settings or logs gave, drawn beside these decisions.
+    pub also: &'a [OtherResult],
+    /// Models as they grew, on a timeline of their own; at most one per joint.
+    pub revisions: &'a [ImprovedJoint<'a>],
+}
+
+impl<'a> Recording<'a> {
+    /// The revisions of the model of `joint`.
+    pub(super) fn revisions_of(&self, joint: &Joint) -> Option<&'a ImprovedJoint<'a>> {
+        let of_joint = |improved: &&ImprovedJoint<'_>| {
+            improved.finding.compared.joint.name == joint.name && !improved.revisions.is_empty()
+        };
+        self.revisions.iter().find(of_joint)
+    }
+}
