@@ -99,30 +99,30 @@ impl<'l, 'a> Row<'l, 'a> {
         candidates.chain([(trial.verdict(segment), verdict)])
     }
 
-    fn q(&self) -> Option<i64> {
-        Some(signed(self.candidate?.breakpoint))
-    }
-
-    /// Samples from the input step to the breakpoint.
-    fn delta(&self) -> Option<i64> {
-        Some(self.q()? - signed(self.segment.decision.input_step.sample))
-    }
-
-    fn delay_s(&self) -> Option<f64> {
-        let own = self.segment.decision.delay().filter(|_| self.j.is_none());
-        let delay = own.or_else(|| self.delta().map(|delta| delta as f64))?;
-        Some(delay * self.trial.trial.period().seconds())
-    }
-
-    fn error_times_least(&self) -> Option<f64> {
-        let best = self.segment.decision.candidates.best().filter(|best| best.sse > 0.0)?;
-        Some(self.candidate?.sse / best.sse)
-    }
-
     /// What the row of a verdict has alone.
     fn verdict<T>(&self, of: impl Fn(&Decision) -> T) -> Option<T> {
         self.j.is_none().then(|| of(self.segment.decision))
     }
+}
+
+fn q(row: &Row<'_, '_>) -> Option<i64> {
+    Some(signed(row.candidate?.breakpoint))
+}
+
+/// Samples from the input step to the breakpoint.
+fn delta(row: &Row<'_, '_>) -> Option<i64> {
+    Some(q(row)? - signed(row.segment.decision.input_step.sample))
+}
+
+fn delay_s(row: &Row<'_, '_>) -> Option<f64> {
+    let own = row.segment.decision.delay().filter(|_| row.j.is_none());
+    let delay = own.or_else(|| delta(row).map(|delta| delta as f64))?;
+    Some(delay * row.trial.trial.period().seconds())
+}
+
+fn error_times_least(row: &Row<'_, '_>) -> Option<f64> {
+    let best = row.segment.decision.candidates.best().filter(|best| best.sse > 0.0)?;
+    Some(row.candidate?.sse / best.sse)
 }
 
 /// The place of each of `errors` among them, the least being the first.
@@ -147,11 +147,11 @@ fn add_table(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), Record
         ("end", |row| Some(signed(row.segment.decision.segment.last))),
         ("f", |row| row.segment.decision.candidates.best().map(|best| signed(best.f))),
         ("j", |row| row.j.map(signed)),
-        ("q", |row| row.q()),
-        ("delta", |row| row.delta()),
+        ("q", q),
+        ("delta", delta),
         ("accepted", |row| row.verdict(|_| i64::from(row.segment.is_accepted()))),
         ("error_rank", |row| row.rank),
-        ("breakpoint", |row| row.q()),
+        ("breakpoint", q),
     ];
     let real: [(&str, Real); 3] = [
         ("sse", |row| Some(row.candidate?.sse)),
@@ -161,9 +161,9 @@ fn add_table(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), Record
     // What a person reads. A viewer orders columns by their names: these are such that the most telling
     // ones come first.
     let rounded: [(&str, Real); 3] = [
-        ("delay_s", |row| row.delay_s()),
+        ("delay_s", delay_s),
         ("error", |row| Some(row.candidate?.sse)),
-        ("error_times_least", |row| row.error_times_least()),
+        ("error_times_least", error_times_least),
     ];
     let trials = rows.iter().map(|row| row.verdict(|_| row.trial.trial.label().to_owned()));
     let verdicts = rows.iter().map(|row| row.verdict(|it| it.verdict().to_string()));

@@ -76,7 +76,7 @@ impl<'f> Page<'f> {
             joint,
             found,
             plots: quantities.into_iter().enumerate().map(place).collect(),
-            names: placed.iter().filter_map(|placed| placed.name()).collect(),
+            names: placed.iter().filter_map(Placed::name).collect(),
             quantities: count,
             columns,
             period_s: period_s.map(SamplePeriod::seconds),
@@ -244,7 +244,7 @@ impl<'f> Page<'f> {
         let style = Points2D::new([Vec2D::new(SHEET.0 - 280.0, LEGEND)]).with_show_labels(true);
         let style = style.with_colors([color(palette::CANDIDATE)]).with_radii([HIDDEN]);
         layers.stays("step", &style)?;
-        let words: Vec<_> = placed.iter().map(|placed| placed.sentence()).collect();
+        let words: Vec<_> = placed.iter().map(Placed::sentence).collect();
         let lengths = vec![1; words.len()];
         layers.push("step", &Points2D::update_fields().with_labels(words), &lengths)
     }
