@@ -2,16 +2,11 @@
 
 use std::fmt::Write as _;
 
-use rerun::{EntityPath, TextDocument};
-
-use super::chunk::Chunks;
-use super::error::RecordError;
 use super::layout::{Detail, JointLayout};
 use super::markdown::{plain, prose};
 use super::origin::made_from;
-use super::paths::ABOUT;
 use super::recorded::Recording;
-use crate::recording::rungs::judged;
+use super::revision::judged;
 use crate::report::{
     EstimatedJoint, JointSummary, LEVEL_HEADER, ReviewCount, SUMMARY_HEADER, change_in_words,
     chosen_line, dead_time_sentences, doubtful_lines, kind_sentence, level_cells, settings_rows,
@@ -19,18 +14,15 @@ use crate::report::{
 };
 use crate::wording::{DOUBT_MEANS, counted, doubtful_sentence, measure};
 
-/// Adds the page at `/about`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    recording: &Recording<'_>,
-    layouts: &[JointLayout<'_>],
-) -> Result<(), RecordError> {
-    let text = page(recording, layouts).unwrap_or_default();
-    let document = TextDocument::from_markdown(text);
-    chunks.push_static(EntityPath::from(ABOUT), &document)
+/// The page on `recording`, whose joints have these layouts.
+pub(super) fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> String {
+    written(recording, layouts).unwrap_or_default()
 }
 
-fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String, std::fmt::Error> {
+fn written(
+    recording: &Recording<'_>,
+    layouts: &[JointLayout<'_>],
+) -> Result<String, std::fmt::Error> {
     let mut page = String::new();
     answers(&mut page, recording)?;
     writeln!(page, "# Delays of {}\n", counted(recording.joints.len(), "joint"))?;

@@ -2,29 +2,24 @@
 
 use std::iter::once;
 
-use rerun::log::LogMsg;
-use rerun::{ApplicationId, EntityPath};
-
 use super::beside::{Other, weight};
+use super::blueprint::Blueprint;
 use super::chunk::{Chunks, Index, Moment, Opening};
 use super::content::{Content, Growth, Tab, hashed, name_of};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
-use super::paths::{self, against, at, drawing, joint_root, map};
+use super::paths;
 use super::recorded::Recording;
 use super::{
     about, decisions, delay_state, difference, doubt, headline, model, overview, place, revision,
     segment_view, signals, verdict, views,
 };
-use crate::report::{EstimatedJoint, ImprovedJoint, settings_in_short};
+use crate::report::{ImprovedJoint, settings_in_short};
 use crate::units::signed;
 
 impl<'a> Recording<'a> {
     /// Each joint and where it lies on the timelines.
-    fn layouts(
-        &self,
-        growth: Growth,
-    ) -> impl Iterator<Item = (EstimatedJoint<'a>, JointLayout<'a>)> {
+    fn layouts(&self, growth: Growth) -> impl Iterator<Item = JointLayout<'a>> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
         let numbers = || self.revisions.iter().flat_map(ImprovedJoint::numbered);
         let numbers = || numbers().map(|(number, _)| i64::from(number));
@@ -40,9 +35,8 @@ impl<'a> Recording<'a> {
         let most = decisions.map(|decision| signed(decision.candidates.len())).max().unwrap_or(0);
         // With a tick for the segment alone, and one for its verdict.
         let first_tick = -1 - most;
-        let layout = move |joint| {
-            (joint, JointLayout::of(joint, &starts, (self.detail, revisions), first_tick))
-        };
+        let layout =
+            move |joint| JointLayout::of(joint, &starts, (self.detail, revisions), first_tick);
         self.joints.iter().copied().map(layout)
     }
 }
@@ -61,30 +55,25 @@ impl<'a> Content for Recording<'a> {
         recording_id(self)
     }
 
-    fn add_about(&self, chunks: &mut Chunks) -> Result<(), RecordError> {
-        let layouts: Vec<_> = self.layouts(Growth::Finished).map(|(_, layout)| layout).collect();
-        about::add(chunks, self, &layouts)
+    fn about(&self) -> String {
+        let layouts: Vec<_> = self.layouts(Growth::Finished).collect();
+        about::page(self, &layouts)
     }
 
     fn tabs(&self, growth: Growth) -> Vec<Tab<'_>> {
-        let tab = |(joint, mut layout): (EstimatedJoint<'a>, JointLayout<'a>)| {
-            let others = self.others(joint);
+        let tab = |mut layout: JointLayout<'a>| {
+            let (joint, others) = (layout.joint, self.others(layout.estimated));
             if !others.is_empty() {
                 layout.rank_by_difference(|label, p| weight(&others, label, p));
             }
-            let add = move |chunks: &mut Chunks| add_joint(chunks, self, joint, (&layout, &others));
-            Tab { joint: &joint.joint.name, add: Box::new(add) }
+            let add = move |chunks: &mut Chunks| add_joint(chunks, self, &layout, &others);
+            Tab { joint: Some(&joint.name), add: Box::new(add) }
         };
         self.layouts(growth).map(tab).collect()
     }
 
-    fn views(
-        &self,
-        growth: Growth,
-        application: &ApplicationId,
-        id: &str,
-    ) -> Result<Vec<LogMsg>, RecordError> {
-        views::messages(self, growth, application, id)
+    fn blueprint(&self, growth: Growth) -> Blueprint {
+        views::blueprint(self, growth)
     }
 
     fn views_in_words(&self, growth: Growth) -> String {
@@ -95,41 +84,40 @@ impl<'a> Content for Recording<'a> {
 fn add_joint(
     chunks: &mut Chunks,
     recording: &Recording<'_>,
-    estimated: EstimatedJoint<'_>,
-    (layout, others): (&JointLayout<'_>, &[Other<'_>]),
+    layout: &JointLayout<'_>,
+    others: &[Other<'_>],
 ) -> Result<(), RecordError> {
-    let joint = estimated.joint;
-    let root = joint_root(&joint.name);
-    place::add(chunks, &root, layout)?;
-    headline::add(chunks, &root, estimated, (layout, recording.sources))?;
-    signals::add(chunks, &root, joint, layout)?;
-    decisions::add(chunks, &root, joint, layout)?;
-    verdict::add(chunks, &root, estimated, layout, others)?;
-    segment_view::add(chunks, &root, joint, layout, (recording.settings.method, others))?;
-    overview::add(chunks, &root, joint, layout)?;
-    delay_state::add(chunks, &root, estimated, layout)?;
-    doubt::add(chunks, &root, joint, layout)?;
-    difference::add(chunks, &root, joint, layout, others)?;
+    let joint = layout.joint;
+    place::add(chunks, layout)?;
+    headline::add(chunks, layout, recording.sources)?;
+    signals::add(chunks, layout)?;
+    decisions::add(chunks, layout)?;
+    verdict::add(chunks, layout, others)?;
+    segment_view::add(chunks, layout, (recording.settings.method, others))?;
+    overview::add(chunks, layout)?;
+    delay_state::add(chunks, layout)?;
+    doubt::add(chunks, layout)?;
+    difference::add(chunks, layout, others)?;
     let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
     let models: Vec<_> = models.collect();
     let first_sample = first_sample(layout).filter(|_| !models.is_empty());
-    open_on_the_first(chunks, &root, layout, first_sample)?;
+    open_on_the_first(chunks, layout, first_sample)?;
     let revisions = recording.revisions_of(joint);
     // Of several revisions the last one is what there is to judge.
     let judged = if revisions.is_some() { models.last() } else { models.first() };
     if let Some(judged) = judged {
-        model::add(chunks, &root, layout, &models, judged)?;
+        model::add(chunks, layout, &models, judged)?;
     }
     match (revisions, judged) {
-        (Some(improved), _) => revision::add(chunks, &root, layout, improved),
-        (None, Some(judged)) => model::add_map(chunks, &root, layout, judged),
+        (Some(improved), _) => revision::add(chunks, layout, improved),
+        (None, Some(judged)) => model::add_map(chunks, layout, judged),
         (None, None) => Ok(()),
     }
 }
 
 /// The first sample of all, where no step begins at it.
 fn first_sample(layout: &JointLayout<'_>) -> Option<Moment> {
-    let first = layout.trials.first().and_then(|trial| trial.moments(1).next())?;
+    let first = layout.start()?;
     let mut steps = layout.segments().map(|(trial, segment)| trial.opening(segment).sample);
     steps.all(|step| step > first.sample).then_some(first)
 }
@@ -139,33 +127,31 @@ fn first_sample(layout: &JointLayout<'_>) -> Option<Moment> {
 /// `first_sample` where it opens on `time`.
 fn open_on_the_first(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     first_sample: Option<Moment>,
 ) -> Result<(), RecordError> {
     let Some(segment) = layout.shown_first() else { return Ok(()) };
-    let [map, large] = [map::ROOT, map::LARGE].map(|root| format!("{root}/{}", map::HERE));
-    let [here, step] = [against::HERE, against::STEP].map(|p| format!("{}/{p}", against::ROOT));
     let shown = [
-        (drawing::ROOT, ""),
-        (map.as_str(), ""),
-        (large.as_str(), ""),
-        (here.as_str(), ""),
-        (step.as_str(), ""),
+        (paths::DRAWING, ""),
+        ("map/here", ""),
+        ("map_of_record/here", ""),
+        ("against/here", ""),
+        ("against/step", ""),
         (paths::VERDICT, "TextDocument"),
     ];
     // On the timeline of differences the first tick is this decision's own.
     let index = Index::before_all(Opening { is_compared: false, ..layout.first });
     let index = match first_sample {
-        Some(start) => index.and_at(start),
+        Some(Moment { sample, time_ns, .. }) => {
+            index.all_at("sample", Some(sample)).all_at("time", Some(time_ns))
+        }
         None => index,
     };
     for (path, component) in shown {
-        chunks.repeat((&at(root, path), component), segment.opening, &index)?;
+        chunks.repeat((&path, component), segment.opening, &index)?;
     }
     let candidates = segment.opening + 1..=segment.verdict();
-    for path in [drawing::CANDIDATE, drawing::CANDIDATE_MARK] {
-        let path = at(root, &format!("{}/{path}", drawing::ROOT));
+    for path in ["drawing/candidate", "drawing/candidate/mark"] {
         chunks.replay(&path, candidates.clone(), layout.first.tick + 1)?;
     }
     Ok(())

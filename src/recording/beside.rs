@@ -51,46 +51,48 @@ pub(super) fn weight(others: &[Other<'_>], label: &str, p: usize) -> (u8, f64) {
     pairs.map(StepPair::weight).fold((0, 0.0), larger)
 }
 
-/// The verdict of the method `name` on a step, with the delay and its interval in samples.
-pub(super) fn decided_in_short(name: &str, decision: &Decision) -> String {
-    let interval = decision.fine.map(|fine| (fine.low, fine.high));
-    format!("{name}: δ = {} {}", delay(decision.delay(), interval), mark(decision.verdict()))
+/// What a result says of a step, in words: its delay and interval in samples, and its verdict.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shown {
+    delay: Option<f64>,
+    interval: Option<(f64, f64)>,
+    verdict: Verdict,
 }
 
-/// The verdict of another result on a step, with the delay and its interval.
-pub(super) fn in_short(name: &str, step: &StepResult) -> String {
-    format!("{name}: δ = {} {}", delay(step.delay, step.interval), mark(step.verdict))
-}
-
-fn mark(verdict: Verdict) -> String {
-    match verdict {
-        Verdict::Accepted => "✓".to_owned(),
-        Verdict::Rejected(condition) => format!("✗ {}", condition.meaning()),
+impl Shown {
+    /// What was decided here.
+    pub(super) fn of(decision: &Decision) -> Self {
+        let interval = decision.fine.map(|fine| (fine.low, fine.high));
+        Self { delay: decision.delay(), interval, verdict: decision.verdict() }
     }
-}
 
-/// A row of the table of results: of the decision itself.
-pub(super) fn decided_row(name: &str, decision: &Decision) -> String {
-    let interval = decision.fine.map(|fine| (fine.low, fine.high));
-    cells(name, &delay(decision.delay(), interval), decision.verdict())
-}
+    /// What another result says.
+    pub(super) fn there(step: &StepResult) -> Self {
+        Self { delay: step.delay, interval: step.interval, verdict: step.verdict }
+    }
 
-/// A row of the table of results.
-pub(super) fn row(name: &str, step: &StepResult) -> String {
-    cells(name, &delay(step.delay, step.interval), step.verdict)
-}
+    /// The line of the result `name` in a legend.
+    pub(super) fn in_short(self, name: &str) -> String {
+        format!("{name}: δ = {} {}", self.delay(), self.verdict("✓"))
+    }
 
-fn cells(name: &str, delay: &str, verdict: Verdict) -> String {
-    let verdict = match verdict {
-        Verdict::Accepted => "✓ accepted".to_owned(),
-        Verdict::Rejected(condition) => format!("✗ {}", condition.meaning()),
-    };
-    format!("| {name} | {delay} | {verdict} |")
-}
+    /// The row of the result `name` in a table.
+    pub(super) fn row(self, name: &str) -> String {
+        format!("| {name} | {} | {} |", self.delay(), self.verdict("✓ accepted"))
+    }
 
-fn delay(delay: Option<f64>, interval: Option<(f64, f64)>) -> String {
-    let delay = delay.map_or_else(|| "none".to_owned(), number);
-    let interval =
-        interval.map(|(low, high)| format!("{delay} ({} … {})", number(low), number(high)));
-    interval.unwrap_or(delay)
+    fn verdict(self, accepted: &str) -> String {
+        match self.verdict {
+            Verdict::Accepted => accepted.to_owned(),
+            Verdict::Rejected(condition) => format!("✗ {}", condition.meaning()),
+        }
+    }
+
+    fn delay(self) -> String {
+        let delay = self.delay.map_or_else(|| "none".to_owned(), number);
+        match self.interval {
+            Some((low, high)) => format!("{delay} ({} … {})", number(low), number(high)),
+            None => delay,
+        }
+    }
 }

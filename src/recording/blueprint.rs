@@ -1,7 +1,7 @@
 //! Blueprints with view properties, which Rerun's own builder does not make.
 //!
-//! A blueprint is a recording of its own: `view/<id>` and `container/<id>` hold what the
-//! viewer shows, `viewport` the root.
+//! What is shown is a tree of [`Page`]s. A blueprint is a recording of its own: `view/<id>` and
+//! `container/<id>` hold what the viewer shows, `viewport` the root.
 
 use rerun::datatypes::{Range2D, TimeRange, TimeRangeBoundary, Utf8};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
@@ -9,21 +9,20 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
     ViewBlueprint, ViewContents, ViewportBlueprint, VisualBounds2D,
 };
 use rerun::external::re_sdk_types::blueprint::components::{
-    ContainerKind, IncludedContent, PanelState, PlayState, QueryExpression, RootContainer,
+    ContainerKind, IncludedContent, LinkAxis, PanelState, PlayState, QueryExpression, RootContainer,
 };
 use rerun::external::re_sdk_types::blueprint::datatypes::{
     TextLogColumn, TextLogColumnKind, TimelineColumn,
 };
 use rerun::external::uuid::Uuid;
 use rerun::log::LogMsg;
+use rerun::{ApplicationId, AsComponents, EntityPath, StoreId, StoreKind};
 use sha2::{Digest as _, Sha256};
 
-use rerun::{ApplicationId, AsComponents, EntityPath, StoreId, StoreKind};
-
-use super::chunk::{Chunks, Ids};
+use super::chunk::{Chunks, Ids, Index, chunk_message, store_message};
 use super::error::RecordError;
-use super::message::{chunk_message, store_message};
-use super::paths::{ABOUT, at};
+
+use super::paths::ABOUT;
 
 /// Namespace of the blueprint's rows; it is a store of its own.
 const NAMESPACE: u64 = 1;
@@ -31,8 +30,164 @@ const NAMESPACE: u64 = 1;
 /// Where the viewer keeps the axis that linked plots share (a fixed id of its own).
 const LINKED_TIME_AXIS: &str = "view/5c0dca6a-e63f-9cf7-f657-2602590474cc/TimeAxis";
 
+/// A view, or several beside, below or behind one another.
+pub(super) enum Page {
+    /// A view of one of Rerun's classes on some entities, with properties.
+    View {
+        class: &'static str,
+        name: String,
+        contents: Vec<String>,
+        properties: Vec<(&'static str, Box<dyn AsComponents>)>,
+    },
+    /// Pages with the parts that they have of its height or width.
+    Container { kind: ContainerKind, name: String, pages: Vec<(f32, Self)> },
+}
+
+impl Page {
+    pub(super) fn view<P: ToString>(
+        class: &'static str,
+        name: impl Into<String>,
+        contents: impl IntoIterator<Item = P>,
+    ) -> Self {
+        let contents = contents.into_iter().map(|path| path.to_string()).collect();
+        Self::View { class, name: name.into(), contents, properties: Vec::new() }
+    }
+
+    /// A text.
+    pub(super) fn text(name: impl Into<String>, entity: EntityPath) -> Self {
+        Self::view("TextDocument", name, [entity])
+    }
+
+    /// Lines with numbers on `timeline` that lead there.
+    pub(super) fn list(name: impl Into<String>, entity: EntityPath, timeline: &str) -> Self {
+        let timeline = TimelineColumn { visible: true.into(), timeline: Utf8::from(timeline) };
+        let body = TextLogColumn { visible: true.into(), kind: TextLogColumnKind::Body };
+        let columns = TextLogColumns::new().with_timeline_columns([timeline]);
+        let columns = columns.with_text_log_columns([body]);
+        Self::view("TextLog", name, [entity]).with("TextLogColumns", columns)
+    }
+
+    /// A drawing, which is all that lies below `root`: the whole sheet is in view.
+    pub(super) fn drawing(
+        name: impl Into<String>,
+        root: &EntityPath,
+        (width, height): (f32, f32),
+    ) -> Self {
+        let (width, height) = (f64::from(width), f64::from(height));
+        let (x, y) = ([0.0, width].into(), [0.0, height].into());
+        let bounds = VisualBounds2D::new(Range2D { x_range: x, y_range: y });
+        Self::view("2D", name, [format!("{root}/**")]).with("VisualBounds2D", bounds)
+    }
+
+    /// Scalars over a time axis that moves with those of all other plots.
+    pub(super) fn plot(name: impl Into<String>, entities: &[EntityPath]) -> Self {
+        let axis = TimeAxis::new().with_link(LinkAxis::LinkToGlobal);
+        Self::view("TimeSeries", name, entities).with("TimeAxis", axis)
+    }
+
+    /// Lanes of states, which start with all of the record in view: viewers from 0.41 on begin in its
+    /// middle.
+    pub(super) fn lanes(name: impl Into<String>, entities: &[EntityPath]) -> Self {
+        Self::view("StateTimeline", name, entities).with("TimeAxis", whole_record())
+    }
+
+    /// Sets a property of a view, such as `VisualBounds2D`.
+    pub(super) fn with(mut self, name: &'static str, value: impl AsComponents + 'static) -> Self {
+        if let Self::View { properties, .. } = &mut self {
+            properties.push((name, Box::new(value)));
+        }
+        self
+    }
+
+    /// This view without some of the entities.
+    pub(super) fn without(mut self, entities: impl IntoIterator<Item = EntityPath>) -> Self {
+        if let Self::View { contents, .. } = &mut self {
+            contents.extend(entities.into_iter().map(|entity| format!("- {entity}")));
+        }
+        self
+    }
+
+    /// Pages beside one another, with their shares of the width.
+    pub(super) fn beside(
+        name: impl Into<String>,
+        pages: impl IntoIterator<Item = (f32, Self)>,
+    ) -> Self {
+        let pages = pages.into_iter().collect();
+        Self::Container { kind: ContainerKind::Horizontal, name: name.into(), pages }
+    }
+
+    /// Pages below one another, with their shares of the height.
+    pub(super) fn stacked(
+        name: impl Into<String>,
+        pages: impl IntoIterator<Item = (f32, Self)>,
+    ) -> Self {
+        let pages = pages.into_iter().collect();
+        Self::Container { kind: ContainerKind::Vertical, name: name.into(), pages }
+    }
+
+    /// Pages behind one another, of which the first one is open.
+    pub(super) fn tabs(name: impl Into<String>, pages: impl IntoIterator<Item = Self>) -> Self {
+        let pages = pages.into_iter().map(|page| (1.0, page)).collect();
+        Self::Container { kind: ContainerKind::Tabs, name: name.into(), pages }
+    }
+}
+
+/// All that a viewer shows of a recording.
+pub(super) struct Blueprint {
+    pub(super) tabs: Vec<Page>,
+    /// What the page on all of it is called: the last tab.
+    pub(super) about: String,
+    /// The timeline that it opens on.
+    pub(super) timeline: &'static str,
+    pub(super) play: PlayState,
+}
+
+impl Blueprint {
+    /// Its messages, for the recording `id`.
+    pub(super) fn messages(
+        self,
+        application: &ApplicationId,
+        id: &str,
+    ) -> Result<Vec<LogMsg>, RecordError> {
+        /// Tabs that a screen has room for: behind more of them nobody finds the page on all.
+        const SEEN: usize = 10;
+        let store = format!("{id}-views");
+        let mut builder = Builder { id, chunks: Ids::of(&store).chunks(NAMESPACE), nodes: 0 };
+        let mut tabs =
+            self.tabs.into_iter().map(|tab| builder.add(tab)).collect::<Result<Vec<_>, _>>()?;
+        let about = builder.add(Page::text(self.about, EntityPath::from(ABOUT)))?;
+        let open = tabs.first().unwrap_or(&about).clone();
+        let place = if tabs.len() > SEEN { 0 } else { tabs.len() };
+        tabs.insert(place, about);
+        let root = builder.tabs("Joints", &tabs, &open)?;
+        let root = rerun::datatypes::Uuid { bytes: *root.id.as_bytes() };
+        let viewport = ViewportBlueprint::new().with_root_container(RootContainer(root));
+        builder.log("viewport", &viewport.with_auto_layout(false).with_auto_views(false))?;
+        let collapsed = PanelBlueprint::new().with_state(PanelState::Collapsed);
+        builder.log("blueprint_panel", &collapsed)?;
+        builder.log("selection_panel", &collapsed)?;
+        let time = TimePanelBlueprint::new()
+            .with_state(PanelState::Collapsed)
+            .with_timeline(self.timeline)
+            .with_fps(20.0)
+            .with_play_state(self.play);
+        builder.log("time_panel", &time)?;
+        builder.log(LINKED_TIME_AXIS, &whole_record())?;
+        let store = StoreId::new(StoreKind::Blueprint, application.clone(), store);
+        let chunks = builder.chunks.into_chunks();
+        let messages = chunks.iter().map(|chunk| chunk_message(&store, chunk));
+        std::iter::once(Ok(store_message(&store))).chain(messages).collect()
+    }
+}
+
+/// A time axis that starts with all of the record in view.
+fn whole_record() -> TimeAxis {
+    let infinite = TimeRangeBoundary::Infinite;
+    TimeAxis::new().with_view_range(TimeRange { start: infinite, end: infinite })
+}
+
 /// Collects views and containers.
-pub(super) struct Builder<'i> {
+struct Builder<'i> {
     /// The recording's, from which those of views and containers are made.
     id: &'i str,
     chunks: Chunks,
@@ -41,50 +196,12 @@ pub(super) struct Builder<'i> {
 
 /// A view or a container that was added.
 #[derive(Clone, Debug)]
-pub(super) struct Node {
+struct Node {
     id: Uuid,
     path: String,
 }
 
-/// What a view shows, and how.
-pub(super) struct View<'a> {
-    class: &'static str,
-    name: &'a str,
-    contents: Vec<QueryExpression>,
-    properties: Vec<(&'static str, Box<dyn AsComponents>)>,
-}
-
-impl<'a> View<'a> {
-    /// A view of Rerun's class `class` on the entities `paths`.
-    pub(super) fn new<S: AsRef<str>>(class: &'static str, name: &'a str, paths: &[S]) -> Self {
-        let contents = paths.iter().map(|path| QueryExpression::from(path.as_ref())).collect();
-        Self { class, name, contents, properties: Vec::new() }
-    }
-
-    /// A drawing: all of a sheet, whose parts lie below `root`, is in view.
-    pub(super) fn drawing(
-        name: &'a str,
-        root: &EntityPath,
-        parts: &[&str],
-        (width, height): (f32, f32),
-    ) -> Self {
-        let paths: Vec<_> = parts.iter().map(|part| at(root, part).to_string()).collect();
-        Self::new("2D", name, &paths).with("VisualBounds2D", bounds(width, height))
-    }
-
-    /// Sets a property, such as `VisualBounds2D`.
-    pub(super) fn with(mut self, name: &'static str, value: impl AsComponents + 'static) -> Self {
-        self.properties.push((name, Box::new(value)));
-        self
-    }
-}
-
-impl<'i> Builder<'i> {
-    /// Views of the recording `id`.
-    pub(super) fn new(id: &'i str) -> Self {
-        Self { id, chunks: Ids::of(&store(id)).chunks(NAMESPACE), nodes: 0 }
-    }
-
+impl Builder<'_> {
     fn node(&mut self, kind: &str) -> Node {
         self.nodes += 1;
         // The same in every run, and none of another recording's: a viewer keeps what it knows
@@ -97,119 +214,56 @@ impl<'i> Builder<'i> {
     }
 
     fn log(&mut self, path: &str, data: &dyn AsComponents) -> Result<(), RecordError> {
-        self.chunks.push_blueprint(EntityPath::from(path), data)
+        // One row on the timeline of blueprints, by which the viewer knows them.
+        let columns = data.as_serialized_batches().into_iter().map(Into::into);
+        self.chunks.push(EntityPath::from(path), Index::on("blueprint", [0]), columns)
     }
 
-    pub(super) fn view(&mut self, view: View<'_>) -> Result<Node, RecordError> {
-        let node = self.node("view");
-        let path = &node.path;
-        self.log(&format!("{path}/ViewContents"), &ViewContents::new(view.contents))?;
-        self.log(path, &ViewBlueprint::new(view.class).with_display_name(view.name))?;
-        for (property, value) in view.properties {
-            self.log(&format!("{path}/{property}"), value.as_ref())?;
+    fn add(&mut self, page: Page) -> Result<Node, RecordError> {
+        match page {
+            Page::View { class, name, contents, properties } => {
+                let node = self.node("view");
+                let path = &node.path;
+                let contents = contents.iter().map(|query| QueryExpression::from(query.as_str()));
+                self.log(&format!("{path}/ViewContents"), &ViewContents::new(contents))?;
+                self.log(path, &ViewBlueprint::new(class).with_display_name(name))?;
+                for (property, value) in properties {
+                    self.log(&format!("{path}/{property}"), value.as_ref())?;
+                }
+                Ok(node)
+            }
+            Page::Container { kind, name, pages } => {
+                let (shares, pages): (Vec<f32>, Vec<Page>) = pages.into_iter().unzip();
+                let nodes =
+                    pages.into_iter().map(|page| self.add(page)).collect::<Result<Vec<_>, _>>()?;
+                if let (ContainerKind::Tabs, Some(first)) = (kind, nodes.first()) {
+                    return self.tabs(&name, &nodes, first);
+                }
+                let container = ContainerBlueprint::new(kind);
+                let container = match kind {
+                    ContainerKind::Horizontal => container.with_col_shares(shares),
+                    _ => container.with_row_shares(shares),
+                };
+                self.container(&name, &nodes, container)
+            }
         }
-        Ok(node)
     }
 
     /// Tabs, of which one is open.
     fn tabs(&mut self, name: &str, tabs: &[Node], open: &Node) -> Result<Node, RecordError> {
-        let node = self.node("container");
-        let contents = tabs.iter().map(|tab| IncludedContent::from(tab.path.clone()));
-        let container = ContainerBlueprint::new(ContainerKind::Tabs).with_display_name(name);
-        let container = container.with_contents(contents).with_active_tab(open.path.clone());
-        self.log(&node.path, &container)?;
-        Ok(node)
+        let container = ContainerBlueprint::new(ContainerKind::Tabs);
+        self.container(name, tabs, container.with_active_tab(open.path.clone()))
     }
 
-    /// A container; `shares` are the parts of its height or width, or none.
-    pub(super) fn container(
+    fn container(
         &mut self,
-        kind: ContainerKind,
         name: &str,
-        children: &[Node],
-        shares: &[f32],
+        nodes: &[Node],
+        container: ContainerBlueprint,
     ) -> Result<Node, RecordError> {
-        if let (ContainerKind::Tabs, Some(first)) = (kind, children.first()) {
-            return self.tabs(name, children, first);
-        }
         let node = self.node("container");
-        let contents = children.iter().map(|child| IncludedContent::from(child.path.clone()));
-        let mut container =
-            ContainerBlueprint::new(kind).with_display_name(name).with_contents(contents);
-        let shares = shares.iter().copied();
-        container = match kind {
-            ContainerKind::Horizontal => container.with_col_shares(shares),
-            ContainerKind::Vertical => container.with_row_shares(shares),
-            ContainerKind::Tabs | ContainerKind::Grid => container,
-        };
-        self.log(&node.path, &container)?;
+        let contents = nodes.iter().map(|child| IncludedContent::from(child.path.clone()));
+        self.log(&node.path, &container.with_display_name(name).with_contents(contents))?;
         Ok(node)
     }
-
-    /// The messages of a blueprint of `tabs`, a page on all of it, called `name`, being the last
-    /// one, which opens on a timeline.
-    pub(super) fn tabbed(
-        mut self,
-        mut tabs: Vec<Node>,
-        name: &str,
-        opening: (&str, PlayState),
-        application: &ApplicationId,
-    ) -> Result<Vec<LogMsg>, RecordError> {
-        /// Tabs that a screen has room for: behind more of them nobody finds the page on all.
-        const SEEN: usize = 10;
-        let about = EntityPath::from(ABOUT).to_string();
-        let about = self.view(View::new("TextDocument", name, &[about]))?;
-        let place = if tabs.len() > SEEN { 0 } else { tabs.len() };
-        let opening_tab = tabs.first().unwrap_or(&about).clone();
-        tabs.insert(place, about);
-        let root = self.tabs("Joints", &tabs, &opening_tab)?;
-        self.finish(&root, opening, application)
-    }
-
-    /// The messages of the whole blueprint, which opens on `timeline`.
-    fn finish(
-        mut self,
-        root: &Node,
-        (timeline, play): (&str, PlayState),
-        application: &ApplicationId,
-    ) -> Result<Vec<LogMsg>, RecordError> {
-        let root = rerun::datatypes::Uuid { bytes: *root.id.as_bytes() };
-        let viewport = ViewportBlueprint::new().with_root_container(RootContainer(root));
-        self.log("viewport", &viewport.with_auto_layout(false).with_auto_views(false))?;
-        let collapsed = PanelBlueprint::new().with_state(PanelState::Collapsed);
-        self.log("blueprint_panel", &collapsed)?;
-        self.log("selection_panel", &collapsed)?;
-        let time = TimePanelBlueprint::new()
-            .with_state(PanelState::Collapsed)
-            .with_timeline(timeline)
-            .with_fps(20.0)
-            .with_play_state(play);
-        self.log("time_panel", &time)?;
-        // Plots with a linked time axis start with all of it in view.
-        let infinite = TimeRangeBoundary::Infinite;
-        let all = TimeRange { start: infinite, end: infinite };
-        self.log(LINKED_TIME_AXIS, &TimeAxis::new().with_view_range(all))?;
-        let store = StoreId::new(StoreKind::Blueprint, application.clone(), store(self.id));
-        let chunks = self.chunks.into_chunks();
-        let messages = chunks.iter().map(|chunk| chunk_message(&store, chunk));
-        std::iter::once(Ok(store_message(&store))).chain(messages).collect()
-    }
-}
-
-/// The id of the store that holds the views of the recording `id`.
-fn store(id: &str) -> String {
-    format!("{id}-views")
-}
-
-/// All of a sheet in view.
-pub(super) fn bounds(width: f32, height: f32) -> VisualBounds2D {
-    let (width, height) = (f64::from(width), f64::from(height));
-    VisualBounds2D::new(Range2D { x_range: [0.0, width].into(), y_range: [0.0, height].into() })
-}
-
-/// Lines that lead to their places on `timeline`.
-pub(super) fn clickable(timeline: &str) -> TextLogColumns {
-    let timeline = TimelineColumn { visible: true.into(), timeline: Utf8::from(timeline) };
-    let body = TextLogColumn { visible: true.into(), kind: TextLogColumnKind::Body };
-    TextLogColumns::new().with_timeline_columns([timeline]).with_text_log_columns([body])
 }

@@ -5,9 +5,12 @@
 
 use std::ops::RangeInclusive;
 
+use rerun::Color;
 use rerun::datatypes::Vec2D;
 
+use super::palette::{Rgb, color};
 pub(super) use crate::figure::{Place, Span, thinned_to};
+use crate::wording::number;
 
 /// Lines of one drawing.
 pub(super) type Strips = Vec<Vec<Vec2D>>;
@@ -96,6 +99,17 @@ impl Plot {
         [Vec2D::new(self.left, self.y(y)), Vec2D::new(self.right, self.y(y))]
     }
 
+    /// A bar so far above the plot from one value of the horizontal axis to another, as far as it reaches,
+    /// with a tick at each end.
+    pub(super) fn interval(&self, ends: [f64; 2], above: f32, half_tick: f32) -> Strips {
+        let [low, high] = ends.map(|x| x.clamp(self.x.low, self.x.high));
+        let bar = [low, high].map(|x| self.above(x, above)).to_vec();
+        let tick = |x: f64| {
+            [above - half_tick, above + half_tick].map(|above| self.above(x, above)).to_vec()
+        };
+        vec![tick(low), bar, tick(high)]
+    }
+
     /// The part of a line between two places that is in the plot: none of it lies on the frame.
     pub(super) fn clipped(&self, [from, to]: [Place; 2]) -> Option<[Vec2D; 2]> {
         let parts = |place: Place| (self.x.part(place.0), self.y.part(place.1));
@@ -127,20 +141,33 @@ impl Plot {
         ]
     }
 
-    /// Frame and grid lines, with labels at the left and, if asked for, at the bottom.
-    pub(super) fn grid(
+    /// The middle of the horizontal axis.
+    pub(super) fn middle(&self) -> f64 {
+        f64::midpoint(self.x.low, self.x.high)
+    }
+
+    /// About so many round numbers on the vertical axis, and how they are written.
+    pub(super) fn y_ticks(&self, count: f64) -> Vec<(f64, String)> {
+        self.y.ticks(count).into_iter().map(|y| (y, number(y))).collect()
+    }
+
+    /// A frame over the whole height between two values of the horizontal axis.
+    pub(super) fn column(&self, from: f64, to: f64) -> Vec<Vec2D> {
+        let ([a, b], [c, d]) = (self.vertical(from), self.vertical(to));
+        vec![a, b, d, c, a]
+    }
+
+    /// A curve of `values`, thinned to about so many points and simplified, whose value at an index
+    /// lies at `x`.
+    pub(super) fn curve(
         &self,
-        x_ticks: &[f64],
-        y_ticks: &[(f64, String)],
-        labels: &mut Labels,
-    ) -> Vec<Vec<Vec2D>> {
-        let mut strips = vec![self.frame()];
-        strips.extend(x_ticks.iter().map(|x| self.vertical(*x).to_vec()));
-        for (y, text) in y_ticks {
-            strips.push(self.level(*y).to_vec());
-            labels.put(self.left_of(*y, 55.0), text.clone());
-        }
-        strips
+        values: &[f64],
+        most: usize,
+        x: impl Fn(usize) -> f64,
+    ) -> Vec<Vec2D> {
+        let kept = thinned_to(values, most).into_iter();
+        let places = kept.filter_map(|index| Some(self.at(x(index), *values.get(index)?)));
+        simplified(places.collect())
     }
 
     pub(super) fn below(&self, x: f64, distance: f32) -> Vec2D {
@@ -167,12 +194,27 @@ impl Plot {
 pub(super) struct Labels {
     pub(super) places: Vec<Vec2D>,
     pub(super) texts: Vec<String>,
+    /// Where they have colours of their own, one each.
+    pub(super) colors: Vec<Color>,
 }
 
 impl Labels {
     pub(super) fn put(&mut self, place: Vec2D, text: impl Into<String>) {
         self.places.push(place);
         self.texts.push(text.into());
+    }
+
+    /// One text.
+    pub(super) fn one(place: Vec2D, text: impl Into<String>) -> Self {
+        let mut labels = Self::default();
+        labels.put(place, text);
+        labels
+    }
+
+    /// A text in a colour of its own.
+    pub(super) fn put_in(&mut self, rgb: Rgb, place: Vec2D, text: impl Into<String>) {
+        self.put(place, text);
+        self.colors.push(color(rgb));
     }
 
     /// Leaves out each text, one below another so far, that would lie on the one above it.
@@ -202,10 +244,15 @@ impl Labels {
 /// At most this many points of one curve: a screen has no more columns.
 pub(super) const CURVE_POINTS: usize = 2000;
 
-/// Indices that keep the shape of `values`: all of them, or of each of a thousand parts
-/// the lowest and the highest.
-pub(super) fn thinned(values: &[f64]) -> Vec<usize> {
-    thinned_to(values, CURVE_POINTS)
+/// About so many samples of the horizontal axis of a plot.
+pub(super) fn whole_ticks(plot: &Plot, count: f64) -> Vec<f64> {
+    plot.x_span().ticks(count).into_iter().filter(|k| k.fract() == 0.0).collect()
+}
+
+/// A diamond about a place.
+pub(super) fn diamond(Vec2D([x, y]): Vec2D, radius: f32) -> Vec<Vec2D> {
+    let corners = [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
+    corners.map(|(dx, dy)| Vec2D::new(x + dx * radius, y + dy * radius)).to_vec()
 }
 
 /// Leaves out points of a curve (x ascending) that the line between their neighbours
@@ -303,7 +350,7 @@ mod tests {
     fn thinning_keeps_the_peaks() {
         let mut values = vec![0.0; 100_000];
         values[54_321] = 1.0;
-        let kept = thinned(&values);
+        let kept = thinned_to(&values, CURVE_POINTS);
         assert!(kept.len() <= CURVE_POINTS);
         assert!(kept.contains(&54_321));
         assert!(kept.is_sorted());

@@ -4,41 +4,31 @@
 //! an id is a namespace (one per joint), a tag of the recording, and a counter: viewers keep
 //! state by id, so no two recordings share any.
 
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use rerun::external::arrow::array::{
-    Array as _, ArrayRef, Float32Array, Float64Array, Int64Array, ListArray, StringArray,
+    Array, Float32Array, Float64Array, Int64Array, ListArray, StringArray,
 };
-use rerun::external::arrow::buffer::{NullBuffer, OffsetBuffer, ScalarBuffer};
+use rerun::external::arrow::buffer::{NullBuffer, OffsetBuffer};
 use rerun::external::arrow::datatypes::Field;
 use rerun::external::re_log_types::external::re_tuid::Tuid;
-use rerun::log::{Chunk, ChunkId, RowId, TimeColumn};
+use rerun::external::re_log_types::{SetStoreInfo, StoreInfo, StoreSource};
+use rerun::log::{Chunk, ChunkId, LogMsg, RowId, TimeColumn};
 use rerun::{
-    AsComponents, ComponentDescriptor, EntityPath, SerializedComponentBatch,
-    SerializedComponentColumn,
+    AsComponents, ComponentDescriptor, EntityPath, Scalars, SerializedComponentBatch,
+    SerializedComponentColumn, SeriesLines, StateChange, StoreId, TextDocument, TextLog,
 };
 
 use super::error::RecordError;
+use super::palette::{Rgb, color};
 use crate::delay::FineDelay;
 use crate::wording::number;
 
-/// Where rows lie on the timelines; one value per row and timeline.
+/// Where rows lie: on each timeline that is named here, one value per row.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Index {
-    pub(super) decision: Vec<i64>,
-    pub(super) segment: Vec<i64>,
-    pub(super) sample: Vec<i64>,
-    pub(super) time_ns: Vec<i64>,
-    /// Revisions of a model; empty where rows are of none.
-    revision: Vec<i64>,
-    /// Settings of a sweep; likewise.
-    pub(super) setting: Vec<i64>,
-    /// Ranks of decisions by doubt; likewise.
-    doubt: Vec<i64>,
-    /// Ranks of decisions by their difference to other results; likewise.
-    difference: Vec<i64>,
-}
+pub(super) struct Index(BTreeMap<&'static str, Vec<i64>>);
 
 /// What a recording opens on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,123 +51,87 @@ pub(super) struct Moment {
     pub(super) time_ns: i64,
 }
 
-impl Extend<Moment> for Index {
-    fn extend<T: IntoIterator<Item = Moment>>(&mut self, moments: T) {
-        for moment in moments {
-            self.decision.push(moment.decision);
-            self.segment.push(moment.segment);
-            self.sample.push(moment.sample);
-            self.time_ns.push(moment.time_ns);
-        }
-    }
-}
-
 impl FromIterator<Moment> for Index {
     fn from_iter<T: IntoIterator<Item = Moment>>(moments: T) -> Self {
-        let mut index = Self::default();
-        index.extend(moments);
-        index
+        let moments: Vec<Moment> = moments.into_iter().collect();
+        let values = |of: fn(&Moment) -> i64| moments.iter().map(of);
+        Self::on("decision", values(|moment| moment.decision))
+            .with("segment", values(|moment| moment.segment))
+            .with("sample", values(|moment| moment.sample))
+            .with("time", values(|moment| moment.time_ns))
     }
 }
 
 impl Index {
+    /// A row at each of these ticks of one timeline alone.
+    pub(super) fn on(timeline: &'static str, ticks: impl IntoIterator<Item = i64>) -> Self {
+        Self::default().with(timeline, ticks)
+    }
+
+    /// These rows at these ticks of another timeline, too; without any they are not on it.
+    pub(super) fn with(
+        mut self,
+        timeline: &'static str,
+        ticks: impl IntoIterator<Item = i64>,
+    ) -> Self {
+        self.0.insert(timeline, ticks.into_iter().collect());
+        self
+    }
+
+    /// These rows all at one tick of another timeline, if it is given.
+    pub(super) fn all_at(self, timeline: &'static str, tick: Option<i64>) -> Self {
+        let rows = self.len();
+        self.with(timeline, tick.into_iter().flat_map(|tick| std::iter::repeat_n(tick, rows)))
+    }
+
     pub(super) fn len(&self) -> usize {
-        let Self { decision, segment, sample, revision, setting, doubt, .. } = self;
-        let lengths = [decision, segment, sample, revision, setting, doubt].map(Vec::len);
-        lengths.into_iter().max().unwrap_or(0)
+        self.0.values().map(Vec::len).max().unwrap_or(0)
     }
 
-    /// These rows on the timeline of doubt, too.
-    pub(super) fn with_doubt(self, ranks: impl Iterator<Item = i64>) -> Self {
-        Self { doubt: ranks.collect(), ..self }
-    }
-
-    /// These rows on the timeline of differences, too; without any, there is none.
-    pub(super) fn with_difference(self, ranks: impl Iterator<Item = i64>) -> Self {
-        Self { difference: ranks.collect(), ..self }
+    /// Some of these rows, in this order.
+    pub(super) fn rows(&self, places: &[usize]) -> Self {
+        let chosen = |ticks: &Vec<i64>| {
+            places.iter().filter_map(|place| ticks.get(*place).copied()).collect()
+        };
+        Self(self.0.iter().map(|(timeline, ticks)| (*timeline, chosen(ticks))).collect())
     }
 
     /// These rows off the timeline of segments.
     ///
     /// On it the samples of a segment would all lie at one place, and a plot of them would be a
     /// comb.
-    pub(super) fn without_segment(self) -> Self {
-        Self { segment: Vec::new(), ..self }
-    }
-
-    /// These rows on the timeline of revisions, too, all at one of them.
-    pub(super) fn at_revision(self, revision: Option<i64>) -> Self {
-        let revision = revision.map_or_else(Vec::new, |number| vec![number; self.len()]);
-        Self { revision, ..self }
+    pub(super) fn without_segment(mut self) -> Self {
+        self.0.remove("segment");
+        self
     }
 
     /// One row before all others, on the timelines of decisions and, where it is opened on, of
     /// revisions or of differences alone.
     pub(super) fn before_all(opening: Opening) -> Self {
-        Self { decision: vec![opening.tick], ..Self::default() }.opened(opening)
-    }
-
-    /// One row at a tick of the timeline of decisions, and on no other.
-    fn at_tick(tick: i64) -> Self {
-        Self { decision: vec![tick], ..Self::default() }
-    }
-
-    /// This row at the first sample of the record, too.
-    pub(super) fn and_at(self, Moment { sample, time_ns, .. }: Moment) -> Self {
-        Self { sample: vec![sample; self.len()], time_ns: vec![time_ns; self.len()], ..self }
+        Self::on("decision", [opening.tick]).opened(opening)
     }
 
     /// One row on every timeline, at its first tick or before it; `start` is the first sample.
     pub(super) fn everywhere(start: Moment, opening: Opening) -> Self {
         let start = Moment { decision: opening.tick, ..start };
-        Self { doubt: vec![1], ..std::iter::once(start).collect() }.opened(opening)
+        std::iter::once(start).collect::<Self>().with("doubt", [1]).opened(opening)
     }
 
     /// One row on each timeline on which no sample lies.
     pub(super) fn off_the_record(opening: Opening) -> Self {
-        Self { segment: vec![1], doubt: vec![1], ..Self::default() }.opened(opening)
+        Self::on("segment", [1]).with("doubt", [1]).opened(opening)
     }
 
     fn opened(self, Opening { revision, is_compared, .. }: Opening) -> Self {
-        let difference = if is_compared { vec![1; self.len()] } else { Vec::new() };
-        Self { difference, ..self.at_revision(revision) }
+        self.all_at("revision", revision).all_at("difference", is_compared.then_some(1))
     }
 
-    /// A row per setting of a sweep, on the timeline of settings alone.
-    pub(super) fn of_settings(count: usize) -> Self {
-        Self { setting: (1..).take(count).collect(), ..Self::default() }
-    }
-
-    /// A row per rank by doubt, on the timeline of doubt alone.
-    pub(super) fn of_doubts(count: usize) -> Self {
-        Self { doubt: (1..).take(count).collect(), ..Self::default() }
-    }
-
-    /// A row per revision, all of them at `moment` and, where decisions are ranked, at this rank by
-    /// doubt: on the other timelines the last one is seen.
-    pub(super) fn of_revisions(revision: Vec<i64>, moment: Moment, rank: Option<i64>) -> Self {
-        let moments = std::iter::repeat_n(moment, revision.len());
-        let doubt = rank.map_or_else(Vec::new, |rank| vec![rank; revision.len()]);
-        Self { revision, doubt, ..moments.collect() }
-    }
-
-    fn columns(self) -> Vec<TimeColumn> {
-        let sequences = [
-            ("decision", self.decision),
-            ("segment", self.segment),
-            ("sample", self.sample),
-            ("revision", self.revision),
-            ("setting", self.setting),
-            ("doubt", self.doubt),
-            ("difference", self.difference),
-        ];
-        let filled = sequences.into_iter().filter(|(_, values)| !values.is_empty());
-        let mut columns: Vec<_> =
-            filled.map(|(name, values)| TimeColumn::new_sequence(name, values)).collect();
-        if !self.time_ns.is_empty() {
-            columns.push(TimeColumn::new_duration_nanos("time", self.time_ns));
-        }
-        columns
+    fn columns(self) -> impl Iterator<Item = TimeColumn> {
+        let filled = self.0.into_iter().filter(|(_, ticks)| !ticks.is_empty());
+        filled.map(|(timeline, ticks)| match timeline {
+            "time" => TimeColumn::new_duration_nanos(timeline, ticks),
+            _ => TimeColumn::new_sequence(timeline, ticks),
+        })
     }
 }
 
@@ -199,74 +153,134 @@ impl Ids {
 
     /// Collects chunks of `namespace`: those of one recording must differ; 0 is not allowed.
     pub(super) fn chunks(self, namespace: u64) -> Chunks {
-        Chunks { namespace, tag: self.tag << 32, rows: 0, made: Vec::new() }
+        let root = EntityPath::root();
+        Chunks { namespace, root, tag: self.tag << 32, rows: 0, made: Vec::new() }
     }
 }
 
-/// Collects chunks of one namespace.
+/// Collects chunks of one namespace, whose entities lie below one root.
 pub(super) struct Chunks {
     namespace: u64,
+    root: EntityPath,
     tag: u64,
     rows: u64,
     made: Vec<Chunk>,
 }
 
 impl Chunks {
+    /// These chunks, with their entities below `root`.
+    pub(super) fn rooted(self, root: EntityPath) -> Self {
+        Self { root, ..self }
+    }
+
     /// Rows of `columns` at the moments of `index`; nothing when there is none.
     pub(super) fn push(
         &mut self,
-        entity: EntityPath,
+        entity: impl Into<EntityPath>,
         index: Index,
         columns: impl IntoIterator<Item = SerializedComponentColumn>,
     ) -> Result<(), RecordError> {
-        let rows = index.len();
-        self.push_rows(entity, rows, index.columns(), columns)
-    }
-
-    /// Rows of `columns` on the timeline of revisions alone.
-    pub(super) fn push_revisions(
-        &mut self,
-        entity: EntityPath,
-        revisions: Vec<i64>,
-        columns: impl IntoIterator<Item = SerializedComponentColumn>,
-    ) -> Result<(), RecordError> {
-        let rows = revisions.len();
-        self.push_rows(entity, rows, [TimeColumn::new_sequence("revision", revisions)], columns)
+        match index.len() {
+            0 => Ok(()),
+            rows => self.push_rows(entity, rows, index.columns(), columns),
+        }
     }
 
     /// Data that is there at all times.
     pub(super) fn push_static(
         &mut self,
-        entity: EntityPath,
+        entity: impl Into<EntityPath>,
         data: &dyn AsComponents,
     ) -> Result<(), RecordError> {
         let columns = data.as_serialized_batches().into_iter().map(Into::into);
         self.push_rows(entity, 1, [], columns)
     }
 
-    /// One row on the timeline of blueprints, by which the viewer knows them.
-    pub(super) fn push_blueprint(
+    /// A page in Markdown that is there at all times.
+    pub(super) fn page(
         &mut self,
-        entity: EntityPath,
-        data: &dyn AsComponents,
+        entity: impl Into<EntityPath>,
+        text: String,
     ) -> Result<(), RecordError> {
-        let columns = data.as_serialized_batches().into_iter().map(Into::into);
-        self.push_rows(entity, 1, [TimeColumn::new_sequence("blueprint", [0])], columns)
+        self.push_static(entity, &TextDocument::from_markdown(text))
     }
 
-    /// Adds a row at `index` of what the entities below `root` have at the tick `decision`: only
+    /// A page in Markdown per row.
+    pub(super) fn pages(
+        &mut self,
+        entity: impl Into<EntityPath>,
+        index: Index,
+        texts: impl IntoIterator<Item = String>,
+    ) -> Result<(), RecordError> {
+        let markdown = std::iter::repeat_n("text/markdown", index.len());
+        let pages = TextDocument::update_fields().with_many_text(texts);
+        let pages = pages.with_many_media_type(markdown);
+        self.push(entity, index, pages.columns_of_unit_batches()?)
+    }
+
+    /// A line of a list per row; its level says in which colour.
+    pub(super) fn lines(
+        &mut self,
+        entity: impl Into<EntityPath>,
+        index: Index,
+        lines: impl IntoIterator<Item = (Option<&'static str>, String)>,
+    ) -> Result<(), RecordError> {
+        let (levels, lines): (Vec<_>, Vec<_>) = lines.into_iter().unzip();
+        let log = TextLog::update_fields().with_many_text(lines);
+        let levels: Vec<_> = levels.into_iter().flatten().collect();
+        let log = if levels.is_empty() { log } else { log.with_many_level(levels) };
+        self.push(entity, index, log.columns_of_unit_batches()?)
+    }
+
+    /// A state of a lane per row.
+    pub(super) fn states(
+        &mut self,
+        entity: impl Into<EntityPath>,
+        index: Index,
+        states: impl IntoIterator<Item = impl Into<String>>,
+    ) -> Result<(), RecordError> {
+        let states: Vec<String> = states.into_iter().map(Into::into).collect();
+        let states = StateChange::new().with_state(states);
+        self.push(entity, index, states.columns_of_unit_batches()?)
+    }
+
+    /// A number per row, or an empty one.
+    pub(super) fn scalars(
+        &mut self,
+        entity: impl Into<EntityPath>,
+        index: Index,
+        values: &[Option<f64>],
+    ) -> Result<(), RecordError> {
+        let lengths = values.iter().map(|value| usize::from(value.is_some()));
+        let scalars = Scalars::new(values.iter().copied().flatten());
+        self.push(entity, index, scalars.columns(lengths)?)
+    }
+
+    /// A curve of a plot: its style, and a number per row, or an empty one where it breaks.
+    pub(super) fn series(
+        &mut self,
+        entity: impl Into<EntityPath>,
+        style: &SeriesLines,
+        (index, values): (Index, Vec<Option<f64>>),
+    ) -> Result<(), RecordError> {
+        let entity = entity.into();
+        self.push_static(entity.clone(), style)?;
+        self.scalars(entity, index, &values)
+    }
+
+    /// Adds a row at `index` of what the entities below `path` have at the tick `decision`: only
     /// of components whose name begins so.
     pub(super) fn repeat(
         &mut self,
-        (root, component): (&EntityPath, &str),
+        (path, component): (&str, &str),
         decision: i64,
         index: &Index,
     ) -> Result<(), RecordError> {
         let rows: Vec<_> = self
-            .below(root)
+            .below(path)
             .filter_map(|(chunk, ticks)| {
                 let row = ticks.iter().rposition(|tick| *tick <= decision)?;
-                Some((chunk.entity_path().clone(), cells(chunk, row, component)))
+                Some((self.relative(chunk), cells(chunk, row, component)))
             })
             .collect();
         for (entity, columns) in rows.into_iter().filter(|(_, columns)| !columns.is_empty()) {
@@ -275,42 +289,45 @@ impl Chunks {
         Ok(())
     }
 
-    /// Adds once more, from the tick `from` on, the rows that the entities below `root` have at `ticks`
+    /// Adds once more, from the tick `from` on, the rows that the entities below `path` have at `ticks`
     /// of decisions, on that timeline alone.
     pub(super) fn replay(
         &mut self,
-        root: &EntityPath,
+        path: &str,
         ticks: RangeInclusive<i64>,
         from: i64,
     ) -> Result<(), RecordError> {
         let mut rows = Vec::new();
-        for (chunk, at) in self.below(root) {
+        for (chunk, at) in self.below(path) {
             for (row, tick) in at.iter().enumerate().filter(|(_, tick)| ticks.contains(*tick)) {
-                let index = Index::at_tick(tick - ticks.start() + from);
-                rows.push((chunk.entity_path().clone(), index, cells(chunk, row, "")));
+                let index = Index::on("decision", [tick - ticks.start() + from]);
+                rows.push((self.relative(chunk), index, cells(chunk, row, "")));
             }
         }
         rows.into_iter().try_for_each(|(entity, index, columns)| self.push(entity, index, columns))
     }
 
-    /// The chunks of the entities below `root` that have ticks of decisions, with these.
-    fn below(&self, root: &EntityPath) -> impl Iterator<Item = (&Chunk, &[i64])> {
-        let shown = self.made.iter().filter(|chunk| chunk.entity_path().starts_with(root));
+    /// The chunks of the entities below `path` that have ticks of decisions, with these.
+    fn below(&self, path: &str) -> impl Iterator<Item = (&Chunk, &[i64])> {
+        let root = self.root.join(&path.into());
+        let shown = self.made.iter().filter(move |chunk| chunk.entity_path().starts_with(&root));
         shown.filter_map(|chunk| {
             Some((chunk, chunk.timelines().get(&"decision".into())?.times_raw()))
         })
     }
 
+    /// The entity of one of these chunks below their root.
+    fn relative(&self, chunk: &Chunk) -> EntityPath {
+        chunk.entity_path().iter().skip(self.root.len()).cloned().collect()
+    }
+
     fn push_rows(
         &mut self,
-        entity: EntityPath,
+        entity: impl Into<EntityPath>,
         rows: usize,
         timelines: impl IntoIterator<Item = TimeColumn>,
         columns: impl IntoIterator<Item = SerializedComponentColumn>,
     ) -> Result<(), RecordError> {
-        if rows == 0 {
-            return Ok(());
-        }
         let id = ChunkId::from_tuid(self.tuid(0x8000_0000_0000_0000 | self.made.len() as u64));
         let first = self.rows;
         self.rows += rows as u64;
@@ -319,6 +336,7 @@ impl Chunks {
         let timelines = timelines.into_iter().map(|column| (*column.timeline().name(), column));
         let components = columns.into_iter().map(|c| (c.descriptor, c.list_array)).collect();
         let timelines = timelines.collect();
+        let entity = self.root.join(&entity.into());
         let chunk = Chunk::from_native_row_ids(id, entity, None, &row_ids, timelines, components)?;
         self.made.push(chunk);
         Ok(())
@@ -333,6 +351,25 @@ impl Chunks {
     }
 }
 
+/// What a store is and who made it: the first message of each.
+pub(super) fn store_message(store: &StoreId) -> LogMsg {
+    let info = StoreInfo::new(
+        store.clone(),
+        StoreSource::Other(format!("tauscope {}", env!("CARGO_PKG_VERSION"))),
+    );
+    LogMsg::SetStoreInfo(SetStoreInfo { row_id: Tuid::from_nanos_and_inc(1, 0), info })
+}
+
+/// A chunk of a store.
+pub(super) fn chunk_message(store: &StoreId, chunk: &Chunk) -> Result<LogMsg, RecordError> {
+    Ok(LogMsg::ArrowMsg(store.clone(), chunk.to_arrow_msg()?))
+}
+
+/// A curve of a plot: its name in legends, colour and width.
+pub(super) fn line(name: impl Into<String>, rgb: Rgb, width: f32) -> SeriesLines {
+    SeriesLines::new().with_names([name.into()]).with_colors([color(rgb)]).with_widths([width])
+}
+
 /// What `chunk` has in a row, of the components whose name begins so.
 fn cells(chunk: &Chunk, row: usize, component: &str) -> Vec<SerializedComponentColumn> {
     let columns = chunk.components().0.values();
@@ -345,66 +382,82 @@ fn cells(chunk: &Chunk, row: usize, component: &str) -> Vec<SerializedComponentC
 }
 
 /// A column of numbers named `name`; `None` is null.
-pub(super) fn numbers(name: &'static str, values: &[Option<f64>]) -> SerializedComponentColumn {
-    let items: Float64Array = values.iter().flatten().copied().collect::<Vec<_>>().into();
-    list_column(name, Arc::new(items), values.iter().map(Option::is_some))
+pub(super) fn numbers(
+    name: &'static str,
+    values: impl IntoIterator<Item = Option<f64>>,
+) -> SerializedComponentColumn {
+    column::<_, Float64Array>(name, values)
 }
 
 /// A column of numbers to be looked at, named `name`: to five digits; `None` is null.
-pub(super) fn shown(name: &'static str, values: &[Option<f64>]) -> SerializedComponentColumn {
-    let rounded = |value: &f64| number(*value).parse().unwrap_or(f32::NAN);
-    let items: Float32Array = values.iter().flatten().map(rounded).collect::<Vec<f32>>().into();
-    list_column(name, Arc::new(items), values.iter().map(Option::is_some))
-}
-
-/// Names of the columns of [`fine_columns`].
-const FINE: [&str; 3] = ["fine_delta", "delta_low", "delta_high"];
-
-/// Delays between samples with their intervals; no columns where there is none.
-pub(super) fn fine_columns(delays: &[Option<FineDelay>]) -> Vec<SerializedComponentColumn> {
-    if delays.iter().all(Option::is_none) {
-        return Vec::new();
-    }
-    let parts: [fn(FineDelay) -> f64; 3] = [|fine| fine.delay, |fine| fine.low, |fine| fine.high];
-    let column = |(name, part): (&'static str, fn(FineDelay) -> f64)| {
-        numbers(name, &delays.iter().map(|fine| fine.map(part)).collect::<Vec<_>>())
-    };
-    FINE.into_iter().zip(parts).map(column).collect()
+pub(super) fn shown(
+    name: &'static str,
+    values: impl IntoIterator<Item = Option<f64>>,
+) -> SerializedComponentColumn {
+    let rounded = |value: f64| number(value).parse().unwrap_or(f32::NAN);
+    column::<_, Float32Array>(name, values.into_iter().map(|value| value.map(rounded)))
 }
 
 /// A column of whole numbers named `name`; `None` is null.
-pub(super) fn integers(name: &'static str, values: &[Option<i64>]) -> SerializedComponentColumn {
-    let items: Int64Array = values.iter().flatten().copied().collect::<Vec<_>>().into();
-    list_column(name, Arc::new(items), values.iter().map(Option::is_some))
+pub(super) fn integers(
+    name: &'static str,
+    values: impl IntoIterator<Item = Option<i64>>,
+) -> SerializedComponentColumn {
+    column::<_, Int64Array>(name, values)
 }
 
 /// A column of texts named `name`; `None` is null.
-pub(super) fn texts(name: &'static str, values: &[Option<String>]) -> SerializedComponentColumn {
-    let items: StringArray = values.iter().flatten().map(|text| Some(text.as_str())).collect();
-    list_column(name, Arc::new(items), values.iter().map(Option::is_some))
+pub(super) fn texts(
+    name: &'static str,
+    values: impl IntoIterator<Item = Option<String>>,
+) -> SerializedComponentColumn {
+    column::<_, StringArray>(name, values)
+}
+
+fn column<T, A: Array + FromIterator<Option<T>> + 'static>(
+    name: &'static str,
+    values: impl IntoIterator<Item = Option<T>>,
+) -> SerializedComponentColumn {
+    let values: Vec<Option<T>> = values.into_iter().collect();
+    let is_there: Vec<bool> = values.iter().map(Option::is_some).collect();
+    let lengths = is_there.iter().map(|is_there| usize::from(*is_there));
+    let items: A = values.into_iter().filter(Option::is_some).collect();
+    lists_of(name, items, lengths, Some(is_there.clone().into()))
+}
+
+/// Delays between samples with their intervals; no columns where there is none.
+pub(super) fn fine_columns(delays: &[Option<FineDelay>]) -> Vec<SerializedComponentColumn> {
+    type Part = fn(FineDelay) -> f64;
+    if delays.iter().all(Option::is_none) {
+        return Vec::new();
+    }
+    let parts: [(&str, Part); 3] = [
+        ("fine_delta", |fine| fine.delay),
+        ("delta_low", |fine| fine.low),
+        ("delta_high", |fine| fine.high),
+    ];
+    parts.map(|(name, part)| numbers(name, delays.iter().map(|fine| fine.map(part)))).to_vec()
 }
 
 /// A column of lists of numbers named `name`; `None` is null.
-pub(super) fn optional_lists(
-    name: &'static str,
-    rows: &[Vec<Option<f64>>],
-) -> SerializedComponentColumn {
-    lists_of(name, rows.iter().flatten().copied().collect(), rows.iter().map(Vec::len))
-}
-
-/// A column of lists of numbers named `name`.
-pub(super) fn lists(name: &'static str, rows: &[Vec<f64>]) -> SerializedComponentColumn {
-    lists_of(name, rows.concat().into(), rows.iter().map(Vec::len))
+pub(super) fn lists<N>(name: &'static str, rows: &[Vec<N>]) -> SerializedComponentColumn
+where
+    N: Copy,
+    Option<f64>: From<N>,
+{
+    let items: Float64Array = rows.iter().flatten().map(|item| Option::from(*item)).collect();
+    lists_of(name, items, rows.iter().map(Vec::len), None)
 }
 
 fn lists_of(
     name: &'static str,
-    items: Float64Array,
+    items: impl Array + 'static,
     lengths: impl Iterator<Item = usize>,
+    nulls: Option<NullBuffer>,
 ) -> SerializedComponentColumn {
     let field = Field::new_list_field(items.data_type().clone(), true);
     let offsets = OffsetBuffer::from_lengths(lengths);
-    let list = ListArray::new(Arc::new(field), offsets, Arc::new(items), None);
+    let list = ListArray::new(Arc::new(field), offsets, Arc::new(items), nulls);
     SerializedComponentColumn::new(list, ComponentDescriptor::partial(name))
 }
 
@@ -424,21 +477,4 @@ pub(super) fn words<'a>(
 ) -> SerializedComponentBatch {
     let texts: StringArray = texts.map(Some).collect();
     SerializedComponentBatch::new(Arc::new(texts), ComponentDescriptor::partial(name))
-}
-
-fn list_column(
-    name: &'static str,
-    items: ArrayRef,
-    filled: impl Iterator<Item = bool> + Clone,
-) -> SerializedComponentColumn {
-    let ends = filled.clone().scan(0, |end, filled| {
-        *end += i32::from(filled);
-        Some(*end)
-    });
-    let offsets: Vec<i32> = std::iter::once(0).chain(ends).collect();
-    let field = Field::new_list_field(items.data_type().clone(), true);
-    let offsets = OffsetBuffer::new(ScalarBuffer::from(offsets));
-    let nulls: NullBuffer = filled.collect();
-    let list = ListArray::new(Arc::new(field), offsets, items, Some(nulls));
-    SerializedComponentColumn::new(list, ComponentDescriptor::partial(name))
 }

@@ -3,11 +3,11 @@
 
 use rerun::datatypes::Vec2D;
 
-use super::canvas::{CURVE_POINTS, Labels, Plot, Span, Strips, simplified, thinned_to};
+use super::canvas::{CURVE_POINTS, Labels, Plot, Span, Strips, thinned_to, whole_ticks};
 use super::layout::TrialLayout;
+use super::sheet::Sheet;
 use crate::delay::{Candidate, Decision, Line};
 use crate::units::floor_to_index;
-use crate::wording::number;
 
 /// Left and right end on the sheet, and its rows.
 const PLACE: ((f32, f32), (f32, f32)) = ((1080.0, 1585.0), (76.0, 712.0));
@@ -41,35 +41,29 @@ impl<'a> CloseUp<'a> {
     }
 
     /// Frame, grid, and the band of the noise around Algorithm 1's lines.
-    pub(super) fn grid(&self, labels: &mut Labels) -> Strips {
-        let x_ticks = self.plot.x_span().ticks(4.0);
-        let x_ticks: Vec<f64> = x_ticks.into_iter().filter(|k| k.fract() == 0.0).collect();
-        let y_ticks = self.plot.y_span().ticks(6.0);
-        let y_ticks: Vec<_> = y_ticks.into_iter().map(|y| (y, number(y))).collect();
-        let mut strips = self.plot.grid(&x_ticks, &y_ticks, labels);
-        for k in x_ticks {
-            labels.put_whole(self.plot.below(k, 4.0), number(k));
-        }
+    pub(super) fn grid(&self, sheet: &mut Sheet) {
+        let x_ticks = whole_ticks(&self.plot, 4.0);
+        sheet.outline(&self.plot, &x_ticks, &self.plot.y_ticks(6.0));
+        sheet.below(&self.plot, 4.0, &x_ticks);
         if let Some((best, noise)) = self.decision.candidates.best().zip(self.noise) {
             for shift in [-BAND * noise, BAND * noise] {
-                strips.extend(self.lines(&best, best.breakpoint as f64, shift));
+                sheet.grid.extend(self.lines(&best, best.breakpoint as f64, shift));
             }
         }
-        strips
     }
 
     pub(super) fn measured(&self) -> Vec<Vec2D> {
-        self.curve(self.measured)
+        let kept = thinned_to(self.measured, CURVE_POINTS).into_iter();
+        let place = |index: usize| Some((self.sample(index), *self.measured.get(index)?));
+        self.plot.places(kept.filter_map(place))
     }
 
     pub(super) fn smoothed(&self) -> Vec<Vec2D> {
-        simplified(self.curve(self.smoothed))
+        self.plot.curve(self.smoothed, CURVE_POINTS, |index| self.sample(index))
     }
 
-    fn curve(&self, values: &[f64]) -> Vec<Vec2D> {
-        let kept = thinned_to(values, CURVE_POINTS).into_iter();
-        let place = |index: usize| Some(((self.window.0 + index) as f64, *values.get(index)?));
-        self.plot.places(kept.filter_map(place))
+    fn sample(&self, index: usize) -> f64 {
+        (self.window.0 + index) as f64
     }
 
     pub(super) fn input_step(&self) -> Vec<Vec2D> {
@@ -83,11 +77,7 @@ impl<'a> CloseUp<'a> {
         let mut strips: Strips = self.vertical(p + delay).into_iter().collect();
         let own = self.decision.fine.filter(|_| self.decision.delay_before_review().is_none());
         if let Some(fine) = own {
-            let Span { low: first, high: last } = self.plot.x_span();
-            let [low, high] = [fine.low, fine.high].map(|by| (p + by).clamp(first, last));
-            let tick = |k: f64| [-4.0, -20.0].map(|up| self.plot.above(k, up)).to_vec();
-            strips.push([low, high].map(|k| self.plot.above(k, -12.0)).to_vec());
-            strips.extend([tick(low), tick(high)]);
+            strips.extend(self.plot.interval([p + fine.low, p + fine.high], -12.0, 8.0));
         }
         strips
     }

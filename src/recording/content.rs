@@ -1,10 +1,13 @@
 //! What goes into a file or to a viewer, whatever it is about.
 
-use rerun::ApplicationId;
+use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::log::{Chunk, LogMsg};
+use rerun::{ApplicationId, EntityPath, RecordingInfo, StoreId};
 
-use super::chunk::{Chunks, Ids};
+use super::blueprint::Blueprint;
+use super::chunk::{Chunks, Ids, chunk_message, store_message};
 use super::error::RecordError;
+use super::paths::{ABOUT, joint_root};
 use crate::experiment::{Joint, Source};
 
 /// Who takes the chunks as they are made.
@@ -18,9 +21,10 @@ pub(super) enum Growth {
     Growing,
 }
 
-/// A joint of a recording, and what adds all of it.
+/// A joint of a recording, and what adds all of it below the joint's root.
 pub(super) struct Tab<'c> {
-    pub(super) joint: &'c str,
+    /// None where it belongs to no joint.
+    pub(super) joint: Option<&'c str>,
     pub(super) add: Box<Add<'c>>,
 }
 
@@ -34,22 +38,19 @@ pub(super) trait Content {
     /// Equal for equal content: see [`hashed`].
     fn id(&self) -> String;
 
-    /// Adds the page on the whole recording.
-    fn add_about(&self, chunks: &mut Chunks) -> Result<(), RecordError>;
+    /// The page on the whole recording.
+    fn about(&self) -> String;
 
     /// The joints in the order of their tabs.
     fn tabs(&self, growth: Growth) -> Vec<Tab<'_>>;
 
-    /// The messages of its blueprint.
-    fn views(
-        &self,
-        growth: Growth,
-        application: &ApplicationId,
-        id: &str,
-    ) -> Result<Vec<LogMsg>, RecordError>;
+    /// What the viewer shows of it.
+    fn blueprint(&self, growth: Growth) -> Blueprint;
 
-    /// What decides which views there are.
-    fn views_in_words(&self, growth: Growth) -> String;
+    /// What decides which views there are, for one that grows.
+    fn views_in_words(&self, _: Growth) -> String {
+        String::new()
+    }
 }
 
 /// Makes the chunks of `content` joint by joint, so that only one joint's are in memory;
@@ -61,17 +62,40 @@ pub(super) fn for_each_chunk(
 ) -> Result<u64, RecordError> {
     let mut chunks = part.ids.chunks(part.used + 2);
     if part.joint.is_none() {
-        content.add_about(&mut chunks)?;
+        chunks.page(ABOUT, content.about())?;
     }
     let tabs = content.tabs(part.growth);
     let taken = tabs.len() as u64 + 1;
     for (namespace, tab) in (part.used + 3..).zip(tabs).filter(|(_, tab)| part.has(tab.joint)) {
         chunks.into_chunks().iter().try_for_each(&mut *take)?;
-        chunks = part.ids.chunks(namespace);
+        let root = tab.joint.map_or_else(EntityPath::root, joint_root);
+        chunks = part.ids.chunks(namespace).rooted(root);
         (tab.add)(&mut chunks)?;
     }
     chunks.into_chunks().iter().try_for_each(take)?;
     Ok(taken)
+}
+
+/// The messages of the views of `content`, the last of which makes the viewer show them.
+pub(super) fn view_messages(
+    content: &dyn Content,
+    growth: Growth,
+    (application, id): (&ApplicationId, &str),
+) -> Result<Vec<LogMsg>, RecordError> {
+    let mut messages = content.blueprint(growth).messages(application, id)?;
+    let views = messages.first().map(|message| message.store_id().clone());
+    messages.extend(views.map(|views| LogMsg::from(activation(views))));
+    Ok(messages)
+}
+
+/// The first messages of a recording: what it is, and its name.
+pub(super) fn first_messages(store: &StoreId, name: String) -> Result<Vec<LogMsg>, RecordError> {
+    let mut chunks = Ids::of(store.recording_id().as_str()).chunks(1);
+    let info = RecordingInfo::new().with_name(name);
+    chunks.push_static(EntityPath::properties(), &info)?;
+    let chunks = chunks.into_chunks();
+    let messages = chunks.iter().map(|chunk| chunk_message(store, chunk));
+    std::iter::once(Ok(store_message(store))).chain(messages).collect()
 }
 
 /// Which of a recording's chunks are made, and which ids they have.
@@ -92,8 +116,8 @@ impl Part<'_> {
         Self { ids, growth: Growth::Finished, used: 0, joint: None }
     }
 
-    fn has(self, joint: &str) -> bool {
-        self.joint.is_none_or(|name| joint == name)
+    fn has(self, joint: Option<&str>) -> bool {
+        self.joint.is_none_or(|name| joint == Some(name))
     }
 }
 
@@ -147,4 +171,9 @@ pub(super) fn hashed<'a>(
     part(env!("CARGO_PKG_VERSION"));
     let digest = base16ct::lower::encode_string(&hash.finalize());
     digest.chars().take(32).collect()
+}
+
+/// What makes the viewer show a blueprint that it has been sent.
+pub(super) fn activation(blueprint_id: StoreId) -> BlueprintActivationCommand {
+    BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true }
 }

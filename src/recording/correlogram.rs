@@ -1,14 +1,14 @@
 //! How the residual is correlated with itself and with the input, lag by lag.
 
 use rerun::datatypes::Vec2D;
-use rerun::{EntityPath, LineStrips2D};
 
 use super::canvas::Plot;
 use super::chunk::Chunks;
 use super::error::RecordError;
-use super::palette::{self, color};
-use super::paths::{at, correlation, of_model};
-use super::sheet::{Sheet, strips};
+use super::layers::Layers;
+use super::palette;
+use super::paths::{self, of_model};
+use super::sheet::Sheet;
 use crate::figure::correlogram::{Correlogram, TITLES};
 use crate::report::ComparedJoint;
 
@@ -23,11 +23,7 @@ const BOTTOM: f32 = 430.0;
 const NOT_KNOWN: &str = "not computed,\nsince sample periods differ\nor samples are too few";
 
 /// Draws the correlations of `models` below `root`: a curve and a band per model.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    models: &[&ComparedJoint<'_>],
-) -> Result<(), RecordError> {
+pub(super) fn add(chunks: &mut Chunks, models: &[&ComparedJoint<'_>]) -> Result<(), RecordError> {
     let of_each: Vec<_> = models.iter().map(|model| Correlogram::all(model.comparison)).collect();
     let mut sheet = Sheet::of_width(SIZE.0);
     let mut axes = Vec::new();
@@ -51,24 +47,15 @@ pub(super) fn add(
             bands.extend(found.into_iter().flat_map(|found| band(&plot, found.band)));
         }
     }
-    sheet.push(chunks, root)?;
-    strips(chunks, at(root, correlation::AXES), palette::RAW, 0.8, axes)?;
+    let mut layers = Layers::fixed(chunks, paths::CORRELATION);
+    layers.sheets([sheet])?;
+    layers.strips("axes", palette::RAW, 0.8, [axes])?;
     let models = curves.into_iter().zip(bands).zip(palette::models()).zip(0_usize..);
     for (((curves, bands), rgb), number) in models {
-        let order = 100.0 + number as f32;
-        strips(
-            chunks,
-            of_model(root, correlation::BAND, number),
-            palette::dimmed(rgb),
-            1.6,
-            bands,
-        )?;
+        layers.strips(&of_model("band", number), palette::dimmed(rgb), 1.6, [bands])?;
         // The later a model, the smaller its correlations should be.
-        let curves = LineStrips2D::new(curves).with_colors([color(rgb)]).with_radii([1.3]);
-        chunks.push_static(
-            of_model(root, correlation::CURVE, number),
-            &curves.with_draw_order(order),
-        )?;
+        layers.order(100.0 + number as f32);
+        layers.strips(&of_model("curve", number), rgb, 1.3, [curves])?;
     }
     Ok(())
 }

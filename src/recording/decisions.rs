@@ -1,44 +1,33 @@
 //! The numbers of every candidate and every decision.
 
-use rerun::{EntityPath, Scalars, SeriesLines, TextDocument};
+use rerun::SeriesLines;
 
-use super::chunk::{Chunks, Index, fine_columns, integers, numbers, shown, texts};
+use super::chunk::{Chunks, Moment, fine_columns, integers, numbers, shown, texts};
 use super::error::RecordError;
-use super::layout::{JointLayout, SegmentLayout, TrialLayout};
+use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
-use super::paths::{self, at};
-use crate::delay::{Candidate, FineDelay, Verdict};
+use super::paths;
+use crate::delay::{Candidate, Decision};
 use crate::experiment::Joint;
 use crate::units::signed;
 use crate::wording::{doubt_percent, number};
 
 /// Adds `/decision/sse` and `/decision/table`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    joint: &Joint,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
-    add_errors(chunks, root, layout)?;
-    add_page(chunks, root, joint, layout)?;
-    add_table(chunks, root, layout)
+pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
+    add_errors(chunks, layout)?;
+    add_page(chunks, layout)?;
+    add_table(chunks, layout)
 }
 
 /// All decisions as a person reads them: what the table has, in five digits.
-fn add_page(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    joint: &Joint,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
+fn add_page(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     /// Rows that a person still reads.
     const MOST: usize = 1000;
     let rows: Vec<_> = layout.segments().take(MOST).map(|(t, s)| page_row(t, s)).collect();
     let all = layout.segments().count();
     let more = if all > MOST { format!("\n\nThe first {MOST} of {all}.") } else { String::new() };
-    let page = format!("{}\n{}{more}", page_header(joint), rows.join("\n"));
-    let document = TextDocument::from_markdown(page);
-    chunks.push_static(at(root, paths::DECISION_PAGE), &document)
+    let page = format!("{}\n{}{more}", page_header(layout.joint), rows.join("\n"));
+    chunks.page(paths::DECISION_PAGE, page)
 }
 
 /// The head of the table, with the units of `joint`.
@@ -56,7 +45,7 @@ fn page_row(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let of = |value: Option<f64>| value.map_or_else(String::new, number);
     let delay = decision.delay();
     let period_s = trial.trial.period().seconds();
-    let mark = if decision.verdict() == Verdict::Accepted { "✓" } else { "✗" };
+    let mark = if segment.is_accepted() { "✓" } else { "✗" };
     let cells = [
         plain(trial.trial.label()),
         decision.number.to_string(),
@@ -78,107 +67,62 @@ fn slopes(best: Candidate) -> String {
 }
 
 /// SSE at each candidate's tick; empty at the first and last tick of a segment.
-fn add_errors(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
-    let (mut index, mut errors, mut lengths) = (Index::default(), Vec::new(), Vec::new());
-    for (trial, segment) in layout.segments() {
-        index.extend([trial.opening(segment)]);
-        lengths.push(0);
-        for (moment, candidate) in trial.candidates(segment) {
-            index.extend([moment]);
-            errors.push(candidate.sse);
-            lengths.push(1);
-        }
-        index.extend([trial.verdict(segment)]);
-        lengths.push(0);
-    }
-    let entity = at(root, paths::SSE);
+fn add_errors(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
+    let ticks = layout.segments().flat_map(|(trial, segment)| trial.ticks(segment));
+    let (moments, errors): (Vec<_>, Vec<_>) =
+        ticks.map(|(moment, candidate)| (moment, candidate.map(|it| it.sse))).unzip();
     let name = SeriesLines::new().with_names(["SSE"]);
-    chunks.push_static(entity.clone(), &name)?;
-    chunks.push(entity, index, Scalars::new(errors).columns(lengths)?)
+    chunks.series("decision/sse", &name, (moments.into_iter().collect(), errors))
 }
 
-/// Rows of `/decision/table`, column by column.
-#[derive(Default)]
-struct Table {
-    index: Index,
-    whole: [Vec<Option<i64>>; 8],
-    real: [Vec<Option<f64>>; 3],
+/// A row of `/decision/table`: a candidate, or the verdict with the best one, which has no `j`.
+struct Row<'l, 'a> {
+    trial: &'l TrialLayout<'a>,
+    segment: &'l SegmentLayout<'a>,
+    j: Option<usize>,
+    candidate: Option<Candidate>,
     /// Rank by squared error within the step.
-    rank: Vec<Option<i64>>,
-    /// What a person reads, in the order of [`Self::SHOWN`].
-    shown: [Vec<Option<f64>>; 3],
-    accepted: Vec<Option<i64>>,
-    fine: Vec<Option<FineDelay>>,
-    /// Trial and verdict.
-    words: [Vec<Option<String>>; 2],
+    rank: Option<i64>,
 }
 
-impl Table {
-    const WHOLE: [&str; 8] = ["i", "p", "r", "end", "f", "j", "q", "delta"];
-    const REAL: [&str; 3] = ["sse", "slope_before", "slope_after"];
-    /// A viewer orders columns by their names: these are such that the most telling ones come first.
-    const SHOWN: [&str; 3] = ["delay_s", "error", "error_times_least"];
-
-    /// The numbers of `candidate`, of which so many have a smaller error; `j` is its number, empty on
-    /// the row of the verdict.
-    fn row(
-        &mut self,
-        (trial, segment): (&TrialLayout<'_>, &SegmentLayout<'_>),
-        j: Option<usize>,
-        (candidate, rank): (Option<Candidate>, Option<i64>),
-    ) {
-        let decision = segment.decision;
-        let p = decision.input_step.sample;
-        let best = decision.candidates.best();
-        let breakpoint = candidate.map(|candidate| signed(candidate.breakpoint));
-        let whole = [
-            Some(signed(decision.number)),
-            Some(signed(p)),
-            Some(signed(decision.segment.first)),
-            Some(signed(decision.segment.last)),
-            best.map(|best| signed(best.f)),
-            j.map(signed),
-            breakpoint,
-            breakpoint.map(|q| q - signed(p)),
-        ];
-        let real = [
-            candidate.map(|candidate| candidate.sse),
-            candidate.map(|candidate| candidate.before.slope),
-            candidate.map(|candidate| candidate.after.slope),
-        ];
-        self.whole.iter_mut().zip(whole).for_each(|(column, value)| column.push(value));
-        self.real.iter_mut().zip(real).for_each(|(column, value)| column.push(value));
-        let period_s = trial.trial.period().seconds();
-        let own = decision.delay().filter(|_| j.is_none());
-        let delay = own.or_else(|| breakpoint.map(|q| (q - signed(p)) as f64));
-        let [sse, ..] = real;
-        let ratio = sse.zip(best.filter(|best| best.sse > 0.0)).map(|(sse, best)| sse / best.sse);
-        let shown = [delay.map(|delay| delay * period_s), sse, ratio];
-        self.shown.iter_mut().zip(shown).for_each(|(column, value)| column.push(value));
-        self.rank.push(rank);
-        let accepted = i64::from(decision.verdict() == Verdict::Accepted);
-        self.accepted.push(j.is_none().then_some(accepted));
-        self.fine.push(decision.fine.filter(|_| j.is_none()));
-        let [trials, verdicts] = &mut self.words;
-        trials.push(j.is_none().then(|| trial.trial.label().to_owned()));
-        verdicts.push(j.is_none().then(|| decision.verdict().to_string()));
-    }
-
-    fn segment(&mut self, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) {
+impl<'l, 'a> Row<'l, 'a> {
+    /// All rows of a segment, with their moments.
+    fn of((trial, segment): Placed<'l, 'a>) -> impl Iterator<Item = (Moment, Self)> {
         let ranks = ranks(segment.decision.candidates.sse());
-        for (moment, candidate) in trial.candidates(segment) {
-            self.index.extend([moment]);
-            let rank = ranks.get(candidate.f - 1).copied();
-            self.row((trial, segment), Some(candidate.f), (Some(candidate), rank));
-        }
-        self.index.extend([trial.verdict(segment)]);
-        let best = segment.decision.candidates.best();
-        self.row((trial, segment), None, (best, best.map(|_| 1)));
+        let candidates = trial.candidates(segment).map(move |(moment, it)| {
+            let rank = ranks.get(it.f - 1).copied();
+            (moment, Self { trial, segment, j: Some(it.f), candidate: Some(it), rank })
+        });
+        let candidate = segment.decision.candidates.best();
+        let rank = candidate.map(|_| 1);
+        let verdict = Self { trial, segment, j: None, candidate, rank };
+        candidates.chain([(trial.verdict(segment), verdict)])
     }
+
+    /// What the row of a verdict has alone.
+    fn verdict<T>(&self, of: impl Fn(&Decision) -> T) -> Option<T> {
+        self.j.is_none().then(|| of(self.segment.decision))
+    }
+}
+
+fn q(row: &Row<'_, '_>) -> Option<i64> {
+    Some(signed(row.candidate?.breakpoint))
+}
+
+/// Samples from the input step to the breakpoint.
+fn delta(row: &Row<'_, '_>) -> Option<i64> {
+    Some(q(row)? - signed(row.segment.decision.input_step.sample))
+}
+
+fn delay_s(row: &Row<'_, '_>) -> Option<f64> {
+    let own = row.segment.decision.delay().filter(|_| row.j.is_none());
+    let delay = own.or_else(|| delta(row).map(|delta| delta as f64))?;
+    Some(delay * row.trial.trial.period().seconds())
+}
+
+fn error_times_least(row: &Row<'_, '_>) -> Option<f64> {
+    let best = row.segment.decision.candidates.best().filter(|best| best.sse > 0.0)?;
+    Some(row.candidate?.sse / best.sse)
 }
 
 /// The place of each of `errors` among them, the least being the first.
@@ -192,39 +136,42 @@ fn ranks(errors: &[f64]) -> Vec<i64> {
 
 /// A row per candidate, and one per verdict: without `j`, but with `accepted` (1 or 0),
 /// `trial` and `verdict`, and the delay between samples where there is one.
-fn add_table(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
-    let mut table = Table::default();
-    for (trial, segment) in layout.segments() {
-        table.segment(trial, segment);
-    }
-    let whole = Table::WHOLE.iter().zip(&table.whole).map(|(name, values)| integers(name, values));
-    let real = Table::REAL.iter().zip(&table.real).map(|(name, values)| numbers(name, values));
-    let rounded = Table::SHOWN.iter().zip(&table.shown).map(|(name, values)| shown(name, values));
-    let [trials, verdicts] = &table.words;
-    let words = [texts("trial", trials), texts("verdict", verdicts)];
-    let [.., breakpoints, _] = &table.whole;
-    let accepted = [
-        integers("accepted", &table.accepted),
-        integers("error_rank", &table.rank),
-        integers("breakpoint", breakpoints),
+fn add_table(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
+    type Whole = fn(&Row<'_, '_>) -> Option<i64>;
+    type Real = fn(&Row<'_, '_>) -> Option<f64>;
+    let (moments, rows): (Vec<_>, Vec<_>) = layout.segments().flat_map(Row::of).unzip();
+    let whole: [(&str, Whole); 11] = [
+        ("i", |row| Some(signed(row.segment.decision.number))),
+        ("p", |row| Some(signed(row.segment.decision.input_step.sample))),
+        ("r", |row| Some(signed(row.segment.decision.segment.first))),
+        ("end", |row| Some(signed(row.segment.decision.segment.last))),
+        ("f", |row| row.segment.decision.candidates.best().map(|best| signed(best.f))),
+        ("j", |row| row.j.map(signed)),
+        ("q", q),
+        ("delta", delta),
+        ("accepted", |row| row.verdict(|_| i64::from(row.segment.is_accepted()))),
+        ("error_rank", |row| row.rank),
+        ("breakpoint", q),
     ];
-    let fine = fine_columns(&table.fine);
-    let columns: Vec<_> =
-        whole.chain(real).chain(rounded).chain(accepted).chain(words).chain(fine).collect();
-    chunks.push(at(root, paths::DECISION_TABLE), table.index, columns)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_least_error_is_the_first() {
-        assert_eq!(ranks(&[3.0, 1.0, 2.0]), [3, 1, 2]);
-        assert_eq!(ranks(&[]), [0; 0]);
-    }
+    let real: [(&str, Real); 3] = [
+        ("sse", |row| Some(row.candidate?.sse)),
+        ("slope_before", |row| Some(row.candidate?.before.slope)),
+        ("slope_after", |row| Some(row.candidate?.after.slope)),
+    ];
+    // What a person reads. A viewer orders columns by their names: these are such that the most telling
+    // ones come first.
+    let rounded: [(&str, Real); 3] = [
+        ("delay_s", delay_s),
+        ("error", |row| Some(row.candidate?.sse)),
+        ("error_times_least", error_times_least),
+    ];
+    let trials = rows.iter().map(|row| row.verdict(|_| row.trial.trial.label().to_owned()));
+    let verdicts = rows.iter().map(|row| row.verdict(|it| it.verdict().to_string()));
+    let fine: Vec<_> = rows.iter().map(|row| row.verdict(|it| it.fine).flatten()).collect();
+    let mut columns = vec![texts("trial", trials), texts("verdict", verdicts)];
+    columns.extend(whole.map(|(name, value)| integers(name, rows.iter().map(value))));
+    columns.extend(real.map(|(name, value)| numbers(name, rows.iter().map(value))));
+    columns.extend(rounded.map(|(name, value)| shown(name, rows.iter().map(value))));
+    columns.extend(fine_columns(&fine));
+    chunks.push(paths::DECISION_TABLE, moments.into_iter().collect(), columns)
 }

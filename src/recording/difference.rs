@@ -2,20 +2,18 @@
 //! record and by rank, lines to click, and what there is to say.
 
 use rerun::datatypes::Vec2D;
-use rerun::{EntityPath, TextDocument, TextLog};
 
 use super::beside::Other;
-use super::canvas::{Plot, SHEET, Span};
-use super::chunk::{Chunks, Index};
+use super::canvas::{Plot, SHEET, Span, diamond};
+use super::chunk::Chunks;
 use super::error::RecordError;
-use super::layout::{JointLayout, SegmentLayout, TrialLayout};
+use super::layers::Layers;
+use super::layout::{JointLayout, Placed};
 use super::markdown::plain;
 use super::palette::{self, Rgb};
-use super::paths::{self, at, differing};
-use super::rows::Rows;
-use super::sheet::{Sheet, strips};
+use super::paths;
+use super::sheet::Sheet;
 use crate::delay::Verdict;
-use crate::experiment::Joint;
 use crate::study::{StepPair, StepResult};
 use crate::wording::{difference_in_short, difference_sentences, result_in_short, step_name};
 
@@ -25,34 +23,23 @@ pub(super) const SIZE: (f32, f32) = (SHEET.0, 344.0);
 /// Adds `/difference`, `/difference/log` and the drawing.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
-    joint: &Joint,
     layout: &JointLayout<'_>,
     others: &[Other<'_>],
 ) -> Result<(), RecordError> {
     if others.is_empty() {
         return Ok(());
     }
-    let ranked = layout.by_difference();
-    let last = layout
-        .segments()
-        .last()
-        .map(|(trial, segment)| trial.moment(segment, segment.verdict(), trial.trial.len()));
+    let ranked = layout.ranked(|segment| segment.difference);
     let shown: Vec<_> = ranked.iter().filter(|placed| differs(placed, others)).collect();
-    // At the first rank by doubt, and at the last moment of every other timeline.
-    let index: Index = last.into_iter().cycle().take(shown.len()).collect();
-    let index = index.with_difference(shown.iter().map(|(_, segment)| segment.difference));
-    let index = index.with_doubt(std::iter::repeat_n(1, shown.len()));
-    let lines: Vec<_> = shown.iter().map(|placed| line(joint, placed, others)).collect();
-    let levels: Vec<_> = shown.iter().map(|placed| level(placed, others)).collect();
-    let log = TextLog::update_fields().with_many_text(lines).with_many_level(levels);
-    chunks.push(at(root, paths::DIFFERENCE_LOG), index, log.columns_of_unit_batches()?)?;
-    let page = TextDocument::from_markdown(page(joint, others));
-    chunks.push_static(at(root, paths::DIFFERENCE), &page)?;
-    draw(chunks, &at(root, differing::ROOT), layout, others)
+    let index = layout
+        .at_the_end(shown.len())
+        .with("difference", shown.iter().map(|(_, segment)| segment.difference))
+        .all_at("doubt", Some(1));
+    let lines = shown.iter().map(|placed| (Some(level(placed, others)), line(placed, others)));
+    chunks.lines(paths::DIFFERENCE_LOG, index, lines)?;
+    chunks.page(paths::DIFFERENCE, page(&layout.joint.name, others))?;
+    draw(chunks, layout, others)
 }
-
-type Placed<'l, 'a> = (&'l TrialLayout<'a>, &'l SegmentLayout<'a>);
 
 /// What others say of a step.
 fn pairs<'o>(
@@ -74,8 +61,8 @@ fn level(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> &'static str {
     if pairs(placed, others).any(other_verdict) { "ERROR" } else { "INFO" }
 }
 
-fn line(joint: &Joint, placed: &Placed<'_, '_>, others: &[Other<'_>]) -> String {
-    let trials = joint.trials.len();
+fn line(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> String {
+    let trials = placed.0.estimated.joint.trials.len();
     let said = pairs(placed, others).map(|(name, pair)| {
         let there = result_in_short(&pair.there);
         format!("{name} {there} ({})", difference_in_short(pair))
@@ -87,17 +74,17 @@ fn line(joint: &Joint, placed: &Placed<'_, '_>, others: &[Other<'_>]) -> String 
     format!("{step}, {}", said.join(", "))
 }
 
-fn page(joint: &Joint, others: &[Other<'_>]) -> String {
+fn page(joint: &str, others: &[Other<'_>]) -> String {
     let parts = others.iter().map(|other| part(joint, other));
     format!("{}\n{HOW}", parts.collect::<String>())
 }
 
-fn part(joint: &Joint, other: &Other<'_>) -> String {
+fn part(joint: &str, other: &Other<'_>) -> String {
     let settings = other.settings.filter(|settings| *settings != other.name);
     let settings = settings.map_or_else(String::new, |settings| format!(" ({})", plain(settings)));
     let sentences = difference_sentences(&other.differences).into_iter();
     let sentences: Vec<_> = sentences.map(|sentence| plain(&sentence)).collect();
-    let (name, other) = (plain(&joint.name), plain(other.name));
+    let (name, other) = (plain(joint), plain(other.name));
     format!("**{name} against {other}**{settings}\n\n- {}\n\n", sentences.join("\n- "))
 }
 
@@ -109,7 +96,6 @@ click on a number in the list leads to its step.";
 /// Both delays over the record (above), and their difference by rank (below).
 fn draw(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     others: &[Other<'_>],
 ) -> Result<(), RecordError> {
@@ -121,17 +107,18 @@ fn draw(
         10.0,
         "delay here − there [s], the largest first; red: one accepts what the other rejects",
     );
-    sheet.push(chunks, root)?;
+    let mut fixed = Layers::fixed(chunks, paths::DIFFERENCE_SHEET);
+    fixed.sheets([sheet])?;
     for (path, rgb, shown) in figure.layers() {
-        strips(chunks, at(root, path), rgb, 1.8, shown)?;
+        fixed.strips(path, rgb, 1.8, [shown])?;
     }
-    let mut rows = Rows::new(chunks, root.clone(), layout.openings());
     let here = layout.segments().map(|(trial, segment)| {
-        let time = trial.time_ns(segment.decision.input_step.sample) as f64 * 1e-9;
+        let time = trial.seconds(segment.decision.input_step.sample);
         let rank = (segment.difference as f64).min(figure.ranks.x_span().high);
         vec![figure.delays.vertical(time).to_vec(), figure.ranks.vertical(rank).to_vec()]
     });
-    rows.strips(differing::HERE, palette::CANDIDATE, 1.6, here)
+    let mut rows = Layers::rows(chunks, paths::DIFFERENCE_SHEET, layout.openings());
+    rows.strips("here", palette::CANDIDATE, 1.6, here)
 }
 
 /// What the plot of the delays shows.
@@ -191,15 +178,15 @@ impl Figure {
         let bars = marks().filter(|mark| !mark.other_verdict && mark.has_rank());
         let bars = bars.map(|mark| self.bar(mark).to_vec());
         let here =
-            marks().filter_map(|mark| Some(diamond(self.delays.at(mark.time_s, mark.here?))));
+            marks().filter_map(|mark| Some(diamond(self.delays.at(mark.time_s, mark.here?), 4.0)));
         let there =
             marks().filter_map(|mark| Some(cross(self.delays.at(mark.time_s, mark.there?))));
         [
-            (differing::LINKS, palette::RAW, link.collect()),
-            (differing::BARS, palette::SMOOTHED, bars.collect()),
-            (differing::HERE_DELAYS, palette::ACCEPTED, here.collect()),
-            (differing::THERE_DELAYS, palette::OTHER, there.flatten().collect()),
-            (differing::OTHER_VERDICT, palette::REJECTED, other),
+            ("links", palette::RAW, link.collect()),
+            ("bars", palette::SMOOTHED, bars.collect()),
+            ("delays/here", palette::ACCEPTED, here.collect()),
+            ("delays/there", palette::OTHER, there.flatten().collect()),
+            ("other_verdict", palette::REJECTED, other),
         ]
     }
 
@@ -226,7 +213,7 @@ impl Mark {
 /// A mark for each result that has the step.
 fn of_step(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> Vec<Mark> {
     let (trial, segment) = placed;
-    let time_s = trial.time_ns(segment.decision.input_step.sample) as f64 * 1e-9;
+    let time_s = trial.seconds(segment.decision.input_step.sample);
     let accepted = |step: &StepResult| step.delay_s.filter(|_| step.verdict == Verdict::Accepted);
     let mark = |(_, pair): (&str, &StepPair)| Mark {
         time_s,
@@ -237,12 +224,6 @@ fn of_step(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> Vec<Mark> {
         other_verdict: pair.here.is_accepted() != pair.there.is_accepted(),
     };
     pairs(placed, others).map(mark).collect()
-}
-
-fn diamond(Vec2D([x, y]): Vec2D) -> Vec<Vec2D> {
-    let corner = |dx: f32, dy: f32| Vec2D::new(x + 4.0 * dx, y + 4.0 * dy);
-    let corners = [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
-    corners.map(|(dx, dy)| corner(dx, dy)).to_vec()
 }
 
 fn cross(Vec2D([x, y]): Vec2D) -> [Vec<Vec2D>; 2] {

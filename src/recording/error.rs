@@ -36,12 +36,6 @@ pub enum RecordError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// A bug: an address of this machine is none to the server.
-    #[error("{address}: viewers cannot be served there")]
-    NotServed {
-        /// Where.
-        address: std::net::SocketAddr,
-    },
     /// The viewer went away.
     #[error("the viewer at {url} went away, and what was sent last may be lost")]
     Lost {
@@ -50,12 +44,9 @@ pub enum RecordError {
         /// What the connection says.
         source: Box<SinkFlushError>,
     },
-    /// A bug: columns of a chunk do not fit together.
-    #[error("the recording's columns do not fit together")]
-    Chunk(#[source] Box<ChunkError>),
-    /// A bug: a value has no place in the recording.
+    /// A bug: a value has no place in the recording, or columns do not fit together.
     #[error("a value cannot be recorded")]
-    Serialize(#[source] Box<SerializationError>),
+    Value(#[source] Box<dyn std::error::Error + Send + Sync>),
 }
 
 impl From<EncodeError> for RecordError {
@@ -66,12 +57,12 @@ impl From<EncodeError> for RecordError {
 
 impl From<ChunkError> for RecordError {
     fn from(error: ChunkError) -> Self {
-        Self::Chunk(Box::new(error))
+        Self::Value(Box::new(error))
     }
 }
 
 impl From<SerializationError> for RecordError {
     fn from(error: SerializationError) -> Self {
-        Self::Serialize(Box::new(error))
+        Self::Value(Box::new(error))
     }
 }

@@ -1,14 +1,15 @@
 //! Where the error arises: its share in each part of each feature, beside the share of time.
 
+use rerun::Color;
 use rerun::datatypes::Vec2D;
-use rerun::{Color, EntityPath, LineStrips2D};
 
 use super::canvas::{Plot, Span};
 use super::chunk::Chunks;
 use super::error::RecordError;
+use super::layers::Layers;
 use super::palette::{self, Rgb, color};
-use super::paths::{at, error_share, of_model};
-use super::sheet::Sheet;
+use super::paths::{self, of_model};
+use super::sheet::{Sheet, TITLE};
 use crate::diagnosis::failure::{Feature, Region};
 use crate::figure::error_share::{FeatureShares, Share, is_level};
 use crate::numerics::as_written;
@@ -66,32 +67,22 @@ impl Drawing {
 
     /// The lines that fill the bars, in the colour of the model that they are of.
     pub(super) fn filling(&self, rgb: Rgb) -> Vec<(Vec<Vec2D>, Color)> {
-        let filling = self.bars.iter().flat_map(|bars| {
-            let lines = bars.strips.iter().zip(bars.shades(rgb));
-            lines.map(|(strip, color)| (strip.to_vec(), color)).collect::<Vec<_>>()
-        });
-        filling.collect()
+        self.bars.iter().flat_map(|bars| bars.filling(rgb)).collect()
     }
 }
 
 /// Draws the regions of `models` below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    models: &[&ComparedJoint<'_>],
-) -> Result<(), RecordError> {
+pub(super) fn add(chunks: &mut Chunks, models: &[&ComparedJoint<'_>]) -> Result<(), RecordError> {
     if models.is_empty() {
         return Ok(());
     }
     let Drawing { sheet, bars, marks } = Drawing::of(models);
-    sheet.push(chunks, root)?;
-    for ((bars, rgb), number) in bars.into_iter().zip(palette::models()).zip(0..) {
-        let shades: Vec<_> = bars.shades(rgb).collect();
-        let strips = LineStrips2D::new(bars.strips).with_radii([HATCH]).with_colors(shades);
-        chunks.push_static(of_model(root, error_share::BARS, number), &strips)?;
+    let mut layers = Layers::fixed(chunks, paths::ERROR_SHARE);
+    layers.sheets([sheet])?;
+    for ((bars, rgb), number) in bars.iter().zip(palette::models()).zip(0..) {
+        layers.colored(&of_model("bars", number), HATCH, [bars.filling(rgb)])?;
     }
-    let marks = LineStrips2D::new(marks).with_colors([color(palette::BORDER)]).with_radii([1.6]);
-    chunks.push_static(at(root, error_share::TIME), &marks.with_draw_order(100.0))
+    layers.order(100.0).strips("time", palette::BORDER, 1.6, [marks])
 }
 
 /// The regions of one feature, where there are `parts` of them.
@@ -118,7 +109,8 @@ fn draw_frame(sheet: &mut Sheet, plot: &Plot, title: &str, regions: &[Region]) {
     // Zero would be where the names of the parts begin.
     let ticks = plot.y_span().ticks(3.0).into_iter().filter(|share| *share > 0.0);
     let ticks: Vec<_> = ticks.map(|share| (share, format!("{} %", number(share)))).collect();
-    sheet.frame(plot, &[], &ticks, title);
+    sheet.outline(plot, &[], &ticks);
+    sheet.title(plot, TITLE, title);
     let names = names(regions);
     let longest = names.iter().map(|(_, name)| name.chars().count()).max().unwrap_or(0);
     let slot = f64::from(plot.x(1.0) - plot.x(0.0));
@@ -158,20 +150,16 @@ pub(super) fn short(value: f64) -> String {
     number(as_written(value, 3))
 }
 
-/// The lines that fill the bars of one model.
+/// The lines that fill the bars of one model, and whether each is of a bar with a larger share of the
+/// error than of the time.
 #[derive(Clone, Debug, Default)]
-struct Bars {
-    strips: Vec<[Vec2D; 2]>,
-    /// A larger share of the error than of the time.
-    too_much: Vec<bool>,
-}
+struct Bars(Vec<([Vec2D; 2], bool)>);
 
 impl Bars {
-    /// A colour per line: bright where there is too much error.
-    fn shades(&self, rgb: Rgb) -> impl Iterator<Item = Color> {
-        let shade =
-            move |too_much: &bool| color(if *too_much { rgb } else { palette::dimmed(rgb) });
-        self.too_much.iter().map(shade)
+    /// The lines with their colours: bright where there is too much error.
+    fn filling(&self, rgb: Rgb) -> Vec<(Vec<Vec2D>, Color)> {
+        let shade = |too_much| color(if too_much { rgb } else { palette::dimmed(rgb) });
+        self.0.iter().map(|(line, too_much)| (line.to_vec(), shade(*too_much))).collect()
     }
 
     /// A bar for each of `regions`, of the model `number` among so many.
@@ -184,10 +172,7 @@ impl Bars {
             let high = (high + HATCH).min(low - HATCH);
             let places = hatched(plot.x(left), plot.x(left + width));
             let lines = places.map(|x| [Vec2D::new(x, low - HATCH), Vec2D::new(x, high)]);
-            let before = self.strips.len();
-            self.strips.extend(lines);
-            let added = self.strips.len() - before;
-            self.too_much.extend(std::iter::repeat_n(share.error > share.time, added));
+            self.0.extend(lines.map(|line| (line, share.error > share.time)));
         }
     }
 }

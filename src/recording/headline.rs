@@ -1,28 +1,25 @@
 //! What was found of a joint, what is doubtful, what to do next: a strip above its decisions.
 
-use rerun::{EntityPath, TextDocument};
-
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layout::JointLayout;
 use super::markdown::plain;
-use super::paths::{self, at};
+use super::paths;
 use crate::experiment::Source;
-use crate::report::{EstimatedJoint, delay_answer};
+use crate::report::delay_answer;
 use crate::wording::capitalized;
 
 /// Adds `/headline`.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
-    estimated: EstimatedJoint<'_>,
-    (layout, sources): (&JointLayout<'_>, &[Source]),
+    layout: &JointLayout<'_>,
+    sources: &[Source],
 ) -> Result<(), RecordError> {
-    let text = text(estimated, layout, sources);
-    chunks.push_static(at(root, paths::HEADLINE), &TextDocument::from_markdown(text))
+    chunks.page(paths::HEADLINE, text(layout, sources))
 }
 
-fn text(estimated: EstimatedJoint<'_>, layout: &JointLayout<'_>, sources: &[Source]) -> String {
+fn text(layout: &JointLayout<'_>, sources: &[Source]) -> String {
+    let estimated = layout.estimated;
     let name = plain(&estimated.joint.name);
     let answer = format!("**{name}: {}**", plain(&delay_answer(estimated)));
     // The whole of a warning, with what to do, is in the report and on the terminal.

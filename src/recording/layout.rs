@@ -17,7 +17,8 @@
 use std::collections::HashMap;
 
 use super::chunk::{Index, Moment, Opening};
-use crate::delay::{Decision, Doubt, TrialEstimate, Verdict, doubts};
+use crate::delay::{Candidate, Decision, Doubt, TrialEstimate, Verdict, doubts};
+use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Trial};
 use crate::report::EstimatedJoint;
 use crate::units::signed;
@@ -97,6 +98,8 @@ impl TrialStarts {
 /// One joint on the timelines.
 #[derive(Debug)]
 pub(super) struct JointLayout<'a> {
+    pub(super) estimated: EstimatedJoint<'a>,
+    pub(super) joint: &'a Joint,
     pub(super) trials: Vec<TrialLayout<'a>>,
     /// What the recording opens on, beside its decisions.
     pub(super) first: Opening,
@@ -109,6 +112,8 @@ pub(super) struct JointLayout<'a> {
 pub(super) struct TrialLayout<'a> {
     /// Its place among the joint's trials.
     pub(super) index: usize,
+    /// The joint that it is of.
+    pub(super) estimated: EstimatedJoint<'a>,
     pub(super) trial: &'a Trial,
     pub(super) estimate: &'a TrialEstimate,
     pub(super) segments: Vec<SegmentLayout<'a>>,
@@ -135,10 +140,17 @@ pub(super) struct SegmentLayout<'a> {
     pub(super) kept: Vec<usize>,
 }
 
+/// A segment, with the trial it lies in.
+pub(super) type Placed<'l, 'a> = (&'l TrialLayout<'a>, &'l SegmentLayout<'a>);
+
 impl SegmentLayout<'_> {
     /// Whether its decision is doubtful, and no person has spoken of it.
     pub(super) fn is_open(&self) -> bool {
         self.doubt.is_doubtful() && self.decision.reviewer_verdict.is_none()
+    }
+
+    pub(super) fn is_accepted(&self) -> bool {
+        self.decision.verdict() == Verdict::Accepted
     }
 
     /// Its last tick.
@@ -170,15 +182,16 @@ impl SegmentLayout<'_> {
 
 impl<'a> JointLayout<'a> {
     pub(super) fn of(
-        joint: EstimatedJoint<'a>,
+        estimated: EstimatedJoint<'a>,
         starts: &TrialStarts,
         (detail, revisions): (Detail, Option<(i64, i64)>),
         first_tick: i64,
     ) -> Self {
         let mut tick = 1;
         let mut number = 0;
-        let mut trials = Vec::new();
-        let results = joint.joint.trials.iter().zip(&joint.estimate.trials).enumerate();
+        let mut trials: Vec<TrialLayout<'a>> = Vec::new();
+        let joint = estimated.joint;
+        let results = joint.trials.iter().zip(&estimated.estimate.trials).enumerate();
         for (index, (trial, result)) in results {
             let Ok(estimate) = result else { continue };
             let idle = (tick, number.max(1));
@@ -200,59 +213,94 @@ impl<'a> JointLayout<'a> {
                 segments.push(segment);
             }
             let start = starts.of_trial(trial);
-            let trial = TrialLayout { index, trial, estimate, segments, start, idle };
+            let trial = TrialLayout { index, estimated, trial, estimate, segments, start, idle };
             trials.push(trial);
         }
         let (first_revision, last_revision) = revisions.unzip();
         let first = Opening { tick: first_tick, revision: first_revision, is_compared: false };
-        let mut layout = Self { trials, first, last_revision };
-        layout.rank();
-        layout
-    }
-
-    /// Counts all decisions by doubt, the most doubtful first.
-    fn rank(&mut self) {
-        let mut segments: Vec<_> = self.trials.iter_mut().flat_map(|t| &mut t.segments).collect();
+        let mut segments: Vec<_> =
+            trials.iter_mut().flat_map(|trial| &mut trial.segments).collect();
         segments.sort_by(|a, b| b.doubt.value().total_cmp(&a.doubt.value()));
         for (segment, rank) in segments.into_iter().zip(1..) {
             segment.rank = rank;
         }
+        Self { estimated, joint, trials, first, last_revision }
     }
 
     /// The opening ticks of all segments, with their ranks by doubt.
     pub(super) fn openings(&self) -> Index {
         let index: Index = self.segments().map(|(trial, segment)| trial.opening(segment)).collect();
-        let index = index.with_doubt(self.segments().map(|(_, segment)| segment.rank));
         let differences = self.segments().filter(|_| self.first.is_compared);
-        index.with_difference(differences.map(|(_, segment)| segment.difference))
+        index
+            .with("doubt", self.segments().map(|(_, segment)| segment.rank))
+            .with("difference", differences.map(|(_, segment)| segment.difference))
+    }
+
+    /// So many rows at the last moment of the record.
+    ///
+    /// There a list keeps its own order, and a viewer does not scroll it to the cursor; a click on a
+    /// rank leads to the timeline of ranks.
+    pub(super) fn at_the_end(&self, rows: usize) -> Index {
+        let last = self
+            .segments()
+            .last()
+            .map(|(trial, segment)| trial.moment(segment, segment.verdict(), trial.trial.len()));
+        last.into_iter().cycle().take(rows).collect()
+    }
+
+    /// The first sample of all.
+    pub(super) fn start(&self) -> Option<Moment> {
+        self.trials.iter().find_map(|trial| trial.moments(1).next())
+    }
+
+    /// The trial with this place among those of the joint.
+    pub(super) fn trial(&self, index: usize) -> Option<&TrialLayout<'a>> {
+        self.trials.iter().find(|trial| trial.index == index)
+    }
+
+    /// The trial with this label.
+    pub(super) fn trial_of(&self, label: &str) -> Option<&TrialLayout<'a>> {
+        self.trials.iter().find(|trial| trial.trial.label() == label)
+    }
+
+    /// A signal of all trials: a row per sample that it is known at, and an empty one where it stops, so
+    /// that no line is drawn over the gap.
+    pub(super) fn series(
+        &self,
+        mut values: impl FnMut(&TrialLayout<'a>) -> Vec<Option<f64>>,
+    ) -> (Index, Vec<Option<f64>>) {
+        let (mut moments, mut known) = (Vec::new(), Vec::new());
+        for trial in &self.trials {
+            let mut there = false;
+            let values = values(trial).into_iter().chain([None]);
+            for (moment, value) in trial.moments(trial.trial.len() + 1).zip(values) {
+                if value.is_some() || there {
+                    moments.push(moment);
+                    known.push(value);
+                }
+                there = value.is_some();
+            }
+        }
+        (moments.into_iter().collect::<Index>().without_segment(), known)
     }
 
     /// Counts all decisions by their difference to other results, which is `weight` of a trial's
     /// label and the sample of a step: the largest first.
     pub(super) fn rank_by_difference(&mut self, weight: impl Fn(&str, usize) -> (u8, f64)) {
         self.first.is_compared = true;
-        let weight = |trial: &Trial, segment: &SegmentLayout<'_>| {
-            weight(trial.label(), segment.decision.input_step.sample)
-        };
-        let trials = self.trials.iter_mut();
-        let mut all: Vec<_> = trials
-            .flat_map(|TrialLayout { trial, segments, .. }| {
-                segments.iter_mut().map(|segment| (weight(trial, segment), segment))
-            })
-            .collect();
+        let mut all = Vec::new();
+        for TrialLayout { trial, segments, .. } in &mut self.trials {
+            let weight = |segment: &SegmentLayout<'_>| {
+                weight(trial.label(), segment.decision.input_step.sample)
+            };
+            all.extend(segments.iter_mut().map(|segment| (weight(segment), segment)));
+        }
         all.sort_by(|((kind_a, size_a), _), ((kind_b, size_b), _)| {
             kind_b.cmp(kind_a).then(size_b.total_cmp(size_a))
         });
         for ((_, segment), rank) in all.into_iter().zip(1..) {
             segment.difference = rank;
         }
-    }
-
-    /// All segments by their difference to other results, the largest first.
-    pub(super) fn by_difference(&self) -> Vec<(&TrialLayout<'a>, &SegmentLayout<'a>)> {
-        let mut all: Vec<_> = self.segments().collect();
-        all.sort_by_key(|(_, segment)| segment.difference);
-        all
     }
 
     /// The decision that is shown first: the most different one, or the most doubtful one.
@@ -263,20 +311,15 @@ impl<'a> JointLayout<'a> {
         self.segments().map(|(_, segment)| segment).min_by_key(|segment| by(segment))
     }
 
-    /// All segments by doubt, the most doubtful first.
-    pub(super) fn by_doubt(&self) -> Vec<(&TrialLayout<'a>, &SegmentLayout<'a>)> {
+    /// All segments in the order of a rank, such as that by doubt.
+    pub(super) fn ranked(&self, rank: fn(&SegmentLayout<'_>) -> i64) -> Vec<Placed<'_, 'a>> {
         let mut all: Vec<_> = self.segments().collect();
-        all.sort_by_key(|(_, segment)| segment.rank);
+        all.sort_by_key(|(_, segment)| rank(segment));
         all
     }
 
-    /// Whether some delay is known between samples.
-    pub(super) fn is_fine(&self) -> bool {
-        self.segments().any(|(_, segment)| segment.decision.fine.is_some())
-    }
-
     /// All segments, with the trial they lie in.
-    pub(super) fn segments(&self) -> impl Iterator<Item = (&TrialLayout<'a>, &SegmentLayout<'a>)> {
+    pub(super) fn segments(&self) -> impl Iterator<Item = Placed<'_, 'a>> {
         self.trials.iter().flat_map(|t| t.segments.iter().map(move |segment| (t, segment)))
     }
 }
@@ -305,8 +348,33 @@ impl<'a> TrialLayout<'a> {
         self.estimate.smoothed.as_deref().unwrap_or(self.trial.output())
     }
 
+    /// What the model of `comparison` simulates, and what it leaves.
+    pub(super) fn simulated<'c>(&self, comparison: &'c Comparison) -> &'c [f64] {
+        comparison.fit.evaluation.simulated.get(self.index).map_or(&[], |found| &found.output)
+    }
+
+    pub(super) fn residual<'c>(&self, comparison: &'c Comparison) -> &'c [f64] {
+        comparison.fit.evaluation.residuals.get(self.index).map_or(&[], Vec::as_slice)
+    }
+
     pub(super) fn sample(&self, k: usize) -> i64 {
         self.start.sample(k)
+    }
+
+    /// Seconds since the start of the record, in which trials follow one another.
+    pub(super) fn seconds(&self, k: usize) -> f64 {
+        self.time_ns(k) as f64 * 1e-9
+    }
+
+    /// Whether the joint has several trials.
+    pub(super) fn is_one_of_several(&self) -> bool {
+        self.estimated.joint.trials.len() > 1
+    }
+
+    /// Which step of which trial it is.
+    pub(super) fn step(&self, segment: &SegmentLayout<'_>) -> String {
+        let step = format!("step {}", segment.decision.number);
+        if self.is_one_of_several() { format!("{}, {step}", self.trial.label()) } else { step }
     }
 
     pub(super) fn time_ns(&self, k: usize) -> i64 {
@@ -378,11 +446,22 @@ impl<'a> TrialLayout<'a> {
         Moment { sample, time_ns: self.time_ns(p + ahead), ..moment }
     }
 
+    /// All ticks of a segment: those without a candidate at its beginning and its end clear what is
+    /// drawn of candidates.
+    pub(super) fn ticks<'s>(
+        &'s self,
+        segment: &'s SegmentLayout<'_>,
+    ) -> impl Iterator<Item = (Moment, Option<Candidate>)> + 's {
+        let candidates = self.candidates(segment).map(|(moment, it)| (moment, Some(it)));
+        let opening = std::iter::once((self.opening(segment), None));
+        opening.chain(candidates).chain([(self.verdict(segment), None)])
+    }
+
     /// The ticks of the recorded candidates, each at its breakpoint.
     pub(super) fn candidates<'s>(
         &'s self,
         segment: &'s SegmentLayout<'_>,
-    ) -> impl Iterator<Item = (Moment, crate::delay::Candidate)> + 's {
+    ) -> impl Iterator<Item = (Moment, Candidate)> + 's {
         segment.kept.iter().zip(1..).filter_map(move |(&index, tick)| {
             let candidate = segment.decision.candidates.get(index)?;
             let decision = segment.opening + tick;

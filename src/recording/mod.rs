@@ -8,12 +8,13 @@
 //!
 //! Inside, from what others are made of to what is made of them:
 //! - `paths` says where everything lies, `layout` where samples, trials and decisions lie on
-//!   the timelines; `chunk` makes columns of rows with reproducible ids, `rows` and `sheet`
+//!   the timelines; `chunk` makes columns of rows with reproducible ids, `layers` and `sheet`
 //!   drawings of them on a `canvas`.
 //! - `recorded`, `preview`, `sweep` and `index` are four kinds of recording. One part of the content
 //!   each are `signals`, `decisions`, `verdict`, `segment_view`, `beside`, `place`, `doubt`, `difference`, `overview`,
 //!   `delay_state`, `model`, `revision` and `about`, which `assembly` puts together.
-//! - `views` says which view shows what, by way of `blueprint`.
+//! - `views` says which view shows what: a tree that `blueprint` writes. What lies below the root of
+//!   a drawing is in its view.
 //! - `content` is what all kinds are to `write`, which brings them into a file or a stream,
 //!   and to `live`, which shows them to a viewer while they grow.
 
@@ -35,14 +36,12 @@ mod error;
 mod error_share;
 mod headline;
 mod index;
+mod layers;
 mod layout;
 mod live;
 mod markdown;
-mod message;
 mod model;
-mod model_difference;
 mod model_lanes;
-mod model_signal;
 mod origin;
 mod overview;
 mod palette;
@@ -52,8 +51,6 @@ mod place;
 mod preview;
 mod recorded;
 mod revision;
-mod rows;
-mod rungs;
 mod scatter;
 mod segment_view;
 mod shaded;

@@ -2,19 +2,19 @@
 
 use std::fmt::Write as _;
 
-use rerun::{EntityPath, Scalars, SeriesLines, TextDocument};
+use rerun::EntityPath;
 
-use super::chunk::{Chunks, Index, list, words};
+use super::chunk::{Chunks, Index, line, list, words};
 use super::error::RecordError;
-use super::layout::{JointLayout, TrialLayout};
+use super::layers::Layers;
+use super::layout::JointLayout;
 use super::markdown::plain;
 use super::model_lanes::samples_of;
-use super::model_signal::signal;
-use super::palette::{self, Rgb, color};
+use super::palette;
 use super::parameter_table::parameter_table;
 use super::paths::{self, at, child};
-use super::rows::Rows;
-use super::{correlogram, error_share, model_difference, model_lanes, revision, scatter};
+use super::signals::known;
+use super::{correlogram, error_share, model_lanes, revision, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
 use crate::experiment::Joint;
@@ -30,61 +30,50 @@ const BAND: f64 = 1.96;
 /// `judged` has the first word.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     models: &[&ComparedJoint<'_>],
     judged: &ComparedJoint<'_>,
 ) -> Result<(), RecordError> {
     for (compared, rgb) in models.iter().zip(palette::models()) {
-        let evaluation = &compared.comparison.fit.evaluation;
-        let simulated = |trial: &TrialLayout<'_>| {
-            evaluation.simulated.get(trial.index).map_or(&[][..], |s| &s.output).to_vec()
-        };
-        let residual = |trial: &TrialLayout<'_>| {
-            evaluation.residuals.get(trial.index).cloned().unwrap_or_default()
-        };
-        let name = compared.model;
-        let model = child(&at(root, paths::MODEL), name);
-        let entity = at(&model, paths::SIMULATED);
-        line(chunks, &entity, &format!("{name}: simulated"), rgb)?;
-        signal(chunks, entity, layout, simulated)?;
-        let entity = at(&model, paths::RESIDUAL);
-        line(chunks, &entity, &format!("{name}: measured − simulated"), rgb)?;
-        signal(chunks, entity, layout, residual)?;
-        figures(chunks, &model, compared.comparison)?;
+        let (name, comparison) = (compared.model, compared.comparison);
+        let model = child(paths::MODEL, name);
+        let simulated = layout.series(|trial| known(trial.simulated(comparison)));
+        let style = line(format!("{name}: simulated"), rgb, 1.5);
+        chunks.series(at(&model, paths::SIMULATED), &style, simulated)?;
+        let residual = layout.series(|trial| known(trial.residual(comparison)));
+        let style = line(format!("{name}: measured − simulated"), rgb, 1.5);
+        chunks.series(at(&model, paths::RESIDUAL), &style, residual)?;
+        figures(chunks, &model, comparison)?;
     }
-    band(chunks, root, layout, sensor_noise(&judged.joint.trials))?;
+    band(chunks, layout, sensor_noise(&judged.joint.trials))?;
     // Each on a page of its own: below one another the last is off a small window.
     for (path, page) in [
         (paths::MODEL_PAGE, page(models, judged)),
         (paths::MODEL_WORST, worst_segments(layout, judged)),
         (paths::MODEL_PARAMETERS, parameters(judged.joint, &reported(models, judged))),
     ] {
-        let document = TextDocument::from_markdown(page.unwrap_or_default());
-        chunks.push_static(at(root, path), &document)?;
+        chunks.page(path, page.unwrap_or_default())?;
     }
-    scatter::add(chunks, &at(root, paths::scatter::ROOT), models, judged)?;
-    error_share::add(chunks, &at(root, paths::error_share::ROOT), models)?;
-    correlogram::add(chunks, &at(root, paths::correlation::ROOT), models)?;
+    scatter::add(chunks, models, judged)?;
+    error_share::add(chunks, models)?;
+    correlogram::add(chunks, models)?;
     if is_first(models, judged) {
-        model_difference::add(chunks, root, layout, models)?;
+        differences(chunks, layout, models)?;
     }
-    model_lanes::add(chunks, root, layout, (judged.joint, judged.comparison))
+    model_lanes::add(chunks, layout, (judged.joint, judged.comparison))
 }
 
 /// Adds what is seen of the record on every timeline of a model that has no revisions, whose own
 /// drawings are.
 pub(super) fn add_map(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     judged: &ComparedJoint<'_>,
 ) -> Result<(), RecordError> {
-    let start = layout.trials.iter().find_map(|trial| trial.moments(1).next());
-    let Some(start) = start else { return Ok(()) };
+    let Some(start) = layout.start() else { return Ok(()) };
     let index = Index::everywhere(start, layout.first);
-    let mut rows = Rows::new(chunks, at(root, paths::MODEL_MAP), index).back_to_front();
-    revision::add_record(&mut rows, layout, judged.joint, &[judged.comparison])
+    let mut layers = Layers::rows(chunks, paths::MODEL_MAP, index).back_to_front();
+    revision::add_record(&mut layers, layout, judged.joint, &[judged.comparison])
 }
 
 /// Regions and correlations as lists of numbers, for programs.
@@ -105,7 +94,7 @@ fn figures(
         column("rmse", |region| region.rmse),
         column("mean_residual", |region| region.mean_residual),
     ];
-    chunks.push_static(at(model, paths::REGIONS), &lists)?;
+    chunks.push_static(at(model, "regions"), &lists)?;
     if let Some(found) = &comparison.whiteness {
         let lags = (1..=found.correlation.len()).map(|k| k as f64 * found.lag_step_s);
         let lists = vec![
@@ -113,7 +102,7 @@ fn figures(
             list("correlation", found.correlation.iter().copied()),
             list("band", std::iter::once(found.band)),
         ];
-        chunks.push_static(at(model, paths::WHITENESS), &lists)?;
+        chunks.push_static(at(model, "whiteness"), &lists)?;
     }
     if let Some(found) = &comparison.input_correlation {
         let lags = 0..found.acting.correlation.len();
@@ -125,20 +114,14 @@ fn figures(
             list("raw", found.raw.correlation.iter().copied()),
             list("raw_band", std::iter::once(found.raw.band)),
         ];
-        chunks.push_static(at(model, paths::INPUT_CORRELATION), &lists)?;
+        chunks.push_static(at(model, "input_correlation"), &lists)?;
     }
     Ok(())
-}
-
-fn line(chunks: &mut Chunks, entity: &EntityPath, name: &str, rgb: Rgb) -> Result<(), RecordError> {
-    let style = SeriesLines::new().with_names([name]).with_colors([color(rgb)]);
-    chunks.push_static(entity.clone(), &style.with_widths([1.5]))
 }
 
 /// Two level lines between which noise alone would keep the residual.
 fn band(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     noise: Option<f64>,
 ) -> Result<(), RecordError> {
@@ -147,14 +130,36 @@ fn band(
         (paths::NOISE_UPPER, "noise, upper", BAND * noise),
         (paths::NOISE_LOWER, "noise, lower", -BAND * noise),
     ] {
-        let entity = at(root, path);
-        let style = SeriesLines::new().with_names([name]);
-        let style = style.with_colors([color(palette::BORDER)]).with_widths([1.0]);
-        chunks.push_static(entity.clone(), &style)?;
         let ends = layout.trials.iter().flat_map(|t| [t.moment_of(1), t.moment_of(t.trial.len())]);
-        let index: Index = ends.collect();
-        let values = Scalars::new(vec![level; index.len()]);
-        chunks.push(entity, index.without_segment(), values.columns_of_unit_batches()?)?;
+        let index = ends.collect::<Index>().without_segment();
+        let levels = vec![Some(level); index.len()];
+        chunks.series(path, &line(name, palette::BORDER, 1.0), (index, levels))?;
+    }
+    Ok(())
+}
+
+/// The sum so far of what each further model's squared residual is larger than the first one's: it
+/// rises where the first model is better.
+fn differences(
+    chunks: &mut Chunks,
+    layout: &JointLayout<'_>,
+    models: &[&ComparedJoint<'_>],
+) -> Result<(), RecordError> {
+    let Some((first, others)) = models.split_first() else { return Ok(()) };
+    for (other, rgb) in others.iter().zip(palette::models().skip(1)) {
+        let mut sum = 0.0;
+        let sums = layout.series(|trial| {
+            let own = trial.residual(first.comparison).iter();
+            let pairs = trial.residual(other.comparison).iter().zip(own);
+            let sums = pairs.map(|(other, own)| {
+                sum += other * other - own * own;
+                Some(sum)
+            });
+            sums.collect()
+        });
+        let name = format!("{} − {}", other.model, first.model);
+        let entity = child(paths::MODEL_DIFFERENCE, other.model);
+        chunks.series(entity, &line(name, rgb, 1.5), sums)?;
     }
     Ok(())
 }
@@ -328,18 +333,12 @@ fn parameters(joint: &Joint, models: &[&ComparedJoint<'_>]) -> Result<String, st
 /// Where `worst` begins on the timeline `sample`; of several trials, which have one clock each, on that
 /// of the record.
 fn on_timeline(layout: &JointLayout<'_>, worst: &WorstSegment) -> String {
-    let of_label = layout.trials.iter().find(|trial| trial.trial.label() == worst.trial);
-    let place = of_label.map(|trial| {
-        let samples = samples_of(worst, trial);
-        let first = *samples.start();
-        if layout.trials.len() > 1 {
-            let clock = |k| clock(trial.time_ns(k) / 1_000_000_000);
-            clock(first)
-        } else {
-            trial.sample(first).to_string()
-        }
-    });
-    place.unwrap_or_default()
+    let Some(trial) = layout.trial_of(&worst.trial) else { return String::new() };
+    let first = *samples_of(worst, trial).start();
+    match layout.trials.len() {
+        1 => trial.sample(first).to_string(),
+        _ => clock(trial.time_ns(first) / 1_000_000_000),
+    }
 }
 
 /// Seconds as the viewer writes them on an axis: `1m20s`.

@@ -4,98 +4,81 @@
 
 use rerun::Color;
 
-const fn rgb(r: u8, g: u8, b: u8) -> (u8, u8, u8) {
-    (r, g, b)
-}
-
 pub(super) type Rgb = (u8, u8, u8);
 
 /// What drove the joint.
-pub(super) const INPUT: Rgb = rgb(240, 228, 66);
+pub(super) const INPUT: Rgb = (240, 228, 66);
 /// What was measured.
-pub(super) const RAW: Rgb = rgb(150, 150, 150);
+pub(super) const RAW: Rgb = (150, 150, 150);
 /// What the lines were fitted to.
-pub(super) const SMOOTHED: Rgb = rgb(86, 180, 233);
+pub(super) const SMOOTHED: Rgb = (86, 180, 233);
 /// The candidate under the cursor.
-pub(super) const CANDIDATE: Rgb = rgb(255, 165, 40);
+pub(super) const CANDIDATE: Rgb = (255, 165, 40);
 /// Accepted.
-pub(super) const ACCEPTED: Rgb = rgb(0, 190, 140);
+pub(super) const ACCEPTED: Rgb = (0, 190, 140);
 /// Rejected.
-pub(super) const REJECTED: Rgb = rgb(235, 85, 60);
+pub(super) const REJECTED: Rgb = (235, 85, 60);
 /// The error curve.
-pub(super) const ERROR: Rgb = rgb(204, 121, 167);
+pub(super) const ERROR: Rgb = (204, 121, 167);
 /// Borders of a segment.
-pub(super) const BORDER: Rgb = rgb(225, 225, 225);
+pub(super) const BORDER: Rgb = (225, 225, 225);
 /// The candidate that comes next: no revision has this colour.
-pub(super) const PROPOSED: Rgb = rgb(170, 255, 80);
+pub(super) const PROPOSED: Rgb = (170, 255, 80);
 /// What was measured, beside revisions.
-pub(super) const MEASURED: Rgb = rgb(200, 205, 210);
+pub(super) const MEASURED: Rgb = (200, 205, 210);
 /// What noise alone would leave.
-pub(super) const NOISE: Rgb = rgb(86, 180, 233);
+pub(super) const NOISE: Rgb = (86, 180, 233);
 /// A step of the input up.
-pub(super) const UP: Rgb = rgb(95, 160, 255);
+pub(super) const UP: Rgb = (95, 160, 255);
 /// A step of the input down.
-pub(super) const DOWN: Rgb = rgb(240, 150, 195);
+pub(super) const DOWN: Rgb = (240, 150, 195);
 /// Half of what was found lies there.
-pub(super) const BAND: Rgb = rgb(40, 50, 58);
+pub(super) const BAND: Rgb = (40, 50, 58);
 /// Behind what a model was not fitted to.
-pub(super) const UNSEEN_GROUND: Rgb = rgb(34, 38, 44);
+pub(super) const UNSEEN_GROUND: Rgb = (34, 38, 44);
 /// Behind where a model fails.
-pub(super) const FAILS_GROUND: Rgb = rgb(74, 30, 26);
+pub(super) const FAILS_GROUND: Rgb = (74, 30, 26);
 /// Grid lines.
-pub(super) const GRID: Rgb = rgb(60, 62, 66);
+pub(super) const GRID: Rgb = (60, 62, 66);
+
+/// Models, one after the other, and what their colours are called; from the eleventh on they repeat.
+const MODELS: [(Rgb, &str); 10] = [
+    ((230, 159, 0), "orange"),
+    ((0, 158, 115), "green"),
+    ((204, 121, 167), "pink"),
+    ((213, 94, 0), "vermilion"),
+    ((120, 190, 255), "light blue"),
+    ((240, 228, 66), "yellow"),
+    ((160, 120, 240), "violet"),
+    ((150, 220, 120), "light green"),
+    ((255, 150, 150), "salmon"),
+    ((0, 200, 210), "turquoise"),
+];
+
+/// The colours of models, one after the other.
+pub(super) fn models() -> impl Iterator<Item = Rgb> {
+    MODELS.into_iter().map(|(rgb, _)| rgb).cycle()
+}
 
 /// The model or revision of this number among those of a joint: it has this colour everywhere.
 pub(super) fn model(number: usize) -> Rgb {
-    models().nth(number % NAMES.len()).unwrap_or(BORDER)
+    MODELS[number % MODELS.len()].0
 }
 
 /// What that colour is called.
 pub(super) fn name(number: usize) -> &'static str {
-    NAMES.get(number % NAMES.len()).copied().unwrap_or_default()
+    MODELS[number % MODELS.len()].1
 }
-
-/// Models, one after the other; from the eleventh on they repeat.
-pub(super) fn models() -> impl Iterator<Item = Rgb> {
-    [
-        rgb(230, 159, 0),
-        rgb(0, 158, 115),
-        rgb(204, 121, 167),
-        rgb(213, 94, 0),
-        rgb(120, 190, 255),
-        rgb(240, 228, 66),
-        rgb(160, 120, 240),
-        rgb(150, 220, 120),
-        rgb(255, 150, 150),
-        rgb(0, 200, 210),
-    ]
-    .into_iter()
-    .cycle()
-}
-
-/// What the colours of [`models`] are called.
-const NAMES: [&str; 10] = [
-    "orange",
-    "green",
-    "pink",
-    "vermilion",
-    "light blue",
-    "yellow",
-    "violet",
-    "light green",
-    "salmon",
-    "turquoise",
-];
 
 /// Models that a title has room to name with their colours.
 pub(super) const NAMED: usize = 3;
 
 /// Another result beside this one.
-pub(super) const OTHER: Rgb = rgb(180, 140, 255);
+pub(super) const OTHER: Rgb = (180, 140, 255);
 
 /// Results beside the first one; from the third on they repeat.
 pub(super) fn others() -> impl Iterator<Item = Rgb> {
-    [OTHER, rgb(255, 190, 150)].into_iter().cycle()
+    [OTHER, (255, 190, 150)].into_iter().cycle()
 }
 
 /// A darker shade of a colour.
@@ -109,17 +92,17 @@ pub(super) fn color((r, g, b): Rgb) -> Color {
 }
 
 /// A setting whose delay is that of most.
-pub(super) const SAME: Rgb = rgb(105, 112, 120);
+pub(super) const SAME: Rgb = (105, 112, 120);
 /// Such a setting in a picture of all settings, where it is the ground.
-pub(super) const SAME_GROUND: Rgb = rgb(58, 64, 71);
+pub(super) const SAME_GROUND: Rgb = (58, 64, 71);
 /// A setting with a longer delay.
-pub(super) const LONGER: Rgb = rgb(240, 140, 30);
+pub(super) const LONGER: Rgb = (240, 140, 30);
 /// A setting with a shorter delay.
-pub(super) const SHORTER: Rgb = rgb(70, 170, 240);
+pub(super) const SHORTER: Rgb = (70, 170, 240);
 /// A setting that does not accept a step.
-pub(super) const SILENT: Rgb = rgb(0, 0, 0);
+pub(super) const SILENT: Rgb = (0, 0, 0);
 /// The setting or the step under the cursor.
-pub(super) const HERE: Rgb = rgb(255, 255, 255);
+pub(super) const HERE: Rgb = (255, 255, 255);
 
 /// So much of the way from one colour to another.
 pub(super) fn between(from: Rgb, to: Rgb, part: f64) -> Rgb {

@@ -1,54 +1,34 @@
 //! Where the cursor is: a line above plots that do not say it themselves, or on which timeline
 //! they run where they have nothing.
 
-use rerun::{EntityPath, TextDocument};
-
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::markdown::plain;
-use super::paths::{self, at};
+use super::paths;
 use crate::wording::to_place;
 
 /// Adds `/place`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
-    let entity = at(root, paths::PLACE);
+pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
+    let mut steps = layout.segments().peekable();
     // The first row of all: a viewer that knows a timeline begins at its first tick, and chooses
     // among those that it knows.
-    let opening = match layout.segments().next() {
-        None => WITHOUT_STEPS,
-        Some(_) if layout.first.is_compared => OPENING_COMPARED,
-        Some(_) => OPENING,
+    let (opening, start) = match steps.peek() {
+        None => (WITHOUT_STEPS, WITHOUT_STEPS),
+        Some(_) if layout.first.is_compared => (OPENING_COMPARED, BEFORE),
+        Some(_) => (OPENING, BEFORE),
     };
-    let opening = std::iter::once(opening.to_owned());
-    push(chunks, entity.clone(), Index::before_all(layout.first), opening)?;
-    let start = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
-    let steps = layout.segments().map(|(trial, segment)| trial.opening(segment));
-    let index: Index = start.take(1).chain(steps).collect();
-    let steps = layout.segments().map(|(trial, segment)| words(layout, trial, segment));
-    let start =
-        if layout.segments().next().is_none() { WITHOUT_STEPS } else { "before the first step" };
-    let texts: Vec<_> = std::iter::once(start.to_owned()).chain(steps).collect();
-    let texts = texts.into_iter().take(index.len());
-    push(chunks, entity.clone(), index.without_segment(), texts)?;
-    let hint = std::iter::once(HINT.to_owned());
-    push(chunks, entity, Index::off_the_record(layout.first), hint)
+    chunks.pages(paths::PLACE, Index::before_all(layout.first), [opening.to_owned()])?;
+    let start = layout.start().map(|moment| (moment, start.to_owned()));
+    let steps =
+        steps.map(|(trial, segment)| (trial.opening(segment), words(layout, trial, segment)));
+    let (moments, texts): (Vec<_>, Vec<_>) = start.into_iter().chain(steps).unzip();
+    let index = moments.into_iter().collect::<Index>().without_segment();
+    chunks.pages(paths::PLACE, index, texts)?;
+    chunks.pages(paths::PLACE, Index::off_the_record(layout.first), [HINT.to_owned()])
 }
 
-fn push(
-    chunks: &mut Chunks,
-    entity: EntityPath,
-    index: Index,
-    texts: impl Iterator<Item = String>,
-) -> Result<(), RecordError> {
-    let markdown = std::iter::repeat_n("text/markdown", index.len());
-    let texts = TextDocument::update_fields().with_many_text(texts).with_many_media_type(markdown);
-    chunks.push(entity, index, texts.columns_of_unit_batches()?)
-}
+const BEFORE: &str = "before the first step";
 
 const OPENING: &str = "**The most doubtful decision**: the right arrow goes through its candidates, \
 then on to the first step.";
@@ -78,12 +58,11 @@ fn words(layout: &JointLayout<'_>, trial: &TrialLayout<'_>, segment: &SegmentLay
     if layout.trials.len() < 2 {
         return format!("{in_trial} · {AXIS}");
     }
-    let joined = trial.time_ns(p) as f64 * 1e-9;
     format!(
         "{}, {in_trial} **of the trial** · {} at {} s **of all trials in a row**, as in the plots · \
          {AXIS}",
         plain(trial.trial.label()),
         trial.sample(p),
-        seconds(joined)
+        seconds(trial.seconds(p))
     )
 }

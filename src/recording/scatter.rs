@@ -1,13 +1,13 @@
 //! The residual against what it may depend on: input, angle, speed, time since the step.
 
 use rerun::datatypes::Vec2D;
-use rerun::{EntityPath, LineStrips2D, Points2D};
 
 use super::canvas::{Plot, SHEET, Span};
 use super::chunk::Chunks;
 use super::error::RecordError;
-use super::palette::{self, color};
-use super::paths::{at, of_model, scatter};
+use super::layers::Layers;
+use super::palette;
+use super::paths::{self, of_model};
 use super::sheet::Sheet;
 use crate::numerics::quantile;
 use crate::report::ComparedJoint;
@@ -33,7 +33,6 @@ struct Pairs {
 /// those of the one that is `judged`, the curves those of all.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     models: &[&ComparedJoint<'_>],
     judged: &ComparedJoint<'_>,
 ) -> Result<(), RecordError> {
@@ -51,12 +50,11 @@ pub(super) fn add(
             curves.extend(all.get(place).map(|pairs| curve(&plot, pairs)));
         }
     }
-    sheet.push(chunks, root)?;
-    let dots = Points2D::new(points).with_colors([color(palette::RAW)]).with_radii([1.2]);
-    chunks.push_static(at(root, scatter::POINTS), &dots)?;
+    let mut layers = Layers::fixed(chunks, paths::SCATTER);
+    layers.sheets([sheet])?;
+    layers.points("points", palette::RAW, 1.2, [points])?;
     for ((curves, rgb), number) in curves.into_iter().zip(palette::models()).zip(0..) {
-        let strips = LineStrips2D::new(curves).with_colors([color(rgb)]).with_radii([2.4]);
-        chunks.push_static(of_model(root, scatter::CURVE, number), &strips)?;
+        layers.strips(&of_model("curve", number), rgb, 2.4, [curves])?;
     }
     Ok(())
 }

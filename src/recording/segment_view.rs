@@ -6,20 +6,21 @@
 //! so that nothing leaks into the next segment.
 
 use rerun::datatypes::Vec2D;
-use rerun::{EntityPath, LineStrips2D, Points2D};
 
-use super::beside::{Other, decided_in_short, in_short};
-use super::canvas::{CURVE_POINTS, HALF_LETTER, Labels, Plot, SHEET, Span, simplified, thinned_to};
-use super::chunk::{Chunks, Index};
+use super::beside::{Other, Shown};
+use super::canvas::{
+    CURVE_POINTS, HALF_LETTER, Labels, Plot, SHEET, Span, diamond, simplified, whole_ticks,
+};
+use super::chunk::Chunks;
 use super::close_up::CloseUp;
 use super::error::RecordError;
+use super::layers::Layers;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
-use super::palette::{self, color};
-use super::paths::{at, drawing};
-use super::rows::Rows;
-use crate::delay::{Candidate, Line, Method, Verdict};
+use super::palette;
+use super::paths;
+use super::sheet::Sheet;
+use crate::delay::{Candidate, Line, Method};
 use crate::diagnosis::sensor_noise;
-use crate::experiment::Joint;
 use crate::figure::segment::SegmentFigure;
 use crate::figure::{Role, power_of_ten};
 use crate::study::StepResult;
@@ -35,76 +36,86 @@ const SIDES: (f32, f32) = (120.0, 960.0);
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
-    joint: &Joint,
     layout: &JointLayout<'_>,
     (method, others): (Method, &[Other<'_>]),
 ) -> Result<(), RecordError> {
     let drawings: Vec<_> =
-        layout.segments().map(|(trial, segment)| Drawing::new(joint, trial, segment)).collect();
-    let root = at(root, drawing::ROOT);
-    let mut sheet = Rows::new(chunks, root.clone(), layout.openings());
-    add_drawings(&mut sheet, &drawings)?;
+        layout.segments().map(|(trial, segment)| Drawing::new(trial, segment)).collect();
+    let mut layers = Layers::rows(chunks, paths::DRAWING, layout.openings());
+    add_drawings(&mut layers, &drawings)?;
     if !others.is_empty() {
-        add_others(&mut sheet, &drawings, method, others)?;
+        add_others(&mut layers, &drawings, method, others)?;
     }
-    add_candidates(chunks, &root, &drawings)
+    add_candidates(chunks, &drawings)
 }
 
 /// What belongs to each segment, without its candidates.
 pub(super) fn add_drawings(
-    sheet: &mut Rows<'_>,
+    sheet: &mut Layers<'_>,
     drawings: &[Drawing<'_, '_>],
 ) -> Result<(), RecordError> {
     let rows = || drawings.iter();
-    sheet.strips(drawing::GRID, palette::GRID, 0.8, rows().map(|d| d.grid().0))?;
-    sheet.texts(drawing::TICKS, palette::BORDER, rows().map(|d| d.grid().1))?;
-    sheet.points(drawing::MEASURED, palette::RAW, 1.6, rows().map(Drawing::measured))?;
-    sheet.points(drawing::CLOSE, palette::MEASURED, 5.0, rows().map(|d| d.close_up.measured()))?;
-    sheet.strips(drawing::SMOOTHED, palette::SMOOTHED, 1.4, rows().map(Drawing::smoothed))?;
-    sheet.strips(drawing::BORDERS, palette::BORDER, 1.2, rows().map(Drawing::borders))?;
-    sheet.strips(drawing::INPUT_STEP, palette::INPUT, 1.6, rows().map(Drawing::input_step))?;
-    sheet.strips(drawing::RESIDUAL, palette::SMOOTHED, 1.4, rows().map(Drawing::residual))?;
-    sheet.strips(drawing::SSE, palette::ERROR, 1.6, rows().map(|d| vec![d.errors()]))?;
+    let (grids, ticks): (Vec<_>, Vec<_>) = rows().map(|d| d.grid().into_parts()).unzip();
+    sheet.strips("grid", palette::GRID, 0.8, grids)?;
+    sheet.texts("ticks", palette::BORDER, ticks)?;
+    sheet.points("measured", palette::RAW, 1.6, rows().map(Drawing::measured))?;
+    sheet.points("close", palette::MEASURED, 5.0, rows().map(|d| d.close_up.measured()))?;
+    sheet.strips("smoothed", palette::SMOOTHED, 1.4, rows().map(Drawing::smoothed))?;
+    sheet.strips("borders", palette::BORDER, 1.2, rows().map(Drawing::borders))?;
+    sheet.strips("input_step", palette::INPUT, 1.6, rows().map(Drawing::input_step))?;
+    sheet.strips("residual", palette::SMOOTHED, 1.4, rows().map(Drawing::residual))?;
+    sheet.strips(
+        "sse",
+        palette::ERROR,
+        1.6,
+        rows().map(|d| vec![d.error.places(d.figure.errors(CURVE_POINTS))]),
+    )?;
     if rows().any(|drawing| drawing.segment.decision.onset.is_some()) {
         let lines = rows().map(Drawing::algorithm_1);
-        sheet.strips(drawing::ALGORITHM_1, palette::BORDER, 1.4, lines)?;
+        sheet.strips("algorithm_1", palette::BORDER, 1.4, lines)?;
     }
     for (path, rgb, role) in [
-        (drawing::ACCEPTED, palette::ACCEPTED, Role::Accepted),
-        (drawing::REJECTED, palette::REJECTED, Role::Rejected),
+        ("accepted", palette::ACCEPTED, Role::Accepted),
+        ("rejected", palette::REJECTED, Role::Rejected),
     ] {
         sheet.strips(path, rgb, 2.4, rows().map(|d| d.chosen(role)))?;
     }
     if rows().any(|drawing| drawing.segment.decision.delay_before_review().is_some()) {
         let before = rows().map(Drawing::before_review);
-        sheet.strips(drawing::BEFORE_REVIEW, palette::BORDER, 1.0, before)?;
+        sheet.strips("before_review", palette::BORDER, 1.0, before)?;
     }
-    sheet.texts(drawing::NAMES, palette::BORDER, rows().map(Drawing::names))?;
+    sheet.texts("names", palette::BORDER, rows().map(Drawing::names))?;
     if rows().any(|drawing| drawing.segment.decision.fine.is_some()) {
-        sheet.strips(drawing::INTERVAL, palette::BORDER, 1.6, rows().map(Drawing::interval))?;
+        sheet.strips("interval", palette::BORDER, 1.6, rows().map(Drawing::interval))?;
     }
     Ok(())
 }
 
 /// What other results say, with a legend of all.
 fn add_others(
-    sheet: &mut Rows<'_>,
+    sheet: &mut Layers<'_>,
     drawings: &[Drawing<'_, '_>],
     method: Method,
     others: &[Other<'_>],
 ) -> Result<(), RecordError> {
-    let legend = Legend { entries: others.len() + 1 };
-    for (path, rgb, accepted) in [
-        (drawing::FIRST_ACCEPTED, palette::ACCEPTED, true),
-        (drawing::FIRST_REJECTED, palette::REJECTED, false),
+    // Texts, one below another, at the bottom of the close-up.
+    let entry = |index: usize, text: Option<String>| {
+        let mut labels = Labels::default();
+        if let Some(text) = text {
+            labels.put_whole(CloseUp::legend_place(index, others.len() + 1), text);
+        }
+        labels
+    };
+    for (path, rgb, role) in [
+        ("first_accepted", palette::ACCEPTED, Role::Accepted),
+        ("first_rejected", palette::REJECTED, Role::Rejected),
     ] {
-        let entry = |drawing: &Drawing<'_, '_>| {
-            let decision = drawing.segment.decision;
-            let is_it = (decision.verdict() == Verdict::Accepted) == accepted;
-            legend.entry(0, is_it.then(|| decided_in_short(method.id(), decision)))
+        let first = |drawing: &Drawing<'_, '_>| {
+            let is_it = drawing.figure.verdict() == role;
+            let result = Shown::of(drawing.segment.decision);
+            entry(0, is_it.then(|| result.in_short(method.id())))
         };
-        sheet.texts(path, rgb, drawings.iter().map(entry))?;
+        sheet.texts(path, rgb, drawings.iter().map(first))?;
     }
     for (index, other) in others.iter().enumerate() {
         let found = |drawing: &Drawing<'_, '_>| {
@@ -114,37 +125,18 @@ fn add_others(
         let strips = |drawing: &Drawing<'_, '_>| {
             found(drawing).map_or_else(Vec::new, |step| drawing.other(step, index))
         };
-        let entry = |drawing: &Drawing<'_, '_>| {
-            let text = found(drawing).map(|step| in_short(other.name, step));
-            legend.entry(index + 1, text)
+        let name = |drawing: &Drawing<'_, '_>| {
+            entry(index + 1, found(drawing).map(|step| Shown::there(step).in_short(other.name)))
         };
-        let [lines, name] = drawing::of_method(index);
-        sheet.strips(&lines, other.rgb, 1.8, drawings.iter().map(strips))?;
-        sheet.texts(&name, other.rgb, drawings.iter().map(entry))?;
+        sheet.strips(&format!("other_{index}"), other.rgb, 1.8, drawings.iter().map(strips))?;
+        sheet.texts(&format!("other_{index}_name"), other.rgb, drawings.iter().map(name))?;
     }
     Ok(())
-}
-
-/// Texts, one below another, at the bottom of the close-up.
-#[derive(Clone, Copy)]
-struct Legend {
-    entries: usize,
-}
-
-impl Legend {
-    fn entry(self, index: usize, text: Option<String>) -> Labels {
-        let mut labels = Labels::default();
-        if let Some(text) = text {
-            labels.put_whole(CloseUp::legend_place(index, self.entries), text);
-        }
-        labels
-    }
 }
 
 /// One segment on its sheet: the output above, what both lines leave of it, the error curve
 /// below; and the close-up beside them.
 pub(super) struct Drawing<'l, 'a> {
-    joint: &'l Joint,
     trial: &'l TrialLayout<'a>,
     segment: &'l SegmentLayout<'a>,
     figure: SegmentFigure<'l>,
@@ -156,11 +148,7 @@ pub(super) struct Drawing<'l, 'a> {
 }
 
 impl<'l, 'a> Drawing<'l, 'a> {
-    pub(super) fn new(
-        joint: &'l Joint,
-        trial: &'l TrialLayout<'a>,
-        segment: &'l SegmentLayout<'a>,
-    ) -> Self {
+    pub(super) fn new(trial: &'l TrialLayout<'a>, segment: &'l SegmentLayout<'a>) -> Self {
         let figure = SegmentFigure::new(trial.trial, segment.decision);
         let (first, last) = figure.window;
         let x = Span::new(first as f64, last as f64);
@@ -170,9 +158,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let left = figure.residual(trial.output());
         let heights = left.iter().map(|(_, y)| *y).chain([0.0]);
         let residual = Plot::within(SIDES, 494.0..=556.0, x, Span::around(heights, 0.1));
-        let noise = sensor_noise(&joint.trials);
+        let noise = sensor_noise(&trial.estimated.joint.trials);
         Self {
-            joint,
             trial,
             segment,
             figure,
@@ -203,25 +190,19 @@ impl<'l, 'a> Drawing<'l, 'a> {
         })
     }
 
-    fn grid(&self) -> (Vec<Vec<Vec2D>>, Labels) {
-        let x_ticks = self.output.x_span().ticks(5.0);
-        let x_ticks: Vec<f64> = x_ticks.into_iter().filter(|k| k.fract() == 0.0).collect();
-        let mut labels = Labels::default();
-        let named = |ticks: Vec<f64>| ticks.into_iter().map(|y| (y, number(y))).collect::<Vec<_>>();
-        let y_ticks = named(self.output.y_span().ticks(5.0));
-        let mut strips = self.output.grid(&x_ticks, &y_ticks, &mut labels);
+    fn grid(&self) -> Sheet {
+        let mut sheet = Sheet::default();
+        let x_ticks = whole_ticks(&self.output, 5.0);
+        sheet.outline(&self.output, &x_ticks, &self.output.y_ticks(5.0));
         let (_, residual) = &self.residual;
-        let ticks = named(apart(residual.y_span().ticks(2.0), residual));
-        strips.extend(residual.grid(&x_ticks, &ticks, &mut labels));
-        strips.push(residual.level(0.0).to_vec());
+        sheet.outline(residual, &x_ticks, &apart(residual.y_ticks(2.0), residual));
+        sheet.grid.push(residual.level(0.0).to_vec());
         let errors = self.error.y_span().ticks(3.0);
         let errors: Vec<_> = errors.into_iter().map(|e| (e, number(power_of_ten(e)))).collect();
-        strips.extend(self.error.grid(&x_ticks, &errors, &mut labels));
-        for k in x_ticks {
-            labels.put_whole(self.error.below(k, 4.0), number(k));
-        }
-        strips.extend(self.close_up.grid(&mut labels));
-        (strips, labels)
+        sheet.outline(&self.error, &x_ticks, &errors);
+        sheet.below(&self.error, 4.0, &x_ticks);
+        self.close_up.grid(&mut sheet);
+        sheet
     }
 
     fn borders(&self) -> Vec<Vec<Vec2D>> {
@@ -242,15 +223,10 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let q = self.segment.decision.shown_candidate().map_or(0.0, |best| best.breakpoint as f64);
         let parts = all.split_at(all.partition_point(|(k, _)| *k < q));
         let curve = |part: &[(f64, f64)]| {
-            let heights: Vec<f64> = part.iter().map(|(_, y)| *y).collect();
-            let kept = thinned_to(&heights, CURVE_POINTS).into_iter();
-            simplified(plot.places(kept.filter_map(|index| part.get(index).copied())))
+            let (places, heights): (Vec<f64>, Vec<f64>) = part.iter().copied().unzip();
+            plot.curve(&heights, CURVE_POINTS, |index| places[index])
         };
         [parts.0, parts.1].map(curve).into_iter().filter(|curve| curve.len() > 1).collect()
-    }
-
-    fn errors(&self) -> Vec<Vec2D> {
-        self.error.places(self.figure.errors(CURVE_POINTS))
     }
 
     fn error_at(&self, candidate: &Candidate) -> Vec2D {
@@ -307,18 +283,12 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let (low, high) = step.interval.unwrap_or((0.0, delay));
         // Below the edge, so that it is not taken for the first method's above.
         let depth = -10.0 - 12.0 * index as f32;
-        let tick = |k: f64| [depth - 4.0, depth + 4.0].map(|up| self.output.above(k, up)).to_vec();
-        let [low, high] = [low, high].map(|by| within(p + by));
         let lines =
             step.lines.filter(|_| step.p == own).map_or_else(Vec::new, |[before, after]| {
                 vec![vec![at(&before, start), at(&before, q)], vec![at(&after, q), at(&after, end)]]
             });
-        let bar = [
-            self.output.vertical(q).to_vec(),
-            tick(low),
-            [low, high].map(|k| self.output.above(k, depth)).to_vec(),
-            tick(high),
-        ];
+        let bar = self.output.interval([p + low, p + high], depth, 4.0);
+        let bar = std::iter::once(self.output.vertical(q).to_vec()).chain(bar);
         lines.into_iter().chain(bar).chain(self.close_up.vertical(p + delay)).collect()
     }
 
@@ -334,11 +304,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
     fn interval(&self) -> Vec<Vec<Vec2D>> {
         let decision = self.segment.decision;
         let Some(fine) = decision.fine else { return Vec::new() };
-        let Span { low: first, high: last } = self.output.x_span();
-        let end = |delay: f64| (decision.input_step.sample as f64 + delay).clamp(first, last);
-        let [low, high] = [end(fine.low), end(fine.high)];
-        let tick = |k: f64| [3.0, 13.0].map(|up| self.output.above(k, up)).to_vec();
-        vec![tick(low), [low, high].map(|k| self.output.above(k, 8.0)).to_vec(), tick(high)]
+        let p = decision.input_step.sample as f64;
+        self.output.interval([p + fine.low, p + fine.high], 8.0, 5.0)
     }
 
     /// The chosen pair if its verdict is the wanted one.
@@ -405,7 +372,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
             CloseUp::title(&mut labels, text);
         }
         self.name_places(&mut labels);
-        let output = bracketed("output", self.joint.output_unit.as_deref());
+        let output = bracketed("output", self.trial.estimated.joint.output_unit.as_deref());
         labels.put_whole(Vec2D::new(62.0, 22.0), output);
         labels.put(Vec2D::new(75.0, 442.0), "residual".to_owned());
         let least = self.segment.decision.shown_candidate();
@@ -421,61 +388,40 @@ fn collide(a: (f32, f32), b: (f32, f32)) -> bool {
 }
 
 /// Ticks without those whose text would cover that of the one before, in a small window.
-fn apart(ticks: Vec<f64>, plot: &Plot) -> Vec<f64> {
+fn apart(ticks: Vec<(f64, String)>, plot: &Plot) -> Vec<(f64, String)> {
     /// Height of a line of text on the sheet in a window of 1280 points.
     const LINE: f32 = 46.0;
-    let mut kept: Vec<f64> = Vec::new();
+    let mut kept: Vec<(f64, String)> = Vec::new();
     for tick in ticks.into_iter().rev() {
-        if kept.last().is_none_or(|last| (plot.y(*last) - plot.y(tick)).abs() >= LINE) {
+        if kept.last().is_none_or(|(last, _)| (plot.y(*last) - plot.y(tick.0)).abs() >= LINE) {
             kept.push(tick);
         }
     }
     kept
 }
 
-fn diamond(Vec2D([x, y]): Vec2D, radius: f32) -> Vec<Vec2D> {
-    let corner = |dx: f32, dy: f32| Vec2D::new(x + dx * radius, y + dy * radius);
-    [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]
-        .map(|(dx, dy)| corner(dx, dy))
-        .to_vec()
-}
-
 /// A row per candidate; empty ones at the opening and the verdict tick.
-fn add_candidates(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    drawings: &[Drawing<'_, '_>],
-) -> Result<(), RecordError> {
-    let mut index = Index::default();
-    let (mut strips, mut marks) = (Vec::new(), Labels::default());
-    let (mut strip_lengths, mut mark_lengths) = (Vec::new(), Vec::new());
-    for drawing in drawings {
+fn add_candidates(chunks: &mut Chunks, drawings: &[Drawing<'_, '_>]) -> Result<(), RecordError> {
+    let ticks = drawings.iter().flat_map(|drawing| {
         let (trial, segment) = (drawing.trial, drawing.segment);
-        let p = signed(segment.decision.input_step.sample);
-        index.extend([trial.opening(segment)]);
-        strip_lengths.push(0);
-        mark_lengths.push(0);
-        for (moment, candidate) in trial.candidates(segment) {
-            mark_lengths.push(1);
-            index.extend([trial.within(segment, moment)]);
-            let drawn = drawing.candidate(&candidate);
-            strip_lengths.push(drawn.len());
-            strips.extend(drawn);
+        trial
+            .ticks(segment)
+            .map(move |(moment, candidate)| (trial.within(segment, moment), (drawing, candidate)))
+    });
+    let (moments, rows): (Vec<_>, Vec<_>) = ticks.unzip();
+    let lines = rows.iter().map(|(drawing, candidate)| {
+        candidate.map_or_else(Vec::new, |candidate| drawing.candidate(&candidate))
+    });
+    let marks = rows.iter().map(|(drawing, candidate)| {
+        let mut marks = Labels::default();
+        if let Some(candidate) = candidate {
+            let p = signed(drawing.segment.decision.input_step.sample);
             let (q, sse) = (signed(candidate.breakpoint), number(candidate.sse));
-            marks.put(drawing.error_at(&candidate), format!("q {q}, δ {}, SSE {sse}", q - p));
+            marks.put(drawing.error_at(candidate), format!("q {q}, δ {}, SSE {sse}", q - p));
         }
-        index.extend([trial.within(segment, trial.verdict(segment))]);
-        strip_lengths.push(0);
-        mark_lengths.push(0);
-    }
-    let lines = at(root, drawing::CANDIDATE);
-    let style = LineStrips2D::update_fields().with_colors([color(palette::CANDIDATE)]);
-    chunks.push_static(lines.clone(), &style.with_radii([2.0]))?;
-    let columns = LineStrips2D::update_fields().with_strips(strips).columns(strip_lengths)?;
-    chunks.push(lines, index.clone(), columns)?;
-    let mark = at(root, drawing::CANDIDATE_MARK);
-    let style = Points2D::update_fields().with_colors([color(palette::CANDIDATE)]);
-    chunks.push_static(mark.clone(), &style.with_radii([7.0]).with_show_labels(true))?;
-    let points = Points2D::update_fields().with_positions(marks.places).with_labels(marks.texts);
-    chunks.push(mark, index, points.columns(mark_lengths)?)
+        marks
+    });
+    let mut layers = Layers::rows(chunks, paths::DRAWING, moments.into_iter().collect());
+    layers.strips("candidate", palette::CANDIDATE, 2.0, lines)?;
+    layers.named_points("candidate/mark", palette::CANDIDATE, 7.0, marks)
 }

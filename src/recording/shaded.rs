@@ -58,8 +58,8 @@ pub(super) fn areas(layout: &JointLayout<'_>, plot: &Plot, from: f32, spans: &Sp
     /// Areas that are as near as this on the sheet are one.
     const NEAR: f32 = 1.0;
     let ends = spans.iter().filter_map(|(index, span)| {
-        let trial = layout.trials.iter().find(|trial| trial.index == *index)?;
-        let x = |k: usize| plot.x(trial.time_ns(k) as f64 * 1e-9);
+        let trial = layout.trial(*index)?;
+        let x = |k: usize| plot.x(trial.seconds(k));
         Some((x(span.start + 1), x(span.end)))
     });
     let mut areas: Vec<(f32, f32)> = Vec::new();

@@ -2,18 +2,17 @@
 
 use std::iter::once;
 
-use rerun::{Color, EntityPath, StateChange, StateConfiguration, TextDocument, TextLog};
+use rerun::{Color, StateConfiguration};
 
-use super::beside::{Other, decided_row, row};
+use super::beside::{Other, Shown};
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
-use super::layout::{JointLayout, SegmentLayout, TrialLayout};
+use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::palette::{self, color};
-use super::paths::{self, at};
+use super::paths;
+use crate::delay::Verdict;
 use crate::delay::{Check, Condition, Decision, FineDelay, OnsetModel, Outcome};
-use crate::delay::{Settings, Tracking, Verdict};
-use crate::experiment::Joint;
 use crate::numerics::quantile;
 use crate::report::{EstimatedJoint, JointSummary, dead_time_sentences};
 use crate::wording::{counted, doubt_percent, number, remedy_text, rounded, samples_text};
@@ -21,29 +20,19 @@ use crate::wording::{counted, doubt_percent, number, remedy_text, rounded, sampl
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
-    estimated: EstimatedJoint<'_>,
     layout: &JointLayout<'_>,
     others: &[Other<'_>],
 ) -> Result<(), RecordError> {
-    let (joint, settings) = (estimated.joint, &estimated.estimate.settings);
+    let estimated = layout.estimated;
     let segments: Vec<_> = layout.segments().collect();
     let opening = layout.openings();
     let typical = typical_delay(estimated);
     let text = |(trial, segment): &Placed<'_, '_>| {
-        let methods = methods(trial, segment, settings, others);
-        document(Facts { joint, trial, segment, settings, typical: typical.as_deref() }, &methods)
+        let methods = methods(trial, segment, others);
+        Facts { trial, segment, typical: typical.as_deref() }.page(&methods)
     };
-    let texts: Vec<String> = segments.iter().map(text).collect();
-    let markdown = std::iter::repeat_n("text/markdown", texts.len());
-    let documents =
-        TextDocument::update_fields().with_many_text(texts).with_many_media_type(markdown);
-    let verdict = |(_, segment): &Placed<'_, '_>| segment.decision.verdict().to_string();
-    let states: Vec<String> = segments.iter().map(verdict).collect();
-    let states = StateChange::new().with_state(states).columns_of_unit_batches()?;
-    let entity = at(root, paths::VERDICT);
     if segments.is_empty() {
-        let name = plain(&joint.name);
+        let name = plain(&layout.joint.name);
         let text = match dead_time_sentences(&estimated).as_slice() {
             [] => {
                 let why = JointSummary::of(estimated).without_steps();
@@ -57,13 +46,14 @@ pub(super) fn add(
             }
             [moves] => format!("### {name}\n- {moves}\n"),
         };
-        chunks.push_static(entity.clone(), &TextDocument::from_markdown(text))?;
+        chunks.page(paths::VERDICT, text)?;
     }
-    let columns = documents.columns_of_unit_batches()?.chain(states);
-    chunks.push(entity.clone(), opening.clone(), columns)?;
-    chunks.push_static(entity, &lane_colors())?;
-    add_log(chunks, root, joint, (&segments, layout.last_revision))?;
-    add_lanes(chunks, root, layout, &segments, opening)
+    let states = segments.iter().map(|(_, segment)| segment.decision.verdict().to_string());
+    chunks.pages(paths::VERDICT, opening.clone(), segments.iter().map(text))?;
+    chunks.states(paths::VERDICT, opening.clone(), states)?;
+    chunks.push_static(paths::VERDICT, &lane_colors())?;
+    add_log(chunks, &segments, layout.last_revision)?;
+    add_lanes(chunks, layout, &segments, opening)
 }
 
 fn lane_colors() -> StateConfiguration {
@@ -77,30 +67,25 @@ fn lane_colors() -> StateConfiguration {
     StateConfiguration::new().with_values(values).with_labels(labels).with_colors(colors)
 }
 
-type Placed<'l, 'a> = (&'l TrialLayout<'a>, &'l SegmentLayout<'a>);
-
 /// One line per segment, at its opening tick: a click on it goes there, and the right arrow then to
 /// its candidates.
 fn add_log(
     chunks: &mut Chunks,
-    root: &EntityPath,
-    joint: &Joint,
-    (segments, last_revision): (&[Placed<'_, '_>], Option<i64>),
+    segments: &[Placed<'_, '_>],
+    last_revision: Option<i64>,
 ) -> Result<(), RecordError> {
     let index: Index = segments.iter().map(|(trial, segment)| trial.opening(segment)).collect();
-    let lines: Vec<_> = segments.iter().map(|(t, s)| log_line(joint, t, s)).collect();
     // On the timeline of revisions, too, where a click leads away from.
-    let index = index.at_revision(last_revision);
-    let accepted = |segment: &SegmentLayout<'_>| segment.decision.verdict() == Verdict::Accepted;
-    let levels = segments.iter().map(|(_, s)| if accepted(s) { "INFO" } else { "WARN" });
-    let log = TextLog::update_fields().with_many_text(lines).with_many_level(levels);
-    chunks.push(at(root, paths::VERDICT_LOG), index, log.columns_of_unit_batches()?)
+    let index = index.all_at("revision", last_revision);
+    let level = |segment: &SegmentLayout<'_>| if segment.is_accepted() { "INFO" } else { "WARN" };
+    let lines = segments.iter().map(|(t, s)| (Some(level(s)), log_line(t, s)));
+    chunks.lines(paths::VERDICT_LOG, index, lines)
 }
 
-fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+fn log_line(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let decision = segment.decision;
     let trials =
-        if joint.trials.len() > 1 { format!("{} ", trial.trial.label()) } else { String::new() };
+        if trial.is_one_of_several() { format!("{} ", trial.trial.label()) } else { String::new() };
     let step = format!("{trials}step {:>3}", decision.number);
     let verdict = verdict(trial, decision);
     let at = format!("p {}", decision.input_step.sample);
@@ -113,26 +98,9 @@ fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>)
     format!("{step}  {verdict}   ({at}{found}; doubt {doubt})")
 }
 
-/// Which step of which trial it is.
-pub(super) fn step_of(
-    joint: &Joint,
-    trial: &TrialLayout<'_>,
-    segment: &SegmentLayout<'_>,
-) -> String {
-    let number = segment.decision.number;
-    match joint.trials.len() {
-        1 => format!("step {number}"),
-        _ => format!("{}, step {number}", trial.trial.label()),
-    }
-}
-
 /// A step and its verdict.
-pub(super) fn in_short(
-    joint: &Joint,
-    trial: &TrialLayout<'_>,
-    segment: &SegmentLayout<'_>,
-) -> String {
-    format!("{} {}", step_of(joint, trial, segment), verdict(trial, segment.decision))
+pub(super) fn in_short(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+    format!("{} {}", trial.step(segment), verdict(trial, segment.decision))
 }
 
 fn verdict(trial: &TrialLayout<'_>, decision: &Decision) -> String {
@@ -161,7 +129,6 @@ fn seconds(decision: &Decision, samples: f64, period: f64) -> String {
 
 fn add_lanes(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     segments: &[Placed<'_, '_>],
     opening: Index,
@@ -173,51 +140,20 @@ fn add_lanes(
         if n % 2 == 0 { Color::from_rgb(72, 84, 96) } else { Color::from_rgb(98, 110, 122) }
     });
     let style = StateConfiguration::new().with_values(names.clone()).with_colors(greys);
-    let entity = at(root, paths::SEGMENT);
-    chunks.push_static(entity.clone(), &style)?;
-    chunks.push(
-        entity,
-        opening,
-        StateChange::new().with_state(names).columns_of_unit_batches()?,
-    )?;
-    let revision = layout.first.revision.into_iter();
+    chunks.push_static(paths::SEGMENT, &style)?;
+    chunks.states(paths::SEGMENT, opening, names)?;
     let hint = ["along decision, segment, sample or time: choose it at the bottom left"];
-    let hint = StateChange::new().with_state(hint).columns_of_unit_batches()?;
     // On the timeline of revisions the lane has nothing else.
-    chunks.push_revisions(at(root, paths::SEGMENT), revision.collect(), hint)?;
+    chunks.states(paths::SEGMENT, Index::on("revision", layout.first.revision), hint)?;
     let starts = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
-    let labels: Vec<_> = layout.trials.iter().map(|trial| trial.trial.label().to_owned()).collect();
-    let states = StateChange::new().with_state(labels).columns_of_unit_batches()?;
-    chunks.push(at(root, paths::TRIAL), starts.collect(), states)
-}
-
-/// The page beside the drawing: verdict first, then what it was made of.
-fn document(facts: Facts<'_, '_>, methods: &str) -> String {
-    let Facts { joint, trial, segment, .. } = facts;
-    let decision = segment.decision;
-    let of = trial.segments.len();
-    let in_trial = match joint.trials.len() {
-        1 => String::new(),
-        _ => format!(", trial {}", plain(trial.trial.label())),
-    };
-    let name = plain(&joint.name);
-    let title = format!("### {name}{in_trial}: step {} of {of}", decision.number);
-    let headline = facts.headline();
-    let (doubt, conditions, quantities) = (facts.doubt(of), facts.conditions(), facts.quantities());
-    let asked = facts.asked();
-    format!("{title}\n{headline}\n\n{doubt}\n{methods}\n{conditions}\n\n{quantities}\n\n{asked}\n")
+    let labels = layout.trials.iter().map(|trial| trial.trial.label());
+    chunks.states(paths::TRIAL, starts.collect(), labels)
 }
 
 /// The page on a decision, without other results.
-pub(super) fn page(
-    estimated: EstimatedJoint<'_>,
-    trial: &TrialLayout<'_>,
-    segment: &SegmentLayout<'_>,
-) -> String {
-    let settings = &estimated.estimate.settings;
-    let typical = typical_delay(estimated);
-    let typical = typical.as_deref();
-    document(Facts { joint: estimated.joint, trial, segment, settings, typical }, "")
+pub(super) fn page(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+    let typical = typical_delay(trial.estimated);
+    Facts { trial, segment, typical: typical.as_deref() }.page("")
 }
 
 /// The median delay of the accepted steps of a joint, and the range of most of them: what one of
@@ -238,34 +174,49 @@ fn typical_delay(EstimatedJoint { joint, estimate }: EstimatedJoint<'_>) -> Opti
 }
 
 /// The table of all results, where there are several.
-fn methods(
-    trial: &TrialLayout<'_>,
-    segment: &SegmentLayout<'_>,
-    settings: &Settings,
-    others: &[Other<'_>],
-) -> String {
+fn methods(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>, others: &[Other<'_>]) -> String {
     let (label, p) = (trial.trial.label(), segment.decision.input_step.sample);
-    let found = |other: &Other<'_>| Some(row(&plain(other.name), &other.pair(label, p)?.there));
+    let found = |other: &Other<'_>| {
+        Some(Shown::there(&other.pair(label, p)?.there).row(&plain(other.name)))
+    };
     let others: Vec<String> = others.iter().filter_map(found).collect();
     if others.is_empty() {
         return String::new();
     }
-    let first = decided_row(&format!("{}, here", settings.method), segment.decision);
+    let first = Shown::of(segment.decision)
+        .row(&format!("{}, here", trial.estimated.estimate.settings.method));
     let others = others.join("\n");
     format!("\n| result | δ, samples | verdict |\n|---|---|---|\n{first}\n{others}\n")
 }
 
 #[derive(Clone, Copy)]
 struct Facts<'l, 'a> {
-    joint: &'l Joint,
     trial: &'l TrialLayout<'a>,
     segment: &'l SegmentLayout<'a>,
-    settings: &'l Settings,
     /// The delays of all accepted steps of the joint, in words.
     typical: Option<&'l str>,
 }
 
 impl Facts<'_, '_> {
+    /// The page beside the drawing: verdict first, then what it was made of.
+    fn page(&self, methods: &str) -> String {
+        let (of, number) = (self.trial.segments.len(), self.segment.decision.number);
+        let in_trial = if self.trial.is_one_of_several() {
+            format!(", trial {}", plain(self.trial.trial.label()))
+        } else {
+            String::new()
+        };
+        let title = format!(
+            "### {}{in_trial}: step {number} of {of}",
+            plain(&self.trial.estimated.joint.name)
+        );
+        let (headline, doubt, asked) = (self.headline(), self.doubt(of), self.asked());
+        let (conditions, quantities) = (self.conditions(), self.quantities());
+        format!(
+            "{title}\n{headline}\n\n{doubt}\n{methods}\n{conditions}\n\n{quantities}\n\n{asked}\n"
+        )
+    }
+
     fn seconds(&self, samples: f64) -> String {
         format!("{:.3} s", samples * self.trial.trial.period().seconds())
     }
@@ -276,18 +227,17 @@ impl Facts<'_, '_> {
 
     fn at(&self, sample: usize) -> String {
         let in_trial = format!("sample {sample} = {:.3} s", self.trial.trial.time_s(sample));
-        if self.joint.trials.len() < 2 {
+        if !self.trial.is_one_of_several() {
             return in_trial;
         }
-        let joined = self.trial.time_ns(sample) as f64 * 1e-9;
+        let joined = self.trial.seconds(sample);
         format!("{in_trial} of the trial; {} = {joined:.3} s in a row", self.trial.sample(sample))
     }
 
     /// How doubtful the decision is, and why.
     fn doubt(&self, of: usize) -> String {
         let (percent, rank) = (doubt_percent(&self.segment.doubt), self.segment.rank);
-        let several = self.joint.trials.len() > 1;
-        let of = if several { String::new() } else { format!(" of {of}") };
+        let of = if self.trial.is_one_of_several() { String::new() } else { format!(" of {of}") };
         format!(
             "doubt **{percent}** (rank {rank}{of} of this joint): {}",
             self.trial.reason(self.segment)
@@ -343,7 +293,8 @@ impl Facts<'_, '_> {
         let per_second = |slope: f64| rounded(slope / self.trial.trial.period().seconds());
         let [before, after] = [best.candidate.before, best.candidate.after];
         let [before, after] = [before, after].map(|line| per_second(line.slope));
-        let unit = self.joint.output_unit.as_deref().map_or_else(String::new, plain);
+        let unit =
+            self.trial.estimated.joint.output_unit.as_deref().map_or_else(String::new, plain);
         let is_set = |check: &Check| check.outcome == Outcome::Passed;
         let held = decision.checks.iter().filter(is_set).count();
         format!(
@@ -364,71 +315,63 @@ impl Facts<'_, '_> {
 
     fn quantities(&self) -> String {
         let decision = self.segment.decision;
-        let step = decision.input_step;
-        let unit = self.joint.input_unit.as_deref();
-        let input = |value| with_unit(value, unit, "");
-        let (first, last) = (decision.segment.first, decision.segment.last);
-        let mut rows = vec![
-            ("input step p".to_owned(), self.at(step.sample)),
-            ("input".to_owned(), format!("{} → {}", input(step.before), input(step.after))),
-            (
-                "input keeps this level for".to_owned(),
-                format!(
-                    "{} = {}",
-                    counted(decision.hold, "sample"),
-                    self.seconds(decision.hold as f64)
-                ),
-            ),
-            (
-                "segment r … end".to_owned(),
-                format!("{first} … {last}: {} samples", decision.segment.len()),
-            ),
-        ];
+        let (step, segment, hold) = (decision.input_step, decision.segment, decision.hold);
+        let input = |value| with_unit(value, self.trial.estimated.joint.input_unit.as_deref(), "");
+        let (before, after) = (input(step.before), input(step.after));
+        let mut page = "| quantity | value |\n|---|---|".to_owned();
+        let mut row = |name: &str, value: String| page.extend(["\n| ", name, " | ", &value, " |"]);
+        row("input step p", self.at(step.sample));
+        row("input", format!("{before} → {after}"));
+        let held = self.seconds(hold as f64);
+        row("input keeps this level for", format!("{} = {held}", counted(hold, "sample")));
+        let (first, last, samples) = (segment.first, segment.last, segment.len());
+        row("segment r … end", format!("{first} … {last}: {samples} samples"));
         if let Some(best) = decision.breakpoint() {
             let candidate = best.candidate;
-            let slope = |slope| with_unit(slope, self.joint.output_unit.as_deref(), "/sample");
-            let samples = decision.delay().unwrap_or(best.delay as f64);
-            let delay = format!("**{} = {}**", samples_text(samples), self.delay(samples));
-            let count = decision.candidates.len();
+            let output = |value, per| {
+                with_unit(value, self.trial.estimated.joint.output_unit.as_deref(), per)
+            };
+            let delay =
+                |samples: f64| format!("{} = {}", samples_text(samples), self.delay(samples));
+            if let Some(program) = decision.delay_before_review() {
+                let place = self.at(candidate.breakpoint);
+                row("the program's δ and q", format!("{}; {place}", delay(program)));
+            }
             let breakpoint = match decision.delay_before_review().and(self.segment.place()) {
                 Some(place) => format!("sample {place}, by a reviewer"),
                 None => self.breakpoint(candidate.breakpoint),
             };
-            if let Some(delay) = decision.delay_before_review() {
-                let program = format!("{} = {}", samples_text(delay), self.delay(delay));
-                let place = self.at(candidate.breakpoint);
-                rows.push(("the program's δ and q".to_owned(), format!("{program}; {place}")));
-            }
-            rows.extend([
-                ("breakpoint q".to_owned(), breakpoint),
-                ("candidate f".to_owned(), format!("{} of {count}", candidate.f)),
-                ("**delay δ = q − p**".to_owned(), delay),
-                (
-                    "SSE of both lines".to_owned(),
-                    with_unit(candidate.sse, self.joint.output_unit.as_deref(), "²"),
-                ),
-                ("slope before".to_owned(), slope(candidate.before.slope)),
-                ("slope after".to_owned(), slope(candidate.after.slope)),
-            ]);
+            row("breakpoint q", breakpoint);
+            row("candidate f", format!("{} of {}", candidate.f, decision.candidates.len()));
+            let own = delay(decision.delay().unwrap_or(best.delay as f64));
+            row("**delay δ = q − p**", format!("**{own}**"));
+            row("SSE of both lines", output(candidate.sse, "²"));
+            row("slope before", output(candidate.before.slope, "/sample"));
+            row("slope after", output(candidate.after.slope, "/sample"));
         }
-        rows.extend(decision.fine.map(|fine| self.interval(fine)));
-        rows.extend(self.by_lines());
-        rows.extend(self.trial.estimate.onset_model.as_deref().map(onset_row));
-        rows.extend(self.trial.estimate.tracking.as_ref().map(tracking_row));
-        rows.extend(self.how_near());
-        let typical = |words: &str| ("median delay of the joint".to_owned(), words.to_owned());
-        rows.extend(self.typical.map(typical));
-        let rows: Vec<_> =
-            rows.iter().map(|(name, value)| format!("| {name} | {value} |")).collect();
-        format!("| quantity | value |\n|---|---|\n{}", rows.join("\n"))
-    }
-
-    /// Algorithm 1's delay, where the answer is an onset's.
-    fn by_lines(&self) -> Option<(String, String)> {
-        let decision = self.segment.decision;
-        decision.onset.as_ref()?;
-        let delay = decision.breakpoint()?.delay as f64;
-        Some(("Algorithm 1's δ for comparison".to_owned(), self.delay(delay)))
+        if let Some(FineDelay { low, high, confidence, .. }) = decision.fine {
+            let samples = format!("{} … {} samples", number(low), number(high));
+            let seconds = format!("{} … {}", self.delay(low), self.delay(high));
+            let name = format!("{} % interval of δ", number(100.0 * confidence));
+            row(&name, format!("{samples} = {seconds}"));
+        }
+        if let (Some(_), Some(best)) = (&decision.onset, decision.breakpoint()) {
+            row("Algorithm 1's δ for comparison", self.delay(best.delay as f64));
+        }
+        if let Some(model) = self.trial.estimate.onset_model.as_deref() {
+            row("response behind the delay", response(model));
+        }
+        if let Some(tracking) = &self.trial.estimate.tracking {
+            let (offset, gain) = (number(tracking.offset()), number(tracking.gain()));
+            row("output tracks the input, at rest", format!("{offset} + {gain}·u"));
+        }
+        if let Some((name, near)) = self.how_near() {
+            row(name, near);
+        }
+        if let Some(typical) = self.typical {
+            row("median delay of the joint", typical.to_owned());
+        }
+        page
     }
 
     /// The breakpoint as finely as it is known.
@@ -443,28 +386,19 @@ impl Facts<'_, '_> {
         format!("sample {place} = {seconds:.5} s")
     }
 
-    fn interval(&self, fine: FineDelay) -> (String, String) {
-        let FineDelay { low, high, confidence, .. } = fine;
-        let samples = format!("{} … {} samples", number(low), number(high));
-        let seconds = format!("{} … {}", self.delay(low), self.delay(high));
-        (
-            format!("{} % interval of δ", number(100.0 * confidence)),
-            format!("{samples} = {seconds}"),
-        )
-    }
-
     /// What would have accepted the step, or by how much the second-best breakpoint is worse.
-    fn how_near(&self) -> Option<(String, String)> {
+    fn how_near(&self) -> Option<(&'static str, String)> {
         let decision = self.segment.decision;
         if decision.verdict() == Verdict::Accepted {
             let second = decision.runner_up().filter(|second| second.margin.is_finite())?;
             let (percent, q) = (number(100.0 * second.margin), second.breakpoint);
             let near = format!("q = {q}, with an SSE {percent} % above");
-            return Some(("second-best breakpoint".to_owned(), near));
+            return Some(("second-best breakpoint", near));
         }
-        let remedies = decision.remedies(self.settings, self.trial.output());
+        let remedies =
+            decision.remedies(&self.trial.estimated.estimate.settings, self.trial.output());
         let remedies: Vec<_> = remedies.into_iter().map(|it| remedy_text(it, "`")).collect();
-        Some(("would be accepted with".to_owned(), remedies.join(", ")))
+        Some(("would be accepted with", remedies.join(", ")))
     }
 
     fn conditions(&self) -> String {
@@ -505,7 +439,7 @@ impl Facts<'_, '_> {
             check.value.map_or_else(|| "none".to_owned(), |value| text(number(value)))
         };
         let output = |words: &str, per: &str| {
-            let unit = self.joint.output_unit.as_deref();
+            let unit = self.trial.estimated.joint.output_unit.as_deref();
             let unit = unit.map(|unit| format!(" {unit}{per}")).unwrap_or_default();
             said(&|value| format!("{words}{value}{unit}"))
         };
@@ -520,7 +454,10 @@ impl Facts<'_, '_> {
             }
             Condition::OutputLimit => {
                 let between = |(low, high)| format!("{} to {}", number(low), number(high));
-                (output("y = ", ""), self.settings.output_limits.map(between))
+                (
+                    output("y = ", ""),
+                    self.trial.estimated.estimate.settings.output_limits.map(between),
+                )
             }
             // Of a delay between samples the end of its interval counts.
             Condition::BeforeInput => {
@@ -531,7 +468,7 @@ impl Facts<'_, '_> {
             Condition::ShortHold => (said(&|hold| format!("{hold} samples")), needed("≥")),
             Condition::Sse => (output("", "²"), needed("<")),
             Condition::TooShort => {
-                let beta = self.settings.beta;
+                let beta = self.trial.estimated.estimate.settings.beta;
                 (said(&|rows| format!("{rows} rows of β = {beta}")), needed("≥"))
             }
             Condition::AtRest => (output("moves by ", ""), needed(">")),
@@ -545,22 +482,11 @@ impl Facts<'_, '_> {
 }
 
 /// The response behind the dead times.
-fn onset_row(model: &OnsetModel) -> (String, String) {
+fn response(model: &OnsetModel) -> String {
     let named = model.parameters();
     let named = named.iter().map(|(name, value)| format!(", {name} {}", number(*value)));
-    let parameters: String = named.collect();
-    let text = format!(
-        "{}{parameters}; residual {} times the noise",
-        model.shape(),
-        number(model.misfit())
-    );
-    ("response behind the delay".to_owned(), text)
-}
-
-/// Where the output comes to rest.
-fn tracking_row(tracking: &Tracking) -> (String, String) {
-    let at = format!("{} + {}·u", number(tracking.offset()), number(tracking.gain()));
-    ("output tracks the input, at rest".to_owned(), at)
+    let (parameters, misfit) = (named.collect::<String>(), number(model.misfit()));
+    format!("{}{parameters}; residual {misfit} times the noise", model.shape())
 }
 
 fn with_unit(value: f64, unit: Option<&str>, per: &str) -> String {

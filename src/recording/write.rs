@@ -5,15 +5,15 @@ use std::io::Write;
 
 use rerun::external::re_build_info::CrateVersion;
 use rerun::external::re_log_encoding::{Encoder, EncodingOptions};
-use rerun::log::LogMsg;
-use rerun::{ApplicationId, EntityPath, RecordingInfo, RecordingStream, StoreId, StoreKind};
+use rerun::{RecordingStream, StoreId, StoreKind};
 
-use super::chunk::Ids;
-use super::content::{Content, Growth, Part, application, for_each_chunk};
+use super::chunk::{Ids, chunk_message};
+use super::content::{
+    Content, Growth, Part, activation, application, first_messages, for_each_chunk, view_messages,
+};
 use super::end::EndHeld;
 use super::error::RecordError;
 use super::index::IndexRecording;
-use super::message::{activation, chunk_message, store_message};
 use super::preview::PreviewRecording;
 use super::recorded::Recording;
 use super::sweep::SweepRecording;
@@ -62,20 +62,13 @@ fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {
     let options = EncodingOptions::PROTOBUF_COMPRESSED;
     let at_end = Cell::new(false);
     let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, options, EndHeld::new(out, &at_end))?;
+    let store = StoreId::new(StoreKind::Recording, application.clone(), id.clone());
     // The views come first: a viewer that has none yet makes its own of what it has read.
-    for message in blueprint_messages(content, &application, &id)? {
+    let views = view_messages(content, Growth::Finished, (&application, &id))?;
+    for message in views.into_iter().chain(first_messages(&store, name)?) {
         encoder.append(&message)?;
     }
-    let store = StoreId::new(StoreKind::Recording, application, id.clone());
-    encoder.append(&store_message(&store))?;
-    let ids = Ids::of(&id);
-    let mut chunks = ids.chunks(1);
-    let info = RecordingInfo::new().with_name(name);
-    chunks.push_static(EntityPath::properties(), &info)?;
-    for chunk in chunks.into_chunks() {
-        encoder.append(&chunk_message(&store, &chunk)?)?;
-    }
-    for_each_chunk(content, Part::whole(ids), &mut |chunk| {
+    for_each_chunk(content, Part::whole(Ids::of(&id)), &mut |chunk| {
         encoder.append(&chunk_message(&store, chunk)?)?;
         Ok(())
     })?;
@@ -89,7 +82,7 @@ fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {
 /// Entities lie at `/<joint>/…` and `/about`, beside whatever the caller logs.
 ///
 /// # Errors
-/// [`RecordError::Chunk`] and [`RecordError::Serialize`], which would be bugs. What
+/// [`RecordError::Value`], which would be a bug. What
 /// becomes of the data is the stream's business.
 pub fn log_recording(
     recording: &Recording<'_>,
@@ -100,25 +93,13 @@ pub fn log_recording(
     };
     let id = recording.id();
     let application = info.store_id.application_id().clone();
-    let messages = recording.views(Growth::Finished, &application, &id)?;
+    let messages = recording.blueprint(Growth::Finished).messages(&application, &id)?;
     if let Some(blueprint_id) = messages.first().map(|message| message.store_id().clone()) {
-        let activation = activation(blueprint_id);
-        stream.send_blueprint(messages, activation);
+        stream.send_blueprint(messages, activation(blueprint_id));
     }
     for_each_chunk(recording, Part::whole(Ids::of(&id)), &mut |chunk| {
         stream.send_chunk(chunk.clone());
         Ok(())
     })?;
     Ok(())
-}
-
-fn blueprint_messages(
-    content: &dyn Content,
-    application: &ApplicationId,
-    id: &str,
-) -> Result<Vec<LogMsg>, RecordError> {
-    let mut messages = content.views(Growth::Finished, application, id)?;
-    let blueprint_id = messages.first().map(|message| message.store_id().clone());
-    messages.extend(blueprint_id.map(|id| LogMsg::from(activation(id))));
-    Ok(messages)
 }

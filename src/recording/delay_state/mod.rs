@@ -6,6 +6,5 @@
 mod page;
 mod placed;
 mod quantity;
-mod trend;
 
 pub(super) use page::{HEIGHT, add};

@@ -1,24 +1,23 @@
 //! The page of plots, and the cursor in it.
 
-use rerun::components::{Color, DrawOrder};
+use rerun::Points2D;
 use rerun::datatypes::Vec2D;
-use rerun::{EntityPath, LineStrips2D, Points2D};
 
 use super::placed::{Placed, add_numbers, placed};
 use super::quantity::Quantity;
-use super::trend;
 use crate::delay::{AgainstState, StepState};
 use crate::experiment::{Joint, Trial};
+use crate::figure::course::Bin;
 use crate::figure::delay_against::Way;
 use crate::recording::canvas::{Labels, Plot, SHEET, Span};
 use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
+use crate::recording::layers::{HIDDEN, Ink, Layers};
 use crate::recording::layout::JointLayout;
 use crate::recording::palette::{self, Rgb, color};
-use crate::recording::paths::{self, against, at};
-use crate::recording::rows::HIDDEN;
-use crate::recording::sheet::put_texts;
-use crate::report::{EstimatedJoint, variable_text};
+use crate::recording::paths;
+use crate::recording::sheet::Sheet;
+use crate::report::variable_text;
 use crate::units::SamplePeriod;
 use crate::wording::number;
 
@@ -31,22 +30,20 @@ const PLOTS: usize = 12;
 /// Adds the page below `/against`, and its numbers at `/delay/state`.
 pub(in crate::recording) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
-    joint: EstimatedJoint<'_>,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
-    let found = joint.against_state();
+    let found = layout.estimated.against_state();
     let placed = placed(layout, &found.steps);
-    add_numbers(chunks, &at(root, paths::DELAY_STATE), joint.joint, &placed)?;
-    let page = Page::of(joint.joint, &found, &placed);
-    let root = at(root, against::ROOT);
-    page.add_plots(chunks, &root)?;
-    page.add_texts(chunks, &root, joint.joint)?;
-    page.add_cursor(chunks, &root, joint.joint, (layout, &placed))
+    add_numbers(chunks, layout.joint, &placed)?;
+    let page = Page::of(layout.joint, &found, &placed);
+    page.add_plots(chunks)?;
+    page.add_texts(chunks)?;
+    page.add_cursor(chunks, layout, &placed)
 }
 
 /// All plots on their sheet.
 struct Page<'f> {
+    joint: &'f Joint,
     found: &'f AgainstState,
     /// Each quantity that is drawn, with its plot.
     plots: Vec<(Quantity, Plot)>,
@@ -61,7 +58,7 @@ struct Page<'f> {
 }
 
 impl<'f> Page<'f> {
-    fn of(joint: &Joint, found: &'f AgainstState, placed: &[Placed<'_, '_>]) -> Self {
+    fn of(joint: &'f Joint, found: &'f AgainstState, placed: &[Placed<'_, '_>]) -> Self {
         let mut quantities = Quantity::of(found);
         let count = quantities.len();
         quantities.truncate(if found.steps.is_empty() { 0 } else { PLOTS });
@@ -76,9 +73,10 @@ impl<'f> Page<'f> {
         let first = periods.next();
         let period_s = first.filter(|first| periods.all(|other| other == *first));
         Self {
+            joint,
             found,
             plots: quantities.into_iter().enumerate().map(place).collect(),
-            names: placed.iter().filter_map(|placed| placed.name(joint)).collect(),
+            names: placed.iter().filter_map(Placed::name).collect(),
             quantities: count,
             columns,
             period_s: period_s.map(SamplePeriod::seconds),
@@ -86,38 +84,35 @@ impl<'f> Page<'f> {
     }
 
     /// What stays: grid, points, medians.
-    fn add_plots(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
-        let (mut grid, mut depends) = (Vec::new(), Vec::new());
+    fn add_plots(&self, chunks: &mut Chunks) -> Result<(), RecordError> {
+        let (mut sheet, mut depends) = (Sheet::default(), Vec::new());
         let (mut bands, mut medians) = (Vec::new(), Vec::new());
         for (quantity, plot) in &self.plots {
             let x_ticks: Vec<_> = quantity.x_ticks().into_iter().map(|(x, _)| x).collect();
             let y_ticks = plot.y_span().ticks(DELAY_TICKS).into_iter();
             let y_ticks: Vec<_> = y_ticks.map(|y| (y, String::new())).collect();
-            grid.extend(plot.grid(&x_ticks, &y_ticks, &mut Labels::default()));
+            sheet.outline(plot, &x_ticks, &y_ticks);
             if quantity.depends {
                 depends.push(plot.frame());
             }
             for bins in quantity.courses(&self.found.steps) {
-                bands.push(trend::band(plot, &bins));
-                medians.push(trend::line(plot, &bins));
+                bands.push(band(plot, &bins));
+                medians.push(plot.places(bins.iter().map(|bin| (bin.x, bin.median))));
             }
         }
-        let mut add = |path, rgb, radius, order, strips: Vec<Vec<Vec2D>>| {
-            let style = LineStrips2D::new(strips).with_colors([color(rgb)]).with_radii([radius]);
-            let style = style.with_draw_order(DrawOrder::from(order));
-            chunks.push_static(at(root, path), &style)
-        };
-        add(against::BAND, palette::BAND, 0.6 * trend::STROKE, 5.0, bands)?;
-        add(against::GRID, palette::GRID, 0.7, 10.0, grid)?;
-        add(against::DEPENDS, palette::BORDER, 1.4, 15.0, depends)?;
-        add(against::MEDIAN, palette::BORDER, 2.0, 40.0, medians)?;
-        for (path, rgb, way) in
-            [(against::DOWN, palette::DOWN, Way::Down), (against::UP, palette::UP, Way::Up)]
-        {
-            let Labels { places, texts } = self.points(way);
+        let mut layers = Layers::fixed(chunks, paths::AGAINST);
+        for (path, rgb, radius, order, strips) in [
+            ("band", palette::BAND, 0.6 * STROKE, 5.0, bands),
+            ("grid", palette::GRID, 0.7, 10.0, sheet.grid),
+            ("depends", palette::BORDER, 1.4, 15.0, depends),
+            ("median", palette::BORDER, 2.0, 40.0, medians),
+        ] {
+            layers.order(order).strips(path, rgb, radius, [strips])?;
+        }
+        for (path, rgb, way) in [("down", palette::DOWN, Way::Down), ("up", palette::UP, Way::Up)] {
+            let Labels { places, texts, .. } = self.points(way);
             let points = Points2D::new(places).with_colors([color(rgb)]).with_radii([3.0]);
-            let points = points.with_labels(texts).with_show_labels(false);
-            chunks.push_static(at(root, path), &points)?;
+            layers.stays(path, &points.with_labels(texts).with_show_labels(false))?;
         }
         Ok(())
     }
@@ -136,29 +131,21 @@ impl<'f> Page<'f> {
         points
     }
 
-    fn add_texts(
-        &self,
-        chunks: &mut Chunks,
-        root: &EntityPath,
-        joint: &Joint,
-    ) -> Result<(), RecordError> {
+    fn add_texts(&self, chunks: &mut Chunks) -> Result<(), RecordError> {
         let (mut ticks, mut titles) = (Labels::default(), Labels::default());
-        let mut shades = Vec::new();
         for (place, (quantity, plot)) in self.plots.iter().enumerate() {
             for (x, text) in quantity.x_ticks() {
                 ticks.put(plot.below(x, 2.0), text);
             }
             self.delay_ticks(place, plot, &mut ticks);
-            let middle = f64::midpoint(plot.x_span().low, plot.x_span().high);
-            titles.put(plot.above(middle, 56.0), clipped(&quantity.title));
-            titles.put(plot.above(middle, 28.0), quantity.finding());
             let shade = if quantity.depends { palette::BORDER } else { palette::RAW };
-            shades.extend([color(shade); 2]);
+            titles.put_in(shade, plot.above(plot.middle(), 56.0), clipped(&quantity.title));
+            titles.put_in(shade, plot.above(plot.middle(), 28.0), quantity.finding());
         }
-        put_texts(chunks, at(root, against::TICKS), ticks, &[color(palette::RAW)])?;
-        put_texts(chunks, at(root, against::TITLES), titles, &shades)?;
-        let (legend, colors) = self.legend(joint);
-        put_texts(chunks, at(root, against::LEGEND), legend, &colors)
+        let mut layers = Layers::fixed(chunks, paths::AGAINST);
+        layers.texts("ticks", palette::RAW, [ticks])?;
+        layers.texts("titles", Ink::Own, [titles])?;
+        layers.texts("legend", Ink::Own, [self.legend()])
     }
 
     /// Seconds at the left of a row of plots, samples at its right.
@@ -179,31 +166,29 @@ impl<'f> Page<'f> {
         }
     }
 
-    fn legend(&self, joint: &Joint) -> (Labels, Vec<Color>) {
+    fn legend(&self) -> Labels {
         let axis = if self.period_s.is_some() {
             "delay: seconds left, samples right; point at a dot for its step"
         } else {
             "delay in seconds; point at a dot for its step"
         };
         let entries: [(f32, f32, String, Rgb); 5] = [
-            (SHEET.0 / 2.0, 0.0, self.headline(joint), palette::BORDER),
+            (SHEET.0 / 2.0, 0.0, self.headline(), palette::BORDER),
             (90.0, LEGEND, "● step up".to_owned(), palette::UP),
             (225.0, LEGEND, "● step down".to_owned(), palette::DOWN),
             (495.0, LEGEND, "line: median; shaded: middle half".to_owned(), palette::BORDER),
             (850.0, LEGEND, axis.to_owned(), palette::RAW),
         ];
         let mut labels = Labels::default();
-        let mut colors = Vec::new();
         for (x, y, text, rgb) in entries {
-            labels.put(Vec2D::new(x, y), text);
-            colors.push(color(rgb));
+            labels.put_in(rgb, Vec2D::new(x, y), text);
         }
-        (labels, colors)
+        labels
     }
 
     /// The answer in a sentence.
-    fn headline(&self, joint: &Joint) -> String {
-        let name = &joint.name;
+    fn headline(&self) -> String {
+        let name = &self.joint.name;
         let steps = match self.found.steps.len() {
             1 => "1 accepted step".to_owned(),
             count => format!("{count} accepted steps"),
@@ -244,34 +229,24 @@ impl<'f> Page<'f> {
     fn add_cursor(
         &self,
         chunks: &mut Chunks,
-        root: &EntityPath,
-        joint: &Joint,
-        (layout, placed): (&JointLayout<'_>, &[Placed<'_, '_>]),
+        layout: &JointLayout<'_>,
+        placed: &[Placed<'_, '_>],
     ) -> Result<(), RecordError> {
-        let index = layout.openings();
-        let (mut points, mut lengths) = (Vec::new(), Vec::new());
-        for placed in placed {
-            let before = points.len();
-            if let Some((number, step)) = placed.step {
-                points.extend(
-                    self.plots.iter().filter_map(|(q, plot)| place_of(q, plot, number, step)),
-                );
-            }
-            lengths.push(points.len() - before);
-        }
-        let entity = at(root, against::HERE);
-        let style = Points2D::update_fields().with_colors([color(palette::CANDIDATE)]);
-        let style = style.with_radii([8.0]).with_draw_order(DrawOrder::from(50.0));
-        chunks.push_static(entity.clone(), &style)?;
-        let points = Points2D::update_fields().with_positions(points).columns(lengths)?;
-        chunks.push(entity, index.clone(), points)?;
-        let entity = at(root, against::STEP);
-        let place = Vec2D::new(SHEET.0 - 280.0, LEGEND);
-        let style = Points2D::new([place]).with_colors([color(palette::CANDIDATE)]);
-        chunks.push_static(entity.clone(), &style.with_radii([HIDDEN]).with_show_labels(true))?;
-        let words = placed.iter().map(|placed| placed.sentence(joint));
-        let texts = Points2D::update_fields().with_labels(words);
-        chunks.push(entity, index, texts.columns_of_unit_batches()?)
+        let here = placed.iter().map(|placed| {
+            let step = placed.step.into_iter();
+            let of_step = step.flat_map(|(number, step)| {
+                self.plots.iter().filter_map(move |(q, plot)| place_of(q, plot, number, step))
+            });
+            of_step.collect()
+        });
+        let mut layers = Layers::rows(chunks, paths::AGAINST, layout.openings());
+        layers.order(50.0).points("here", palette::CANDIDATE, 8.0, here)?;
+        let style = Points2D::new([Vec2D::new(SHEET.0 - 280.0, LEGEND)]).with_show_labels(true);
+        let style = style.with_colors([color(palette::CANDIDATE)]).with_radii([HIDDEN]);
+        layers.stays("step", &style)?;
+        let words: Vec<_> = placed.iter().map(Placed::sentence).collect();
+        let lengths = vec![1; words.len()];
+        layers.push("step", &Points2D::update_fields().with_labels(words), &lengths)
     }
 }
 
@@ -307,4 +282,45 @@ fn plot(place: usize, (columns, rows): (usize, usize), x: Span, y: Span) -> Plot
     let (across, down) = (place % columns, place / columns);
     let rows = row(down) + 58.0..=row(down + 1) - 30.0;
     Plot::within((column(across), column(across + 1) - 30.0), rows, x, y)
+}
+
+/// Distance of the strokes that fill a band, on the sheet.
+const STROKE: f32 = 2.5;
+
+/// The band between the quartiles, as one strip up and down: a sheet has no filled shape.
+fn band(plot: &Plot, bins: &[Bin]) -> Vec<Vec2D> {
+    let mut strip = Vec::new();
+    for pair in bins.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        let width = plot.x(to.x) - plot.x(from.x);
+        let strokes = f64::from((width / STROKE).ceil().max(1.0));
+        let between = |a: f64, b: f64, part: f64| a + part * (b - a);
+        let stroke = |number: i32| {
+            let part = f64::from(number) / strokes;
+            let x = between(from.x, to.x, part);
+            let lower = plot.at(x, between(from.lower, to.lower, part));
+            let upper = plot.at(x, between(from.upper, to.upper, part));
+            if number % 2 == 0 { [lower, upper] } else { [upper, lower] }
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "as many as fit on the sheet")]
+        strip.extend((0..=strokes as i32).flat_map(stroke));
+    }
+    strip
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Span;
+
+    #[test]
+    fn a_band_reaches_from_quartile_to_quartile() {
+        let plot = Plot::new(0.0..=100.0, Span::new(0.0, 1.0), Span::new(0.0, 10.0));
+        let bin = Bin { x: 0.0, lower: 2.0, median: 3.0, upper: 6.0 };
+        let strip = band(&plot, &bin.level(0.0, 1.0));
+        let rows = strip.iter().map(Vec2D::y);
+        let (low, high) = (rows.clone().fold(0.0, f32::max), rows.fold(100.0, f32::min));
+        assert!((low - 80.0).abs() < 1e-3 && (high - 40.0).abs() < 1e-3, "{low} {high}");
+        assert!(strip.windows(2).all(|pair| (pair[1].x() - pair[0].x()).abs() <= STROKE + 1e-3));
+    }
 }

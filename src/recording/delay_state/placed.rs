@@ -1,14 +1,12 @@
 //! Accepted steps among all segments: their names, and their state as numbers.
 
-use rerun::{EntityPath, Scalars};
-
 use crate::delay::{StepState, Verdict};
 use crate::experiment::Joint;
 use crate::figure::delay_against::Way;
 use crate::recording::chunk::{Chunks, Index, fine_columns, integers, numbers};
 use crate::recording::error::RecordError;
 use crate::recording::layout::{JointLayout, SegmentLayout, TrialLayout};
-use crate::recording::paths::{self, at, child};
+use crate::recording::paths::child;
 use crate::wording::{number, samples_text};
 
 /// A segment, and its step among the accepted ones, with its place there.
@@ -19,25 +17,17 @@ pub(super) struct Placed<'l, 'a> {
 }
 
 impl Placed<'_, '_> {
-    /// The step in words.
-    fn words(&self, joint: &Joint) -> String {
-        let number = self.segment.decision.number;
-        match joint.trials.len() {
-            1 => format!("step {number}"),
-            _ => format!("{}, step {number}", self.trial.trial.label()),
-        }
-    }
-
     /// What an accepted step is called under the pointer: with the number to go there.
-    pub(super) fn name(&self, joint: &Joint) -> Option<String> {
+    pub(super) fn name(&self) -> Option<String> {
         self.step?;
         let segment = self.segment.number;
-        Some(format!("{} (segment {segment})", self.words(joint)))
+        Some(format!("{} (segment {segment})", self.trial.step(self.segment)))
     }
 
     /// Which step is marked, or why none is.
-    pub(super) fn sentence(&self, joint: &Joint) -> String {
-        let (words, decision) = (self.words(joint), self.segment.decision);
+    pub(super) fn sentence(&self) -> String {
+        let decision = self.segment.decision;
+        let words = self.trial.step(self.segment);
         match (decision.verdict(), self.step, decision.delay()) {
             (Verdict::Rejected(condition), ..) => {
                 format!("{words}: rejected, {}", condition.meaning())
@@ -70,7 +60,6 @@ pub(super) fn placed<'l, 'a>(
 /// A row per accepted step, at its input step.
 pub(super) fn add_numbers(
     chunks: &mut Chunks,
-    entity: &EntityPath,
     joint: &Joint,
     placed: &[Placed<'_, '_>],
 ) -> Result<(), RecordError> {
@@ -81,31 +70,28 @@ pub(super) fn add_numbers(
         })
     };
     let index: Index = accepted().map(|(moment, ..)| moment).collect();
-    let delta: Vec<_> = accepted().map(|(_, d, _)| d.breakpoint().map(|b| b.delay)).collect();
-    let of = |value: fn(&StepState) -> Option<f64>| -> Vec<_> {
-        accepted().map(|(.., step)| value(step)).collect()
-    };
+    let delta = accepted().map(|(_, decision, _)| Some(decision.breakpoint()?.delay));
     let fine: Vec<_> = accepted().map(|(_, decision, _)| decision.fine).collect();
-    let mut columns = vec![
-        integers("delta", &delta),
-        numbers("delay_s", &of(|step| Some(step.delay_s))),
-        numbers("average_speed", &of(|step| Some(step.average_speed))),
-        numbers("input_change", &of(|step| Some(step.input_change))),
-        numbers("dwell_s", &of(|step| step.dwell_s)),
-        numbers("angle", &of(|step| Some(step.angle))),
-        numbers("time_s", &of(|step| Some(step.time_s))),
+    let quantities: [(&str, fn(&StepState) -> Option<f64>); 6] = [
+        ("delay_s", |step| Some(step.delay_s)),
+        ("average_speed", |step| Some(step.average_speed)),
+        ("input_change", |step| Some(step.input_change)),
+        ("dwell_s", |step| step.dwell_s),
+        ("angle", |step| Some(step.angle)),
+        ("time_s", |step| Some(step.time_s)),
     ];
+    let mut columns = vec![integers("delta", delta)];
+    let of_steps =
+        |value: fn(&StepState) -> Option<f64>| accepted().map(move |(.., step)| value(step));
+    columns.extend(quantities.map(|(name, value)| numbers(name, of_steps(value))));
     columns.extend(fine_columns(&fine));
-    chunks.push(entity.clone(), index, columns)?;
+    chunks.push("delay/state", index, columns)?;
     for (number, signal) in joint.covariates.iter().enumerate() {
-        let measured = || {
-            accepted()
-                .filter_map(|(moment, _, step)| Some((moment, (*step.covariates.get(number)?)?)))
-        };
-        let index: Index = measured().map(|(moment, _)| moment).collect();
-        let values = Scalars::new(measured().map(|(_, value)| value));
-        let entity = child(&at(entity, paths::COVARIATE), &signal.name);
-        chunks.push(entity, index, values.columns_of_unit_batches()?)?;
+        let measured = accepted()
+            .filter_map(|(moment, _, step)| Some((moment, Some((*step.covariates.get(number)?)?))));
+        let (moments, values): (Vec<_>, Vec<_>) = measured.unzip();
+        let entity = child("delay/state/covariate", &signal.name);
+        chunks.scalars(entity, moments.into_iter().collect(), &values)?;
     }
     Ok(())
 }

@@ -1,19 +1,21 @@
 //! A connection to a viewer, by which a recording is sent whenever it has grown.
 
+use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::time::{Duration, Instant};
 
 use rerun::grpc_server::GrpcServerSink;
 use rerun::log::{Chunk, LogMsg};
 use rerun::sink::{GrpcSink, GrpcSinkConnectionState, LogSink as _};
-use rerun::{EntityPath, MemoryLimit, RecordingInfo, ServerOptions, StoreId, StoreKind};
+use rerun::{MemoryLimit, ServerOptions, StoreId, StoreKind};
 
 use super::address;
 use super::sent::Sent;
-use crate::recording::chunk::Ids;
-use crate::recording::content::{Content, Growth, Part, application, for_each_chunk};
+use crate::recording::chunk::{Ids, chunk_message};
+use crate::recording::content::{
+    Content, Growth, Part, application, first_messages, for_each_chunk, view_messages,
+};
 use crate::recording::error::RecordError;
-use crate::recording::message::{activation, chunk_message, store_message};
 use crate::recording::recorded::Recording;
 use crate::recording::sweep::SweepRecording;
 
@@ -87,7 +89,7 @@ impl Live {
         };
         let host = address::host(address.ip());
         let server = GrpcServerSink::new(&host, address.port(), options)
-            .map_err(|_source| RecordError::NotServed { address })?;
+            .map_err(|why| RecordError::Listen { address, source: io::Error::other(why) })?;
         let url = server.uri().to_string();
         Ok(Self::with(Sink::Server(server), url))
     }
@@ -118,7 +120,7 @@ impl Live {
     /// Sends what is new of `recording`: all of it at first.
     ///
     /// # Errors
-    /// [`RecordError::Chunk`] and [`RecordError::Serialize`], which would be bugs. Whether
+    /// [`RecordError::Value`], which would be a bug. Whether
     /// it arrives, [`flush`](Self::flush) reports.
     pub(crate) fn send(&mut self, recording: &Recording<'_>) -> Result<(), RecordError> {
         self.send_part(recording, None)
@@ -164,11 +166,8 @@ impl Live {
         let (name, id) = (content.name(), self.store.recording_id().clone());
         let application = application(&name, id.as_str());
         self.store = StoreId::new(StoreKind::Recording, application, id.clone());
-        self.post(store_message(&self.store));
-        let mut chunks = Ids::of(id.as_str()).chunks(1);
-        let info = RecordingInfo::new().with_name(name);
-        chunks.push_static(EntityPath::properties(), &info)?;
-        chunks.into_chunks().iter().try_for_each(|chunk| self.send_chunk(chunk))
+        first_messages(&self.store, name)?.into_iter().for_each(|message| self.post(message));
+        Ok(())
     }
 
     fn send_chunk(&self, chunk: &Chunk) -> Result<(), RecordError> {
@@ -192,14 +191,8 @@ impl Live {
             return Ok(());
         }
         let id = format!("{}-{}", self.store.recording_id().as_str(), self.used);
-        let messages = content.views(self.growth, self.store.application_id(), &id)?;
-        let blueprint = messages.first().map(|message| message.store_id().clone());
-        for message in messages {
-            self.post(message);
-        }
-        if let Some(blueprint) = blueprint {
-            self.post(activation(blueprint).into());
-        }
+        let messages = view_messages(content, self.growth, (self.store.application_id(), &id))?;
+        messages.into_iter().for_each(|message| self.post(message));
         self.views = Some(views);
         Ok(())
     }

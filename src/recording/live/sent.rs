@@ -82,22 +82,22 @@ fn are_same(a: &Chunk, b: &Chunk, first: usize, length: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use rerun::{Scalars, TextDocument};
+    use rerun::TextDocument;
 
     use super::*;
-    use crate::recording::chunk::Ids;
+    use crate::recording::chunk::{Ids, Index};
 
     fn chunk(values: &[f64]) -> Chunk {
         let mut chunks = Ids::of("1").chunks(1);
-        let revisions = (0..).take(values.len()).collect();
-        let columns = Scalars::new(values.iter().copied()).columns_of_unit_batches().unwrap();
-        chunks.push_revisions("error".into(), revisions, columns).unwrap();
+        let revisions = Index::on("revision", (0..).take(values.len()));
+        let values: Vec<_> = values.iter().copied().map(Some).collect();
+        chunks.scalars("error", revisions, &values).unwrap();
         chunks.into_chunks().pop().unwrap()
     }
 
     fn document(text: &str) -> Chunk {
         let mut chunks = Ids::of("1").chunks(1);
-        chunks.push_static("page".into(), &TextDocument::new(text)).unwrap();
+        chunks.push_static("page", &TextDocument::new(text)).unwrap();
         chunks.into_chunks().pop().unwrap()
     }
 

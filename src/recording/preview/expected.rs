@@ -44,7 +44,7 @@ impl<'a> Preview<'a> {
     }
 
     /// Where a sample, from 0, lies on `sample` and `time`.
-    pub(super) fn place(&self, sample: usize) -> (i64, i64) {
+    fn place(&self, sample: usize) -> (i64, i64) {
         /// Nanoseconds in a second.
         const NANO: f64 = 1e9;
         #[expect(clippy::cast_possible_truncation, reason = "three centuries fit")]
@@ -54,11 +54,12 @@ impl<'a> Preview<'a> {
 
     /// A row for each of the first `samples`.
     pub(super) fn samples(&self, samples: usize) -> Index {
-        let (sample, time_ns) = (0..samples).map(|sample| self.place(sample)).unzip();
-        let mut index = Index::default();
-        index.sample = sample;
-        index.time_ns = time_ns;
-        index
+        self.index(0..samples)
+    }
+
+    fn index(&self, samples: impl Iterator<Item = usize>) -> Index {
+        let (samples, times): (Vec<_>, Vec<_>) = samples.map(|k| self.place(k)).unzip();
+        Index::on("sample", samples).with("time", times)
     }
 
     /// The first sample of each hold, from 0, and the one behind its last.
@@ -74,18 +75,8 @@ impl<'a> Preview<'a> {
 
     /// A row for each hold, where it begins.
     pub(super) fn hold_rows(&self) -> Index {
-        let mut index = Index::default();
-        for ((start, _), segment) in self.holds().into_iter().zip(1..) {
-            let (sample, time_ns) = self.place(start);
-            index.segment.push(segment);
-            index.sample.push(sample);
-            index.time_ns.push(time_ns);
-        }
-        index
+        let holds = self.holds();
+        let index = self.index(holds.iter().map(|(start, _)| *start));
+        index.with("segment", (1..).take(holds.len()))
     }
-}
-
-/// A unit behind the name of an axis, where there is one.
-pub(super) fn unit_of(unit: Option<&str>) -> String {
-    unit.map_or_else(String::new, |unit| format!(" [{unit}]"))
 }

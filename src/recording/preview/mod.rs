@@ -4,13 +4,10 @@
 //! the margin of that, and where the two differ beyond the noise. On `segment` a cursor goes
 //! from hold to hold, on `time` and `sample` through all samples.
 
-mod about;
-mod assembly;
 mod data;
 mod expected;
-mod recorded;
+mod recording;
 mod sheet;
-mod views;
 mod words;
 
-pub(crate) use recorded::PreviewRecording;
+pub(crate) use recording::PreviewRecording;

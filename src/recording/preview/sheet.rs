@@ -1,19 +1,17 @@
 //! The page of a joint: input, expected outputs with their margin, and their difference.
 
-use rerun::components::DrawOrder;
 use rerun::datatypes::Vec2D;
-use rerun::{Color, EntityPath, LineStrips2D};
 
-use super::expected::{Expectation, Preview, unit_of};
+use super::expected::{Expectation, Preview};
 use crate::design::HoldApart;
-use crate::recording::canvas::{Labels, Plot, SHEET, Span, simplified, thinned};
+use crate::recording::canvas::{CURVE_POINTS, Labels, Plot, SHEET, Span};
 use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
+use crate::recording::layers::{Ink, Layers};
 use crate::recording::palette::{self, Rgb, between, color};
-use crate::recording::paths::{at, preview::sheet};
-use crate::recording::rows::Rows;
-use crate::recording::sheet::{Sheet, put_texts, strips};
-use crate::wording::{measure, number};
+use crate::recording::paths;
+use crate::recording::sheet::Sheet;
+use crate::wording::{bracketed, measure, number};
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
@@ -36,19 +34,15 @@ struct Page<'p> {
 }
 
 /// Draws the page below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    preview: &Preview<'_>,
-) -> Result<(), RecordError> {
-    let root = at(root, sheet::ROOT);
+pub(super) fn add(chunks: &mut Chunks, preview: &Preview<'_>) -> Result<(), RecordError> {
     let page = Page::of(preview);
-    page.add_bands(chunks, &root)?;
-    page.sheet().push(chunks, &root)?;
-    page.add_lines(chunks, &root)?;
-    page.add_legend(chunks, &root)?;
-    page.add_shares(chunks, &root)?;
-    page.add_here(chunks, &root)
+    let mut layers = Layers::fixed(chunks, paths::SHEET);
+    page.add_bands(&mut layers)?;
+    layers.sheets([page.sheet()])?;
+    page.add_lines(&mut layers)?;
+    layers.texts("legend", Ink::Own, [page.legend()])?;
+    page.add_shares(&mut layers)?;
+    page.add_here(&mut Layers::rows(chunks, paths::SHEET, preview.hold_rows()))
 }
 
 impl<'p> Page<'p> {
@@ -89,15 +83,12 @@ impl<'p> Page<'p> {
         let rig = &self.preview.joint.rig;
         let mut sheet = Sheet::default();
         let mut draw = |plot: &Plot, title: String| {
-            let y_ticks = plot.y_span().ticks(4.0).into_iter().map(|y| (y, number(y)));
-            let x_ticks = plot.x_span().ticks(12.0);
-            sheet.outline(plot, &x_ticks, &y_ticks.collect::<Vec<_>>());
-            let middle = f64::midpoint(plot.x_span().low, plot.x_span().high);
-            sheet.put(plot.above(middle, TITLE), title);
+            sheet.outline(plot, &plot.x_span().ticks(12.0), &plot.y_ticks(4.0));
+            sheet.title(plot, TITLE, title);
         };
-        draw(&self.input, format!("input{}", unit_of(rig.input_unit.as_deref())));
+        draw(&self.input, bracketed("input", rig.input_unit.as_deref()));
         if let Some(plot) = &self.output {
-            let unit = unit_of(rig.output_unit.as_deref());
+            let unit = bracketed("", rig.output_unit.as_deref());
             draw(plot, format!("expected output{unit}, with its margin"));
         }
         if let Some(plot) = &self.apart {
@@ -113,13 +104,13 @@ impl<'p> Page<'p> {
     }
 
     /// The margin of each expected output: lines from its lower to its upper end, side by side.
-    fn add_bands(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+    fn add_bands(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
         /// Lines that fill the width of a plot.
         const LINES: usize = 720;
         /// Of the way from the ground to the colour of the line.
         const SHADE: f64 = 0.38;
         let Some(plot) = &self.output else { return Ok(()) };
-        let (mut lines, mut colors): (Vec<Vec<Vec2D>>, Vec<Color>) = Default::default();
+        let mut lines = Vec::new();
         for Expectation { prediction, rgb, .. } in &self.preview.expected {
             let both: Vec<(f64, f64)> =
                 prediction.output.iter().zip(&prediction.margin).map(|(y, m)| (*y, *m)).collect();
@@ -131,31 +122,26 @@ impl<'p> Page<'p> {
                 };
                 let (low, high) = some.iter().fold(none, wider);
                 let x = self.preview.seconds(place * stride);
-                lines.push(vec![plot.at(x, low), plot.at(x, high)]);
-                colors.push(color(between(GROUND, *rgb, SHADE)));
+                let shade = color(between(GROUND, *rgb, SHADE));
+                lines.push((vec![plot.at(x, low), plot.at(x, high)], shade));
             }
         }
         let count = (lines.len() / self.preview.expected.len().max(1)).max(1);
         let radius = 0.5 * (SIDES.1 - SIDES.0) / count as f32 + 0.2;
-        let bands = LineStrips2D::new(lines).with_colors(colors).with_radii([radius]);
-        let bands = bands.with_draw_order(DrawOrder::from(-10.0));
-        chunks.push_static(at(root, sheet::BAND), &bands)
+        layers.order(-10.0).colored("band", radius, [lines])
     }
 
     /// Input, range, expected outputs and their difference.
-    fn add_lines(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+    fn add_lines(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
         let schedule = &self.preview.joint.schedule;
         let holds = schedule.holds().iter().zip(self.preview.holds());
         let corner = |sample: usize, level: f64| self.input.at(self.preview.seconds(sample), level);
         let input = holds
             .flat_map(|(hold, (start, end))| [corner(start, hold.level), corner(end, hold.level)]);
         let input = vec![input.collect()];
-        strips(chunks, at(root, sheet::INPUT), palette::INPUT, 1.4, input)?;
+        layers.strips("input", palette::INPUT, 1.4, [input])?;
         let curve = |plot: &Plot, values: &[f64]| {
-            let place = |k: usize| {
-                plot.at(self.preview.seconds(k), values.get(k).copied().unwrap_or_default())
-            };
-            simplified(thinned(values).into_iter().map(place).collect())
+            plot.curve(values, CURVE_POINTS, |k| self.preview.seconds(k))
         };
         if let Some(plot) = &self.output {
             let range = self.preview.joint.rig.range.into_iter();
@@ -165,21 +151,18 @@ impl<'p> Page<'p> {
                 .filter(|limit| (low..high).contains(limit))
                 .map(|limit| plot.level(limit).to_vec())
                 .collect();
-            strips(chunks, at(root, sheet::RANGE), palette::REJECTED, 1.0, limits)?;
+            layers.strips("range", palette::REJECTED, 1.0, [limits])?;
             let outputs = self.preview.expected.iter();
-            let (lines, colors): (Vec<_>, Vec<_>) =
-                outputs.map(|e| (curve(plot, &e.prediction.output), color(e.rgb))).unzip();
-            let lines = LineStrips2D::new(lines).with_colors(colors).with_radii([1.5]);
-            let lines = lines.with_draw_order(DrawOrder::from(40.0));
-            chunks.push_static(at(root, sheet::EXPECTED), &lines)?;
+            let lines = outputs.map(|e| (curve(plot, &e.prediction.output), color(e.rgb)));
+            layers.order(40.0).colored("expected", 1.5, [lines.collect()])?;
         }
         let (Some(plot), Some(apart)) = (&self.apart, &self.preview.apart) else { return Ok(()) };
         let line = vec![curve(plot, &apart.over_noise)];
-        strips(chunks, at(root, sheet::APART), palette::ERROR, 1.4, line)
+        layers.strips("apart", palette::ERROR, 1.4, [line])
     }
 
     /// What the colours mean.
-    fn add_legend(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+    fn legend(&self) -> Labels {
         /// Row of the legend on the sheet, and the distance of its entries.
         const ROW: f32 = 1055.0;
         const DISTANCE: f32 = 320.0;
@@ -194,17 +177,16 @@ impl<'p> Page<'p> {
             let text = format!("– range: {} to {}", measure(low, None), measure(high, unit));
             entries.push((text, palette::REJECTED));
         }
-        let (mut labels, mut colors) = (Labels::default(), Vec::new());
+        let mut labels = Labels::default();
         let first = 0.5 * (SHEET.0 - DISTANCE * (entries.len() - 1) as f32);
         for (place, (text, rgb)) in entries.into_iter().enumerate() {
-            labels.put(Vec2D::new(first + DISTANCE * place as f32, ROW), text);
-            colors.push(color(rgb));
+            labels.put_in(rgb, Vec2D::new(first + DISTANCE * place as f32, ROW), text);
         }
-        put_texts(chunks, at(root, sheet::LEGEND), labels, &colors)
+        labels
     }
 
     /// The part of all squared differences that lies in each hold, where there is much of it.
-    fn add_shares(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+    fn add_shares(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
         /// Holds that are named.
         const NAMED: usize = 6;
         /// Smaller parts are not named.
@@ -217,23 +199,17 @@ impl<'p> Page<'p> {
             let middle = self.preview.seconds(start + hold.samples / 2);
             labels.put(plot.above(middle, 0.0), format!("{:.0} %", 100.0 * share));
         }
-        put_texts(chunks, at(root, sheet::SHARES), labels, &[color(palette::ERROR)])
+        layers.texts("shares", palette::ERROR, [labels])
     }
 
     /// The hold under the cursor: a frame through all plots, and its level.
-    fn add_here(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
-        let mut rows = Rows::new(chunks, root.clone(), self.preview.hold_rows());
+    fn add_here(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
         let holds = self.preview.holds();
         let frame = |(start, end): &(usize, usize)| {
             let [from, to] = [*start, *end].map(|sample| self.preview.seconds(sample));
-            let frame = |plot: &Plot| {
-                let [a, b] = plot.vertical(from);
-                let [c, d] = plot.vertical(to);
-                vec![a, b, d, c, a]
-            };
-            self.plots().map(frame).collect()
+            self.plots().map(|plot| plot.column(from, to)).collect()
         };
-        rows.strips(sheet::HERE_FRAME, palette::HERE, 1.2, holds.iter().map(frame))?;
+        layers.strips("here/frame", palette::HERE, 1.2, holds.iter().map(frame))?;
         let unit = self.preview.joint.rig.input_unit.as_deref();
         let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
         let names = holds.iter().zip(self.preview.joint.schedule.holds()).zip(1..);
@@ -245,6 +221,6 @@ impl<'p> Page<'p> {
                 labels.put_whole(self.input.above(self.preview.seconds(*start), 2.0 * TITLE), text);
                 labels
             };
-        rows.texts(sheet::HERE_NAME, palette::HERE, names.map(name))
+        layers.texts("here/name", palette::HERE, names.map(name))
     }
 }

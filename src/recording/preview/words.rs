@@ -2,38 +2,25 @@
 
 use std::fmt::Write as _;
 
-use rerun::{EntityPath, TextDocument, TextLog};
-
 use super::expected::Preview;
 use crate::design::Hold;
 use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
 use crate::recording::markdown::plain;
-use crate::recording::paths::{at, preview as paths};
+use crate::recording::paths;
 use crate::report::{SIDE_HEADER, design_sentences, side_rows};
 use crate::wording::measure;
 
 /// Adds all words below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    preview: &Preview<'_>,
-) -> Result<(), RecordError> {
-    let says = TextDocument::from_markdown(says(preview).unwrap_or_default());
-    chunks.push_static(at(root, paths::SAYS), &says)?;
-    let holds = preview.joint.schedule.holds().iter().zip(preview.holds());
-    let pages = holds.clone().enumerate().map(|(place, (hold, (start, end)))| {
-        page(preview, place, *hold, (start, end)).unwrap_or_default()
-    });
-    let pages: Vec<String> = pages.collect();
-    let media = std::iter::repeat_n("text/markdown", pages.len());
-    let pages = TextDocument::update_fields().with_many_text(pages).with_many_media_type(media);
-    let columns = pages.columns_of_unit_batches()?;
-    chunks.push(at(root, paths::HERE), preview.hold_rows(), columns)?;
-    let lines = holds.enumerate().map(|(place, (hold, _))| line(preview, place, *hold));
-    let lines = TextLog::update_fields().with_many_text(lines);
-    let columns = lines.columns_of_unit_batches()?;
-    chunks.push(at(root, paths::HOLDS), preview.hold_rows(), columns)
+pub(super) fn add(chunks: &mut Chunks, preview: &Preview<'_>) -> Result<(), RecordError> {
+    chunks.page(paths::SAYS, says(preview).unwrap_or_default())?;
+    let holds = preview.joint.schedule.holds().iter().zip(preview.holds()).enumerate();
+    let pages = holds
+        .clone()
+        .map(|(place, (hold, ends))| page(preview, place, *hold, ends).unwrap_or_default());
+    chunks.pages(paths::HERE, preview.hold_rows(), pages)?;
+    let lines = holds.map(|(place, (hold, _))| (None, line(preview, place, *hold)));
+    chunks.lines(paths::HOLDS, preview.hold_rows(), lines)
 }
 
 type Written = Result<String, std::fmt::Error>;

@@ -10,18 +10,16 @@ use super::residual;
 use crate::experiment::Joint;
 use crate::recording::canvas::Span;
 use crate::recording::error::RecordError;
-use crate::recording::error_share::short;
+use crate::recording::layers::{Ink, Layers};
 use crate::recording::palette;
-use crate::recording::paths::revision::sheet;
-use crate::recording::rows::Rows;
-use crate::recording::sheet::Sheet;
 use crate::report::ImprovedJoint;
+use crate::wording::bracketed;
 
 /// Speeds and laws of each revision, and what is drawn of them.
 pub(super) struct Evidence {
     pub(super) held: Vec<Vec<Held>>,
     pub(super) laws: Vec<Law>,
-    figures: Vec<Figure>,
+    pub(super) figures: Vec<Figure>,
 }
 
 /// What is measured, and what the models of `improved` make of it.
@@ -67,65 +65,41 @@ pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
 }
 
 fn title(joint: &Joint, shown: Shown) -> String {
-    let unit = |unit: &Option<String>, per: &str| {
-        unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}{per}]"))
+    let (what, per) = match shown {
+        Shown::Speed => ("measured speed", "/s"),
+        Shown::Output => ("measured output", ""),
     };
-    let input = unit(&joint.input_unit, "");
-    match shown {
-        Shown::Speed => {
-            format!("measured speed{} at held input{input}", unit(&joint.output_unit, "/s"))
-        }
-        Shown::Output => {
-            format!("measured output{} at held input{input}", unit(&joint.output_unit, ""))
-        }
-    }
+    let unit = joint.output_unit.as_ref().map(|unit| format!("{unit}{per}"));
+    let input = bracketed("held input", joint.input_unit.as_deref());
+    format!("{} at {input}", bracketed(what, unit.as_deref()))
 }
 
 /// Adds the points, and the laws drawn through them.
-pub(super) fn add(rows: &mut Rows<'_>, evidence: &Evidence) -> Result<(), RecordError> {
+pub(super) fn add(rows: &mut Layers<'_>, evidence: &Evidence) -> Result<(), RecordError> {
     let figures = || evidence.figures.iter();
     let own: Vec<_> = (0..evidence.figures.len()).map(palette::model).collect();
     // The first one has none before it.
     let before: Vec<_> = own.first().into_iter().chain(&own).take(own.len()).copied().collect();
     let proposed = vec![palette::PROPOSED; own.len()];
     let fallen = vec![palette::DOWN; own.len()];
-    for (name, which, rgbs, radius) in [
-        (sheet::BEFORE, 1, &before, 2.0),
-        (sheet::PROPOSED, 2, &proposed, 2.0),
-        (sheet::LAW, 0, &own, 3.0),
-    ] {
-        rows.strips_by_row(name, rgbs, radius, figures().map(|figure| figure.curve(which)))?;
+    for (name, which, rgbs, radius) in
+        [("before", 1, &before, 2.0), ("proposed", 2, &proposed, 2.0), ("law", 0, &own, 3.0)]
+    {
+        let laws = figures().map(|figure| figure.curve(which));
+        rows.strips(name, Ink::ByRow(rgbs.clone()), radius, laws)?;
     }
-    rows.strips(sheet::UNCERTAIN, palette::MEASURED, 0.8, figures().map(Figure::uncertain))?;
-    rows.points_by_row(sheet::SIMULATED, &own, 3.5, figures().map(Figure::simulated))?;
-    rows.points(sheet::POINTS, palette::MEASURED, 4.0, figures().map(Figure::measured))?;
-    rows.points(sheet::FALLEN, palette::DOWN, 4.0, figures().map(Figure::fallen))?;
+    rows.strips("uncertain", palette::MEASURED, 0.8, figures().map(Figure::uncertain))?;
+    let simulated = figures().map(Figure::simulated);
+    rows.points("simulated", Ink::ByRow(own.clone()), 3.5, simulated)?;
+    rows.points("points", palette::MEASURED, 4.0, figures().map(Figure::measured))?;
+    rows.points("fallen", palette::DOWN, 4.0, figures().map(Figure::fallen))?;
     for (name, which, rgbs) in [
-        (sheet::LAW_NAME, 0, &own),
-        (sheet::BEFORE_NAME, 1, &before),
-        (sheet::PROPOSED_NAME, 2, &proposed),
-        (sheet::FALLEN_NAME, 3, &fallen),
+        ("law_name", 0, own),
+        ("before_name", 1, before),
+        ("proposed_name", 2, proposed),
+        ("fallen_name", 3, fallen),
     ] {
-        rows.texts_by_row(name, rgbs, figures().map(|figure| figure.legend(which)))?;
+        rows.texts(name, Ink::ByRow(rgbs), figures().map(|figure| figure.legend(which)))?;
     }
     Ok(())
-}
-
-impl Evidence {
-    /// Grid and title of the plot of the revision at `place`.
-    pub(super) fn sheet(&self, place: usize) -> Sheet {
-        let mut drawn = Sheet::default();
-        if let Some(figure) = self.figures.get(place) {
-            let plot = figure.plot();
-            let ticks = |ticks: Vec<f64>| ticks.into_iter().map(|tick| (tick, short(tick)));
-            let x_ticks = plot.x_span().ticks(5.0);
-            let y_ticks: Vec<_> = ticks(plot.y_span().ticks(4.0)).collect();
-            drawn.outline(&plot, &x_ticks, &y_ticks);
-            drawn.put(Figure::title_place(), figure.title.clone());
-            for (x, text) in ticks(x_ticks) {
-                drawn.put(plot.below(x, 2.0), text);
-            }
-        }
-        drawn
-    }
 }

@@ -2,9 +2,9 @@
 
 use rerun::datatypes::Vec2D;
 
-use crate::diagnosis::sensor_noise;
 use crate::recording::canvas::{HALF_LETTER, Labels, Plot, Span, Strips};
-use crate::report::ImprovedJoint;
+use crate::recording::error_share::short;
+use crate::recording::sheet::Sheet;
 
 /// Left, right and lower end of the plot on the sheet.
 const PLACE: ((f32, f32), f32) = ((760.0, 1235.0), 450.0);
@@ -35,11 +35,6 @@ pub(super) struct Held {
     pub(super) simulated: Option<f64>,
 }
 
-/// The noise of the sensor, from the record alone: one for all revisions.
-pub(super) fn noise(improved: &ImprovedJoint<'_>) -> Option<f64> {
-    sensor_noise(&improved.finding.compared.joint.trials)
-}
-
 /// Level of the input, and the speed that a model makes of it.
 pub(super) type Law = Vec<(f64, f64)>;
 
@@ -63,10 +58,18 @@ impl Figure {
         Plot::within(columns, top..=bottom, self.x, self.y)
     }
 
-    /// Where the title stands.
-    pub(super) fn title_place() -> Vec2D {
+    /// Grid and title.
+    pub(super) fn sheet(&self) -> Sheet {
+        let (plot, mut sheet) = (self.plot(), Sheet::default());
+        let named = |ticks: Vec<f64>| ticks.into_iter().map(|tick| (tick, short(tick)));
+        let x_ticks = plot.x_span().ticks(5.0);
+        sheet.outline(&plot, &x_ticks, &named(plot.y_span().ticks(4.0)).collect::<Vec<_>>());
         let ((left, right), _) = PLACE;
-        Vec2D::new(f32::midpoint(left, right), TITLE - NAME)
+        sheet.put(Vec2D::new(f32::midpoint(left, right), TITLE - NAME), self.title.clone());
+        for (x, text) in named(x_ticks) {
+            sheet.put(plot.below(x, 2.0), text);
+        }
+        sheet
     }
 
     pub(super) fn curve(&self, which: usize) -> Strips {

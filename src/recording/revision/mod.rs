@@ -4,17 +4,16 @@
 //! What is drawn lies on the other timelines too, at their first moment, so that the page is
 //! never empty; there the last revision is seen.
 
-mod bars;
 mod evidence;
 mod figure;
 mod holds;
 mod ladder;
 mod law;
 mod pages;
-mod ranking;
 mod record;
 mod residual;
 mod words;
 
+pub(super) use ladder::judged;
 pub(super) use pages::{SIZE, add};
 pub(super) use record::{SIZE as RECORD_SIZE, add as add_record};

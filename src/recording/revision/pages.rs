@@ -1,19 +1,19 @@
 //! All pages on the revisions of a model, and what a program reads of them.
 
-use rerun::{EntityPath, Scalars, TextDocument};
+use rerun::TextDocument;
 
 use super::figure::Held;
-use super::{evidence, ladder, ranking, record, words};
+use super::{evidence, ladder, record, words};
 use crate::diagnosis::Comparison;
 use crate::explain::{Change, Revision};
 use crate::recording::canvas::Labels;
 use crate::recording::chunk::{Chunks, Index, Moment, lists};
 use crate::recording::error::RecordError;
 use crate::recording::error_share;
-use crate::recording::layout::{JointLayout, TrialLayout};
+use crate::recording::layers::Layers;
+use crate::recording::layout::JointLayout;
 use crate::recording::palette;
-use crate::recording::paths::{at, revision as paths};
-use crate::recording::rows::Rows;
+use crate::recording::paths;
 use crate::report::{ComparedJoint, ImprovedJoint};
 
 /// Width and height of the sheet with ladder, evidence and ranking.
@@ -22,8 +22,8 @@ pub(in crate::recording) const SIZE: (f32, f32) = (1900.0, 520.0);
 /// Rows of the joint that is recorded.
 struct Steps<'c> {
     chunks: &'c mut Chunks,
-    root: EntityPath,
-    numbers: Vec<i64>,
+    /// The timeline of revisions alone.
+    numbers: Index,
     index: Index,
     /// Whether the index begins with a tick that shows the last revision.
     opens_on_last: bool,
@@ -32,32 +32,31 @@ struct Steps<'c> {
 /// Adds everything on the revisions of `improved` below `root`/revision.
 pub(in crate::recording) fn add(
     chunks: &mut Chunks,
-    root: &EntityPath,
     layout: &JointLayout<'_>,
     improved: &ImprovedJoint<'_>,
 ) -> Result<(), RecordError> {
-    let start = layout.trials.first().map(|trial: &TrialLayout<'_>| trial.moment_of(1));
-    let Some(start) = start else { return Ok(()) };
-    // Before the first tick, where a viewer may open.
-    let moment = Moment { decision: 0, ..start };
+    let Some(start) = layout.start() else { return Ok(()) };
     let numbers: Vec<i64> = improved.numbered().map(|(number, _)| i64::from(number)).collect();
-    let rank = layout.segments().next().map(|_| 1);
     let opening = layout.first.revision.filter(|tick| numbers.iter().all(|number| number > tick));
-    let ticks = opening.into_iter().chain(numbers.iter().copied()).collect();
-    let index = Index::of_revisions(ticks, moment, rank);
-    let root = at(root, paths::ROOT);
+    let ticks: Vec<i64> = opening.into_iter().chain(numbers.iter().copied()).collect();
+    // All of them at one moment, before the first tick, where a viewer may open: on the other timelines
+    // the last one is seen.
+    let moment = Moment { decision: 0, ..start };
+    let index = std::iter::repeat_n(moment, ticks.len()).collect::<Index>();
+    let index = index.with("revision", ticks);
+    let index = index.all_at("doubt", layout.segments().next().map(|_| 1));
+    let numbers = Index::on("revision", numbers);
     let opens_on_last = opening.is_some();
-    let mut steps = Steps { chunks, root, numbers, index, opens_on_last };
+    let mut steps = Steps { chunks, numbers, index, opens_on_last };
     steps.figures(improved)?;
     steps.words(layout, improved)?;
     let models: Vec<_> = improved.revisions.iter().map(|revision| &revision.comparison).collect();
     let joint = improved.finding.compared.joint;
-    record::add(&mut steps.rows(paths::record::ROOT), layout, joint, &models)?;
+    record::add(&mut steps.layers(paths::REVISION_RECORD), layout, joint, &models)?;
     let evidence = evidence::evidence(improved);
     steps.evidence(&evidence)?;
-    let mut rows = steps.rows(paths::sheet::ROOT);
+    let mut rows = steps.layers(paths::REVISION_SHEET);
     ladder::add(&mut rows, improved)?;
-    ranking::add(&mut rows, improved)?;
     evidence::add(&mut rows, &evidence)?;
     around(&mut rows, improved, &evidence)?;
     steps.shares(improved)
@@ -65,33 +64,30 @@ pub(in crate::recording) fn add(
 
 /// The grid, the noise and the texts of the sheet.
 fn around(
-    rows: &mut Rows<'_>,
+    rows: &mut Layers<'_>,
     improved: &ImprovedJoint<'_>,
     evidence: &evidence::Evidence,
 ) -> Result<(), RecordError> {
     let (mut noise, mut names, mut texts) = (Vec::new(), Vec::new(), Vec::new());
     let mut grids = Vec::new();
-    for at in 0..improved.revisions.len() {
-        let (grid, mut labels) = evidence.sheet(at).into_parts();
+    for (at, figure) in evidence.figures.iter().enumerate() {
+        let (grid, mut labels) = figure.sheet().into_parts();
         let mut floor = Labels::default();
-        let mut lines = ladder::around(improved, at, &mut labels, &mut floor);
-        lines.extend(ranking::around(improved, at, &mut labels, &mut floor));
+        noise.push(ladder::around(improved, at, &mut labels, &mut floor));
         grids.push(grid);
-        noise.push(lines);
         names.push(floor);
         texts.push(labels);
     }
-    rows.strips(paths::sheet::GRID, palette::GRID, 0.7, grids.into_iter())?;
-    rows.strips(paths::sheet::NOISE, palette::NOISE, 1.6, noise.into_iter())?;
-    rows.texts(paths::sheet::NOISE_NAME, palette::NOISE, names.into_iter())?;
-    rows.texts(paths::sheet::TEXTS, palette::BORDER, texts.into_iter())
+    rows.strips("grid", palette::GRID, 0.7, grids)?;
+    rows.strips("noise", palette::NOISE, 1.6, noise)?;
+    rows.texts("noise_name", palette::NOISE, names)?;
+    rows.texts("texts", palette::BORDER, texts)
 }
 
 impl Steps<'_> {
-    fn rows(&mut self, path: &str) -> Rows<'_> {
-        let root = at(&self.root, path);
-        let rows = Rows::new(self.chunks, root, self.index.clone()).back_to_front();
-        if self.opens_on_last { rows.opening_on_last() } else { rows }
+    fn layers(&mut self, path: &str) -> Layers<'_> {
+        let layers = Layers::rows(self.chunks, path, self.index.clone()).back_to_front();
+        if self.opens_on_last { layers.opening_on_last() } else { layers }
     }
 
     /// Errors and what was added, for programs.
@@ -99,25 +95,23 @@ impl Steps<'_> {
         type Effect = fn(&Revision) -> Option<&'static str>;
         type Figure = fn(&Comparison) -> Option<f64>;
         let figures: [(&str, Figure); 3] = [
-            (paths::VALIDATION_RMSE, |c| c.validation.map(|error| error.rmse)),
-            (paths::TRAINING_RMSE, |c| c.training.map(|error| error.rmse)),
-            (paths::NOISE_FLOOR, |c| c.sensor_noise),
+            ("validation_rmse", |c| c.validation.map(|error| error.rmse)),
+            ("training_rmse", |c| c.training.map(|error| error.rmse)),
+            ("noise_floor", |c| c.sensor_noise),
         ];
         for (path, figure) in figures {
             let all = improved.revisions.iter().map(|revision| figure(&revision.comparison));
-            let lengths = all.clone().map(|value| usize::from(value.is_some()));
-            let columns = Scalars::new(all.clone().flatten()).columns(lengths)?;
-            let entity = at(&self.root, path);
-            self.chunks.push_revisions(entity, self.numbers.clone(), columns)?;
+            let entity = format!("revision/{path}");
+            self.chunks.scalars(entity, self.numbers.clone(), &all.collect::<Vec<_>>())?;
         }
-        let changes: [(&str, Effect); 2] = [(paths::ADDED, added), (paths::REMOVED, removed)];
+        let changes: [(&str, Effect); 2] = [("added", added), ("removed", removed)];
         for (path, effect) in changes {
             let effects: Vec<_> = improved.revisions.iter().map(effect).collect();
             let lengths = effects.iter().map(|effect| usize::from(effect.is_some()));
             let texts =
                 TextDocument::update_fields().with_many_text(effects.iter().flatten().copied());
-            let entity = at(&self.root, path);
-            self.chunks.push_revisions(entity, self.numbers.clone(), texts.columns(lengths)?)?;
+            let entity = format!("revision/{path}");
+            self.chunks.push(entity, self.numbers.clone(), texts.columns(lengths)?)?;
         }
         Ok(())
     }
@@ -139,8 +133,7 @@ impl Steps<'_> {
             lists("law_input", &law(|point| point.0)),
             lists("law_speed", &law(|point| point.1)),
         ];
-        let entity = at(&self.root, paths::EVIDENCE);
-        self.chunks.push_revisions(entity, self.numbers.clone(), columns)
+        self.chunks.push("revision/evidence", self.numbers.clone(), columns)
     }
 
     fn words(
@@ -152,14 +145,10 @@ impl Steps<'_> {
         let last = improved.revisions.len().checked_sub(1).filter(|_| self.opens_on_last);
         let shown: Vec<_> = last.into_iter().chain(0..improved.revisions.len()).collect();
         let pages: [(&str, Page); 2] =
-            [(paths::WORDS, words::page), (paths::PARAMETERS, words::parameters)];
+            [(paths::REVISION_WORDS, words::page), (paths::REVISION_PARAMETERS, words::parameters)];
         for (path, page) in pages {
-            let texts: Vec<_> = shown.iter().map(|at| page(layout, improved, *at)).collect();
-            let columns = TextDocument::update_fields()
-                .with_many_text(texts)
-                .with_many_media_type(vec![rerun::MediaType::markdown(); shown.len()])
-                .columns_of_unit_batches()?;
-            self.chunks.push(at(&self.root, path), self.index.clone(), columns)?;
+            let texts = shown.iter().map(|at| page(layout, improved, *at));
+            self.chunks.pages(path, self.index.clone(), texts)?;
         }
         Ok(())
     }
@@ -184,11 +173,11 @@ impl Steps<'_> {
             texts.push(labels);
             marks.push(drawing.marks);
         }
-        let mut rows = self.rows(paths::share::ROOT);
-        rows.strips(paths::share::GRID, palette::GRID, 0.7, grids.into_iter())?;
-        rows.colored(paths::share::BARS, error_share::HATCH, bars.into_iter())?;
-        rows.strips(paths::share::TIME, palette::BORDER, 1.6, marks.into_iter())?;
-        rows.texts(paths::share::TEXTS, palette::BORDER, texts.into_iter())
+        let mut layers = self.layers(paths::REVISION_SHARE);
+        layers.strips("grid", palette::GRID, 0.7, grids)?;
+        layers.colored("bars", error_share::HATCH, bars)?;
+        layers.strips("time", palette::BORDER, 1.6, marks)?;
+        layers.texts("texts", palette::BORDER, texts)
     }
 }
 

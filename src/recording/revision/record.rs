@@ -5,16 +5,15 @@ use std::ops::{Range, RangeInclusive};
 use crate::diagnosis::failure::WorstSegment;
 use rerun::datatypes::Vec2D;
 
+use super::ladder::judged;
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
-use crate::recording::canvas::{Plot, SHEET, Span, Strips, simplified, thinned_to};
+use crate::recording::canvas::{Plot, SHEET, Span, Strips};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
+use crate::recording::layers::{Ink, Layers};
 use crate::recording::layout::{JointLayout, TrialLayout};
 use crate::recording::palette;
-use crate::recording::paths::revision::record;
-use crate::recording::rows::Rows;
-use crate::recording::rungs::judged;
 use crate::recording::shaded::{Spans, areas, condition, validation, where_it_fails};
 use crate::recording::sheet::Sheet;
 use crate::report::MANY_TIMES_NOISE;
@@ -41,7 +40,7 @@ const BELOW_UNSEEN: f32 = 0.2;
 
 /// Adds the drawings of models of `joint`, which follow one another on the timeline of `rows`.
 pub(in crate::recording) fn add(
-    rows: &mut Rows<'_>,
+    rows: &mut Layers<'_>,
     layout: &JointLayout<'_>,
     joint: &Joint,
     models: &[&Comparison],
@@ -57,31 +56,33 @@ pub(in crate::recording) fn add(
     let (grids, texts): (Vec<_>, Vec<_>) = sheets.unzip();
     // What was not fitted is seen above where the model fails.
     for (path, rgb, from, spans) in [
-        (record::VALIDATION, palette::UNSEEN_GROUND, 0.0, validation as fn(&Comparison) -> Spans),
-        (record::FAILS, palette::FAILS_GROUND, BELOW_UNSEEN, where_it_fails),
+        ("validation", palette::UNSEEN_GROUND, 0.0, validation as fn(&Comparison) -> Spans),
+        ("fails", palette::FAILS_GROUND, BELOW_UNSEEN, where_it_fails),
     ] {
         let each = of_each().zip(&residuals);
         let shaded = each.map(|(comparison, plot)| areas(layout, plot, from, &spans(comparison)));
         rows.strips(path, rgb, HATCH, shaded)?;
     }
-    rows.strips(record::GRID, palette::GRID, 0.7, grids.into_iter())?;
-    rows.texts(record::TEXTS, palette::BORDER, texts.into_iter())?;
+    rows.strips("grid", palette::GRID, 0.7, grids)?;
+    rows.texts("texts", palette::BORDER, texts)?;
     let windows = close_ups.iter().map(|close| drawing.window_in_record(close));
-    rows.strips(record::WINDOW, palette::BORDER, 0.9, windows)?;
+    rows.strips("window", palette::BORDER, 0.9, windows)?;
     let measured =
         close_ups.iter().map(|close| drawing.outputs(close, |trial| trial.trial.output()));
-    rows.strips(record::MEASURED, palette::MEASURED, 3.0, measured)?;
-    let simulated = of_each().zip(&close_ups).map(|(c, close)| drawing.simulated(c, close));
+    rows.strips("measured", palette::MEASURED, 3.0, measured)?;
+    let simulated =
+        of_each().zip(&close_ups).map(|(c, close)| drawing.outputs(close, |t| t.simulated(c)));
     let own: Vec<_> = (0..models.len()).map(palette::model).collect();
-    rows.strips_by_row(record::SIMULATED, &own, 1.2, simulated)?;
+    rows.strips("simulated", Ink::ByRow(own.clone()), 1.2, simulated)?;
     let of_plots = || of_each().zip(&residuals);
-    let curves = of_plots().map(|(comparison, plot)| drawing.residual(comparison, plot));
-    rows.strips_by_row(record::RESIDUAL, &own, 1.0, curves)?;
+    let curves =
+        of_plots().map(|(comparison, plot)| drawing.curves(plot, |t| t.residual(comparison)));
+    rows.strips("residual", Ink::ByRow(own), 1.0, curves)?;
     let worst = of_plots().map(|(comparison, plot)| worst(layout, comparison, plot));
-    rows.strips(record::WORST, palette::REJECTED, 3.0, worst)?;
+    rows.strips("worst", palette::REJECTED, 3.0, worst)?;
     // The noise is the sensor's, whatever the model.
     let noise = drawing.noise;
-    rows.strips(record::NOISE, palette::NOISE, 1.0, residuals.iter().map(|p| band(p, noise)))
+    rows.strips("noise", palette::NOISE, 1.0, residuals.iter().map(|p| band(p, noise)))
 }
 
 /// Where the curves lie on the sheet.
@@ -107,22 +108,18 @@ impl CloseUp {
     fn of(layout: &JointLayout<'_>, comparison: &Comparison) -> Self {
         let worst = comparison.failure.as_ref().and_then(|failure| failure.worst_segments.first());
         let named = worst.and_then(|worst| Window::about(layout, worst));
-        let window = named.unwrap_or_else(|| Window::worst(&residuals(layout, comparison)));
-        let trial = layout.trials.get(window.place).filter(|_| layout.trials.len() > 1);
-        let title = trial.map_or_else(
-            || match worst {
-                Some(_) => "close up: worst segment 1".to_owned(),
-                None => "close up: where the residual is largest".to_owned(),
-            },
-            |trial| match worst {
-                Some(_) => format!("segment 1: trial {}", trial.trial.label()),
-                None => format!("largest residual: trial {}", trial.trial.label()),
-            },
-        );
-        let all = trial_values(layout, &window, |trial| {
-            let simulated = comparison.fit.evaluation.simulated.get(trial.index);
-            simulated.map_or(&[], |simulated| simulated.output.as_slice())
+        let window = named.unwrap_or_else(|| {
+            let residuals = layout.trials.iter().map(|trial| trial.residual(comparison));
+            Window::worst(&residuals.collect::<Vec<_>>())
         });
+        let trial = layout.trials.get(window.place).filter(|_| layout.trials.len() > 1);
+        let title = match (worst, trial.map(|trial| trial.trial.label())) {
+            (Some(_), None) => "close up: worst segment 1".to_owned(),
+            (None, None) => "close up: where the residual is largest".to_owned(),
+            (Some(_), Some(trial)) => format!("segment 1: trial {trial}"),
+            (None, Some(trial)) => format!("largest residual: trial {trial}"),
+        };
+        let all = trial_values(layout, &window, |trial| trial.simulated(comparison));
         Self { plot: close_up(layout, &window, all), window, title }
     }
 }
@@ -174,7 +171,7 @@ const PARTS: usize = 15;
 impl<'l, 'a> Drawing<'l, 'a> {
     fn of(layout: &'l JointLayout<'a>, joint: &'l Joint) -> Self {
         let trials = &layout.trials;
-        let ends = trials.iter().flat_map(|t| [seconds(t, 1), seconds(t, t.trial.len())]);
+        let ends = trials.iter().flat_map(|t| [t.seconds(1), t.seconds(t.trial.len())]);
         let x = Span::around(ends, 0.005);
         let outputs = trials.iter().flat_map(|trial| trial.trial.output().iter().copied());
         Self {
@@ -213,7 +210,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
             (&close.plot, Vec::new(), close.title.clone()),
         ] {
             sheet.outline(plot, &x_ticks, &ticks(plot));
-            sheet.put(plot.above(middle(plot), 46.0), title);
+            sheet.title(plot, 46.0, title);
         }
         let ends = close.plot.x_span();
         // Moved inward: at the corner it would cover the lowest tick of the output.
@@ -239,8 +236,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
         // Its title lies above the bars of the worst segments, not on them.
         sheet.outline(residual_plot, &x_ticks, &ticks(residual_plot));
         // Two rows: one of all of it is wider than a small window.
-        sheet.put(residual_plot.above(middle(residual_plot), 118.0), residual);
-        sheet.put(residual_plot.above(middle(residual_plot), 80.0), key.join(" · "));
+        sheet.title(residual_plot, 118.0, residual);
+        sheet.title(residual_plot, 80.0, key.join(" · "));
         for x in x_ticks {
             sheet.put(residual_plot.below(x, 2.0), short(x));
         }
@@ -268,9 +265,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let close = trial.map(|trial| {
             let part = values(trial).get(close.window.samples.clone()).unwrap_or_default();
             let first = close.window.samples.start + 1;
-            let kept = thinned_to(part, POINTS).into_iter();
-            let place = |k: usize| Some(close.plot.at(seconds(trial, first + k), *part.get(k)?));
-            simplified(kept.filter_map(place).collect())
+            close.plot.curve(part, POINTS, |k| trial.seconds(first + k))
         });
         curves.extend(close);
         curves
@@ -279,25 +274,10 @@ impl<'l, 'a> Drawing<'l, 'a> {
     /// A curve per trial.
     fn curves<'v>(&self, plot: &Plot, values: impl Fn(&TrialLayout<'a>) -> &'v [f64]) -> Strips {
         let curve = |trial: &TrialLayout<'a>| {
-            let values = values(trial);
             let share = POINTS * trial.trial.len() / self.samples.max(1);
-            let kept = thinned_to(values, share.max(100)).into_iter();
-            let places = kept.filter_map(|k| Some(plot.at(seconds(trial, k + 1), *values.get(k)?)));
-            simplified(places.collect())
+            plot.curve(values(trial), share.max(100), |k| trial.seconds(k + 1))
         };
         self.layout.trials.iter().map(curve).collect()
-    }
-
-    fn simulated(&self, comparison: &Comparison, close: &CloseUp) -> Strips {
-        let all = &comparison.fit.evaluation.simulated;
-        self.outputs(close, |trial| {
-            all.get(trial.index).map_or(&[], |simulated| simulated.output.as_slice())
-        })
-    }
-
-    fn residual(&self, comparison: &Comparison, plot: &Plot) -> Strips {
-        let all = &comparison.fit.evaluation.residuals;
-        self.curves(plot, |trial| all.get(trial.index).map_or(&[], Vec::as_slice))
     }
 }
 
@@ -309,9 +289,8 @@ pub(super) fn worst_spans<'c>(
 ) -> Vec<(&'c WorstSegment, [f64; 2])> {
     let worst = comparison.failure.iter().flat_map(|failure| &failure.worst_segments);
     let of_plots = |worst: &'c WorstSegment| {
-        let mut trials = layout.trials.iter();
-        let trial = trials.find(|trial| trial.trial.label() == worst.trial)?;
-        let shift = seconds(trial, 1) - trial.trial.time_s(1);
+        let trial = layout.trial_of(&worst.trial)?;
+        let shift = trial.seconds(1) - trial.trial.time_s(1);
         Some((worst, [worst.start_s, worst.end_s].map(|time_s| time_s + shift)))
     };
     worst.filter_map(of_plots).collect()
@@ -356,13 +335,6 @@ fn band(plot: &Plot, noise: Option<f64>) -> Strips {
     levels.into_iter().flatten().filter(inside).map(|y| plot.level(y).to_vec()).collect()
 }
 
-/// What a revision leaves of each trial.
-fn residuals<'v>(layout: &JointLayout<'_>, comparison: &'v Comparison) -> Vec<&'v [f64]> {
-    let all = &comparison.fit.evaluation.residuals;
-    let of_trial = |trial: &TrialLayout<'_>| all.get(trial.index).map_or(&[][..], Vec::as_slice);
-    layout.trials.iter().map(of_trial).collect()
-}
-
 /// The values of the window's trial within it.
 fn trial_values<'v>(
     layout: &JointLayout<'v>,
@@ -379,7 +351,7 @@ fn close_up(layout: &JointLayout<'_>, window: &Window, simulated: &[f64]) -> Plo
     let trial = layout.trials.get(window.place);
     let ends = trial.map(|trial| {
         let Range { start, end } = window.samples;
-        [seconds(trial, start + 1), seconds(trial, end)]
+        [trial.seconds(start + 1), trial.seconds(end)]
     });
     let output = trial_values(layout, window, |trial| trial.trial.output()).iter().copied();
     let Span { low, high } = Span::around(output.clone(), 0.0);
@@ -389,17 +361,8 @@ fn close_up(layout: &JointLayout<'_>, window: &Window, simulated: &[f64]) -> Plo
     Plot::within((1010.0, SHEET.0 - 15.0), ROWS, x, Span::around(output.chain(shown), 0.08))
 }
 
-fn middle(plot: &Plot) -> f64 {
-    let Span { low, high } = plot.x_span();
-    f64::midpoint(low, high)
-}
-
 fn ticks(plot: &Plot) -> Vec<(f64, String)> {
     plot.y_span().ticks(4.0).into_iter().map(|tick| (tick, short(tick))).collect()
-}
-
-fn seconds(trial: &TrialLayout<'_>, sample: usize) -> f64 {
-    trial.time_ns(sample) as f64 * 1e-9
 }
 
 #[cfg(test)]

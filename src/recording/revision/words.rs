@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::figure::noise;
+use super::ladder::{judged, noise};
 use super::record::worst_spans;
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::WorstSegment;
@@ -13,7 +13,6 @@ use crate::recording::error_share::short;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;
-use crate::recording::rungs::judged;
 use crate::report::{ImprovedJoint, MANY_TIMES_NOISE, Passage, Topic, change_in_words};
 use crate::wording::{measure, percent, rounded, unit_suffix, worst_segment_text};
 

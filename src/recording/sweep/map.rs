@@ -5,7 +5,7 @@ use rerun::components::{DrawOrder, MagnificationFilter};
 use rerun::datatypes::Vec2D;
 use rerun::{Image, Transform3D};
 
-use super::swept::{Cell, Swept};
+use super::swept::{Cell, Opinion, Swept};
 use crate::delay::sweep::{Factor, Grid};
 use crate::recording::canvas::Plot;
 use crate::recording::palette::{self, Rgb};
@@ -13,9 +13,6 @@ use crate::report::level_text;
 
 /// Rows and columns that a picture may have; of those that share one, the farthest is seen.
 const MOST: usize = 2000;
-
-/// How high above its plot a title is put.
-pub(super) const TITLE: f32 = 44.0;
 
 /// Combinations that follow one another and have the same values of the slowest settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -98,7 +95,8 @@ pub(super) fn picture(swept: &Swept<'_>, plot: &Plot) -> Option<(Image, Transfor
                 .iter()
                 .flat_map(|(step, _)| rows.iter().map(move |one| Swept::cell(step, one.run)));
             let farthest = cells.reduce(|a, b| if b.weight() > a.weight() { b } else { a });
-            let (red, green, blue) = shade(farthest.unwrap_or(Cell::Silent));
+            let (red, green, blue) =
+                shade(farthest.unwrap_or(Cell { opinion: Opinion::Silent, by: 0.0 }));
             bytes.extend([red, green, blue]);
         }
     }
@@ -116,14 +114,13 @@ pub(super) fn picture(swept: &Swept<'_>, plot: &Plot) -> Option<(Image, Transfor
 fn shade(cell: Cell) -> Rgb {
     /// Samples that are half of the way to the strongest shade.
     const HALF: f64 = 4.0;
-    match cell {
-        Cell::Silent => cell.opinion().rgb(),
-        Cell::Same => palette::SAME_GROUND,
-        Cell::Longer(by) | Cell::Shorter(by) => palette::between(
-            palette::SAME_GROUND,
-            cell.opinion().rgb(),
-            0.4 + 0.6 * by / (by + HALF),
-        ),
+    let Cell { opinion, by } = cell;
+    match opinion {
+        Opinion::Silent => opinion.rgb(),
+        Opinion::Same => palette::SAME_GROUND,
+        Opinion::Longer | Opinion::Shorter => {
+            palette::between(palette::SAME_GROUND, opinion.rgb(), 0.4 + 0.6 * by / (by + HALF))
+        }
     }
 }
 

@@ -4,15 +4,12 @@
 //! timeline `setting` (a tick per run) and one on `segment` (a tick per step) go through it.
 //! A second page has the output around one step with what each setting makes of it.
 
-mod about;
-mod assembly;
 mod data;
 mod map;
-mod recorded;
+mod recording;
 mod sheet;
 mod step;
 mod swept;
-mod views;
 mod words;
 
-pub use recorded::SweepRecording;
+pub use recording::SweepRecording;

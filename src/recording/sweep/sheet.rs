@@ -3,21 +3,21 @@
 
 use std::collections::BTreeMap;
 
-use rerun::components::{Color, DrawOrder};
+use rerun::Points2D;
+use rerun::components::DrawOrder;
 use rerun::datatypes::Vec2D;
-use rerun::{EntityPath, LineStrips2D, Points2D};
 
-use super::map::{Block, TITLE, beside, blocks, named, picture, rows_of};
+use super::map::{Block, beside, blocks, named, picture, rows_of};
 use super::swept::{Opinion, Swept};
 use crate::delay::sweep::{Factor, SweptStep};
 use crate::numerics::quantile;
 use crate::recording::canvas::{Labels, Plot, SHEET, Span};
 use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
+use crate::recording::layers::{Ink, Layers};
 use crate::recording::palette::{self, Rgb, color};
-use crate::recording::paths::{at, sweep::sheet};
-use crate::recording::rows::Rows;
-use crate::recording::sheet::{Sheet, put_texts, strips};
+use crate::recording::paths;
+use crate::recording::sheet::{Sheet, TITLE};
 use crate::report::settings_in_words;
 use crate::wording::number;
 
@@ -32,20 +32,16 @@ const SIDES: (f32, f32) = (196.0, SHEET.0 - 70.0);
 const NAMED: usize = 20_000_000;
 
 /// Draws the page below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    swept: &Swept<'_>,
-) -> Result<(), RecordError> {
-    let root = at(root, sheet::ROOT);
+pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
     let page = Page::of(swept);
-    page.add_grid(chunks, &root)?;
-    page.add_delays(chunks, &root)?;
-    page.add_sensitive(chunks, &root)?;
-    page.add_map(chunks, &root)?;
-    put_legend(chunks, &root, swept)?;
-    page.add_setting(chunks, &root)?;
-    page.add_step(chunks, &root)
+    let mut layers = Layers::fixed(chunks, paths::SHEET);
+    layers.sheets([page.grid()])?;
+    page.add_delays(&mut layers)?;
+    page.add_sensitive(&mut layers)?;
+    page.add_map(&mut layers)?;
+    layers.texts("legend", Ink::Own, [legend(swept)])?;
+    page.add_setting(&mut Layers::rows(chunks, paths::SHEET, swept.settings()))?;
+    page.add_step(&mut Layers::rows(chunks, paths::SHEET, swept.index.clone()))
 }
 
 /// The three plots on their sheet, which share the axis of steps.
@@ -112,18 +108,13 @@ impl<'s> Page<'s> {
         }
     }
 
-    /// Where the title of a plot is put.
-    fn title(&self, plot: &Plot) -> Vec2D {
-        plot.above(middle(self.map.x_span()), TITLE)
-    }
-
     /// Each step with its place on the axis.
     fn steps(&self) -> impl Iterator<Item = (f64, &'s SweptStep)> {
         (1_u32..).map(f64::from).zip(self.swept.steps.iter().map(|(step, _)| *step))
     }
 
     /// Frames, ticks and titles.
-    fn add_grid(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+    fn grid(&self) -> Sheet {
         /// Ticks of the delay, about.
         const TICKS: f64 = 6.0;
         let mut sheet = Sheet::default();
@@ -133,8 +124,8 @@ impl<'s> Page<'s> {
         sheet.outline(&self.delays, &ticks, &seconds);
         sheet.outline(&self.sensitive, &ticks, &[]);
         sheet.outline(&self.map, &[], &[]);
-        sheet.put(self.title(&self.delays), "delay of each step, with every setting");
-        sheet.put(self.title(&self.sensitive), "steps sensitive to");
+        sheet.title(&self.delays, TITLE, "delay of each step, with every setting");
+        sheet.title(&self.sensitive, TITLE, "steps sensitive to");
         for x in ticks {
             sheet.put(self.map.below(x, 2.0), number(x));
         }
@@ -144,11 +135,11 @@ impl<'s> Page<'s> {
             let y = self.sensitive.y_span().high - f64::from(row) - 0.5;
             sheet.put(self.sensitive.left_of(y, 98.0), name);
         }
-        sheet.push(chunks, root)
+        sheet
     }
 
     /// Every delay that is reported, and what is agreed on.
-    fn add_delays(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+    fn add_delays(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
         let (mut ranges, mut agreed) = (Vec::new(), Vec::new());
         for (x, step) in self.steps() {
             let y = |samples: f64| samples * step.period_s;
@@ -161,52 +152,40 @@ impl<'s> Page<'s> {
                 agreed.push([x - 0.4, x + 0.4].map(|x| self.delays.at(x, y)).to_vec());
             }
         }
-        strips(chunks, at(root, sheet::RANGE), palette::GRID, 1.0, ranges)?;
-        let dashes = LineStrips2D::new(agreed).with_colors([color(palette::ACCEPTED)]);
-        let dashes = dashes.with_radii([1.8]).with_draw_order(DrawOrder::from(45.0));
-        chunks.push_static(at(root, sheet::AGREED), &dashes)?;
-        let dots = self.dots();
-        for (path, opinion, order) in [
-            (sheet::SAME, Opinion::Same, 30.0),
-            (sheet::LONGER, Opinion::Longer, 40.0),
-            (sheet::SHORTER, Opinion::Shorter, 40.0),
-        ] {
-            let own: Vec<&Dot> = dots.iter().filter(|dot| dot.opinion == opinion).collect();
-            let points = Points2D::new(own.iter().map(|dot| dot.place));
-            let points = points.with_radii(own.iter().map(|dot| dot.radius));
-            let points = points.with_labels(own.iter().map(|dot| dot.name.as_str()));
-            let points = points.with_colors([color(opinion.rgb())]).with_show_labels(false);
-            let points = points.with_draw_order(DrawOrder::from(order));
-            chunks.push_static(at(root, path), &points)?;
-        }
-        Ok(())
-    }
-
-    /// A point for all settings that report one delay of a step.
-    fn dots(&self) -> Vec<Dot> {
+        layers.strips("range", palette::GRID, 1.0, [ranges])?;
+        layers.order(45.0).strips("agreed", palette::ACCEPTED, 1.8, [agreed])?;
+        // A point for all settings that report one delay of a step.
         let mut groups: Vec<(f64, &SweptStep, Group)> = Vec::new();
         for (x, step) in self.steps() {
             groups.extend(Group::all(self.swept, step).into_iter().map(|group| (x, step, group)));
         }
-        let named = groups.len().saturating_mul(self.swept.grid.combinations().len()) <= NAMED;
-        let dot = |(x, step, group): &(f64, &SweptStep, Group)| {
-            let seconds = group.delay * step.period_s;
-            let mut name = group.name(step);
-            if named {
-                name = format!("{name}: {}", group.in_words(self.swept));
-            }
-            Dot {
-                place: self.delays.at(*x, seconds),
-                opinion: group.opinion,
-                radius: group.radius(step),
-                name,
-            }
-        };
-        groups.iter().map(dot).collect()
+        let is_named = groups.len().saturating_mul(self.swept.grid.combinations().len()) <= NAMED;
+        for (path, opinion, order) in [
+            ("same", Opinion::Same, 30.0),
+            ("longer", Opinion::Longer, 40.0),
+            ("shorter", Opinion::Shorter, 40.0),
+        ] {
+            let own = || groups.iter().filter(|(.., group)| group.opinion == opinion);
+            let place = |x: f64, step: &SweptStep, group: &Group| {
+                self.delays.at(x, group.delay * step.period_s)
+            };
+            let name = |step: &SweptStep, group: &Group| {
+                let words = is_named.then(|| format!(": {}", group.in_words(self.swept)));
+                group.name(step) + &words.unwrap_or_default()
+            };
+            let points = Points2D::new(own().map(|(x, step, group)| place(*x, step, group)))
+                .with_radii(own().map(|(_, step, group)| group.radius(step)))
+                .with_labels(own().map(|(_, step, group)| name(step, group)))
+                .with_colors([color(opinion.rgb())])
+                .with_show_labels(false)
+                .with_draw_order(DrawOrder::from(order));
+            layers.stays(path, &points)?;
+        }
+        Ok(())
     }
 
     /// A mark for each step beside what it is sensitive to, and how many they are.
-    fn add_sensitive(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+    fn add_sensitive(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
         let (mut counts, mut marks, mut colors) = (Labels::default(), Vec::new(), Vec::new());
         let slot = self.sensitive.x(2.0) - self.sensitive.x(1.0);
         for ((_, cause), row) in self.causes.iter().zip(0_u32..) {
@@ -218,27 +197,23 @@ impl<'s> Page<'s> {
             marks.extend(places);
         }
         let points = Points2D::new(marks).with_colors(colors).with_radii([(0.5 * slot).min(7.0)]);
-        chunks.push_static(at(root, sheet::SENSITIVE), &points)?;
-        put_texts(chunks, at(root, sheet::COUNTS), counts, &[color(palette::BORDER)])
+        layers.stays("hanging", &points)?;
+        layers.texts("counts", palette::BORDER, [counts])
     }
 
     /// The picture of all settings and steps, and what its rows are.
-    fn add_map(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+    fn add_map(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
         /// Names nearer than this would cover each other.
         const APART: f32 = 36.0;
-        let entity = at(root, sheet::MAP);
         if let Some((image, place)) = picture(self.swept, &self.map) {
-            chunks.push_static(entity.clone(), &image)?;
-            chunks.push_static(entity, &place)?;
+            layers.stays("map", &image)?;
+            layers.stays("map", &place)?;
         }
         let (methods, low_passes) = blocks(self.swept.grid);
         let border = |block: &Block| self.map.level(self.row(block.first)).to_vec();
-        let thin = low_passes.iter().map(|block| (border(block), palette::GRID));
-        let thick = methods.iter().map(|block| (border(block), palette::BORDER));
-        let (lines, colors): (Vec<_>, Vec<_>) =
-            thin.chain(thick).map(|(line, rgb)| (line, color(rgb))).unzip();
-        let lines = LineStrips2D::new(lines).with_colors(colors).with_radii([0.8]);
-        chunks.push_static(at(root, sheet::BLOCKS), &lines)?;
+        let thin = low_passes.iter().map(|block| (border(block), color(palette::GRID)));
+        let thick = methods.iter().map(|block| (border(block), color(palette::BORDER)));
+        layers.colored("blocks", 0.8, [thin.chain(thick).collect()])?;
         let mut texts = Labels::default();
         for block in named(self.swept.grid) {
             let place = beside(&self.map, &block);
@@ -246,7 +221,7 @@ impl<'s> Page<'s> {
                 texts.put(place, block.label);
             }
         }
-        put_texts(chunks, at(root, sheet::ROWS), texts, &[color(palette::BORDER)])
+        layers.texts("rows", palette::BORDER, [texts])
     }
 
     /// The upper edge of a row.
@@ -255,55 +230,47 @@ impl<'s> Page<'s> {
     }
 
     /// The setting under the cursor: its delays, its rows, its name.
-    fn add_setting(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+    fn add_setting(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
         let runs = || 0..self.swept.names.len();
-        let mut rows = Rows::new(chunks, root.clone(), self.swept.settings());
         let delays = |run: usize| {
             let place = |(x, step): (f64, &SweptStep)| {
                 Some(self.delays.at(x, Swept::delay(step, run)? * step.period_s))
             };
             self.steps().filter_map(place).collect()
         };
-        rows.points(sheet::SETTING_DELAYS, palette::HERE, 4.0, runs().map(delays))?;
+        layers.points("setting/delays", palette::HERE, 4.0, runs().map(delays))?;
         let frame = |run: usize| {
             let frame = |(first, last): (usize, usize)| {
-                let (top, bottom) = (self.map.y(self.row(first)), self.map.y(self.row(last + 1)));
-                rectangle(SIDES, (top, bottom))
+                let ends = [first, last + 1].map(|row| self.map.level(self.row(row)));
+                let [[a, b], [d, c]] = ends;
+                vec![a, b, c, d, a]
             };
             rows_of(self.swept.grid, run).into_iter().map(frame).collect()
         };
-        rows.strips(sheet::SETTING_FRAME, palette::HERE, 1.3, runs().map(frame))?;
+        layers.strips("setting/frame", palette::HERE, 1.3, runs().map(frame))?;
         let all = self.swept.names.len();
         let name = |run: usize| {
-            let mut labels = Labels::default();
             let name = self.swept.names.get(run).map_or("", String::as_str);
             let text = format!("which settings agree; framed: {name} ({} of {all})", run + 1);
-            labels.put(self.title(&self.map), text);
-            labels
+            Labels::one(self.map.above(self.map.middle(), TITLE), text)
         };
-        rows.texts(sheet::SETTING_NAME, palette::HERE, runs().map(name))
+        layers.texts("setting/name", palette::HERE, runs().map(name))
     }
 
     /// The step under the cursor: a frame through all plots.
-    fn add_step(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
-        let index = self.swept.index.clone();
-        let mut rows = Rows::new(chunks, root.clone(), index);
+    fn add_step(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
         let frame = |(x, _): (f64, &SweptStep)| {
-            let (left, right) = (self.map.x(x - 0.5), self.map.x(x + 0.5));
-            let side = |plot: &Plot| {
-                let Span { low, high } = plot.y_span();
-                rectangle((left, right), (plot.y(high), plot.y(low)))
-            };
+            let side = |plot: &Plot| plot.column(x - 0.5, x + 0.5);
             [&self.delays, &self.sensitive, &self.map].map(side).to_vec()
         };
-        rows.strips(sheet::STEP_FRAME, palette::HERE, 1.3, self.steps().map(frame))?;
+        layers.strips("step/frame", palette::HERE, 1.3, self.steps().map(frame))?;
         let name = |(x, step): (f64, &SweptStep)| {
             let mut labels = Labels::default();
             let text = format!("step {} at {:.2} s", step.number, step.time_s);
             labels.put_whole(self.map.above(x, TITLE), text);
             labels
         };
-        rows.texts(sheet::STEP_NAME, palette::HERE, self.steps().map(name))
+        layers.texts("step/name", palette::HERE, self.steps().map(name))
     }
 }
 
@@ -320,7 +287,7 @@ impl Group {
         let mut groups: BTreeMap<(u64, Opinion), Self> = BTreeMap::new();
         for run in 0..step.delays.len() {
             let Some(delay) = Swept::delay(step, run) else { continue };
-            let opinion = Swept::cell(step, run).opinion();
+            let opinion = Swept::cell(step, run).opinion;
             let empty = Self { delay, opinion, runs: Vec::new(), votes: 0 };
             let group = groups.entry((delay.to_bits(), opinion)).or_insert(empty);
             group.runs.push(run);
@@ -352,14 +319,6 @@ impl Group {
     }
 }
 
-/// A point of the plot of delays.
-struct Dot {
-    place: Vec2D,
-    opinion: Opinion,
-    radius: f32,
-    name: String,
-}
-
 /// The range of the delays in seconds: all that are agreed on, and all others but for a few
 /// that would flatten the plot. Those are drawn on its edge.
 fn delay_span(swept: &Swept<'_>) -> Span {
@@ -376,21 +335,8 @@ fn delay_span(swept: &Swept<'_>) -> Span {
     Span::around(ends.chain(agreed), 0.06)
 }
 
-fn rectangle((left, right): (f32, f32), (top, bottom): (f32, f32)) -> Vec<Vec2D> {
-    let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-    corners.map(|(x, y)| Vec2D::new(x, y)).to_vec()
-}
-
-fn middle(span: Span) -> f64 {
-    f64::midpoint(span.low, span.high)
-}
-
 /// The answer in a line, and what the colours mean.
-fn put_legend(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    swept: &Swept<'_>,
-) -> Result<(), RecordError> {
+fn legend(swept: &Swept<'_>) -> Labels {
     /// Row of the legend on the sheet.
     const LEGEND: f32 = 1088.0;
     let entries: [(f32, f32, String, Rgb); 6] = [
@@ -402,12 +348,10 @@ fn put_legend(
         (1240.0, LEGEND, "– the delay that most agree on".to_owned(), palette::ACCEPTED),
     ];
     let mut labels = Labels::default();
-    let mut colors: Vec<Color> = Vec::new();
     for (x, y, text, rgb) in entries {
-        labels.put(Vec2D::new(x, y), text);
-        colors.push(color(rgb));
+        labels.put_in(rgb, Vec2D::new(x, y), text);
     }
-    put_texts(chunks, at(root, sheet::LEGEND), labels, &colors)
+    labels
 }
 
 fn headline(swept: &Swept<'_>) -> String {

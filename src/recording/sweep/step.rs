@@ -1,19 +1,18 @@
 //! The output around one step, and what each setting makes of it.
 
-use rerun::EntityPath;
 use rerun::datatypes::Vec2D;
 
-use super::map::{Block, TITLE, beside, blocks, named};
+use super::map::{Block, beside, blocks, named};
 use super::swept::{Opinion, Swept};
 use crate::delay::sweep::SweptStep;
 use crate::experiment::{Joint, Trial};
-use crate::recording::canvas::{Labels, Plot, SHEET, Span, simplified, thinned};
+use crate::recording::canvas::{CURVE_POINTS, Labels, Plot, SHEET, Span};
 use crate::recording::chunk::{Chunks, Index};
 use crate::recording::error::RecordError;
-use crate::recording::palette::{self, color, dimmed};
-use crate::recording::paths::{at, sweep::one};
-use crate::recording::rows::Rows;
-use crate::recording::sheet::{Sheet, put_texts, strips};
+use crate::recording::layers::Layers;
+use crate::recording::palette::{self, dimmed};
+use crate::recording::paths;
+use crate::recording::sheet::{Sheet, TITLE};
 use crate::wording::{bracketed, number as shown};
 
 /// Width and height of the sheet.
@@ -24,34 +23,27 @@ const SIDES: (f32, f32) = (196.0, SHEET.0 - 40.0);
 
 /// Draws each step below `root`. On the timeline of settings, where one step is all that can
 /// be seen, it is the one that is most sensitive to a setting.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    swept: &Swept<'_>,
-) -> Result<(), RecordError> {
-    let root = at(root, one::ROOT);
+pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
     let (index, order) = worst_last(swept);
     let drawn = order.iter().filter_map(|place| swept.steps.get(*place));
     let drawings: Vec<_> = drawn.map(|(step, trial)| Drawing::of(swept, step, trial)).collect();
-    add_row_names(chunks, &root, swept)?;
-    let mut rows = Rows::new(chunks, root, index).back_to_front();
-    let sheets: Vec<_> =
-        drawings.iter().map(|drawing| drawing.sheet(swept.reported.joint).into_parts()).collect();
-    rows.strips(one::GRID, palette::GRID, 0.7, sheets.iter().map(|(grid, _)| grid.clone()))?;
+    add_row_names(&mut Layers::fixed(chunks, paths::ONE), swept)?;
+    let mut layers = Layers::rows(chunks, paths::ONE, index).back_to_front();
+    let sheets = drawings.iter().map(|drawing| drawing.sheet(swept.reported.joint).into_parts());
+    let (grids, texts): (Vec<_>, Vec<_>) = sheets.unzip();
+    layers.strips("grid", palette::GRID, 0.7, grids)?;
     let green = dimmed(palette::ACCEPTED);
-    rows.strips(one::ALLOWED, green, 1.0, drawings.iter().map(Drawing::allowed))?;
-    rows.strips(one::AGREED, palette::ACCEPTED, 1.3, drawings.iter().map(Drawing::agreed))?;
-    rows.strips(one::OUTPUT, palette::RAW, 1.6, drawings.iter().map(Drawing::output))?;
-    rows.strips(one::INPUT_STEP, palette::INPUT, 1.3, drawings.iter().map(Drawing::input_step))?;
-    for (path, opinion) in [
-        (one::SAME, Opinion::Same),
-        (one::LONGER, Opinion::Longer),
-        (one::SHORTER, Opinion::Shorter),
-    ] {
+    layers.strips("allowed", green, 1.0, drawings.iter().map(Drawing::allowed))?;
+    layers.strips("agreed", palette::ACCEPTED, 1.3, drawings.iter().map(Drawing::agreed))?;
+    layers.strips("output", palette::RAW, 1.6, drawings.iter().map(Drawing::output))?;
+    layers.strips("input_step", palette::INPUT, 1.3, drawings.iter().map(Drawing::input_step))?;
+    for (path, opinion) in
+        [("same", Opinion::Same), ("longer", Opinion::Longer), ("shorter", Opinion::Shorter)]
+    {
         let delays = drawings.iter().map(|drawing| drawing.delays(opinion));
-        rows.points(path, opinion.rgb(), radius(swept), delays)?;
+        layers.points(path, opinion.rgb(), radius(swept), delays)?;
     }
-    rows.texts(one::TEXTS, palette::BORDER, sheets.into_iter().map(|(_, labels)| labels))
+    layers.texts("texts", palette::BORDER, texts)
 }
 
 /// The steps in their order but for the most sensitive one, which is last; where they lie,
@@ -66,14 +58,7 @@ fn worst_last(swept: &Swept<'_>) -> (Index, Vec<usize>) {
         order.remove(worst);
         order.push(worst);
     }
-    let sorted = |values: &[i64]| -> Vec<i64> {
-        order.iter().filter_map(|place| values.get(*place).copied()).collect()
-    };
-    let mut index = Index::default();
-    index.segment = sorted(&swept.index.segment);
-    index.sample = sorted(&swept.index.sample);
-    index.time_ns = sorted(&swept.index.time_ns);
-    index.setting = vec![1; order.len()];
+    let index = swept.index.rows(&order).all_at("setting", Some(1));
     (index, order)
 }
 
@@ -91,11 +76,7 @@ fn radius(swept: &Swept<'_>) -> f32 {
 }
 
 /// The names of methods and low-passes beside their rows.
-fn add_row_names(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    swept: &Swept<'_>,
-) -> Result<(), RecordError> {
+fn add_row_names(layers: &mut Layers<'_>, swept: &Swept<'_>) -> Result<(), RecordError> {
     let plot = Plot::within(SIDES, ROWS.0..=ROWS.1, Span::new(0.0, 1.0), rows_span(swept));
     let mut texts = Labels::default();
     for block in named(swept.grid) {
@@ -103,8 +84,8 @@ fn add_row_names(
     }
     let border = |block: &Block| plot.level(plot.y_span().high - block.first as f64).to_vec();
     let borders = blocks(swept.grid).0.iter().map(border).collect();
-    strips(chunks, at(root, one::BLOCKS), palette::BORDER, 0.7, borders)?;
-    put_texts(chunks, at(root, one::ROWS), texts, &[color(palette::BORDER)])
+    layers.strips("blocks", palette::BORDER, 0.7, [borders])?;
+    layers.texts("rows", palette::BORDER, [texts])
 }
 
 /// One step on its sheet.
@@ -135,20 +116,16 @@ impl<'s> Drawing<'s> {
         let mut sheet = Sheet::default();
         let unit = bracketed("", joint.output_unit.as_deref());
         let title = format!("{}; the output{unit} as measured", self.in_words(joint));
-        let y_ticks = self.output.y_span().ticks(4.0).into_iter();
-        let y_ticks: Vec<_> = y_ticks.map(|y| (y, shown(y))).collect();
         let x_ticks = self.delays.x_span().ticks(12.0);
-        sheet.outline(&self.output, &x_ticks, &y_ticks);
+        sheet.outline(&self.output, &x_ticks, &self.output.y_ticks(4.0));
         sheet.outline(&self.delays, &x_ticks, &[]);
         for plot in [&self.output, &self.delays] {
             for x in &x_ticks {
                 sheet.put(plot.below(*x, 2.0), shown(*x));
             }
         }
-        let Span { low, high } = self.delays.x_span();
-        let middle = f64::midpoint(low, high);
-        sheet.put(self.output.above(middle, TITLE), title);
-        sheet.put(self.delays.above(middle, TITLE), "its delay in samples, with every setting");
+        sheet.title(&self.output, TITLE, title);
+        sheet.title(&self.delays, TITLE, "its delay in samples, with every setting");
         sheet
     }
 
@@ -170,11 +147,8 @@ impl<'s> Drawing<'s> {
     fn output(&self) -> Vec<Vec<Vec2D>> {
         let (first, last) = self.window;
         let values = self.trial.output().get(first - 1..last).unwrap_or_default();
-        let place = |index: usize| {
-            let value = values.get(index).copied().unwrap_or_default();
-            self.output.at((first + index) as f64 - self.step.sample as f64, value)
-        };
-        vec![simplified(thinned(values).into_iter().map(place).collect())]
+        let place = |index: usize| (first + index) as f64 - self.step.sample as f64;
+        vec![self.output.curve(values, CURVE_POINTS, place)]
     }
 
     fn input_step(&self) -> Vec<Vec<Vec2D>> {
@@ -196,7 +170,7 @@ impl<'s> Drawing<'s> {
     /// A point in the row of each combination of this opinion.
     fn delays(&self, opinion: Opinion) -> Vec<Vec2D> {
         let rows = self.swept.grid.combinations().iter().enumerate();
-        let own = rows.filter(|(_, one)| Swept::cell(self.step, one.run).opinion() == opinion);
+        let own = rows.filter(|(_, one)| Swept::cell(self.step, one.run).opinion == opinion);
         let place = |(row, one): (usize, &crate::delay::sweep::Combination)| {
             let delay = Swept::delay(self.step, one.run)?;
             Some(self.delays.at(delay, self.delays.y_span().high - row as f64 - 0.5))

@@ -1,6 +1,5 @@
 //! A joint over all settings, as it is recorded.
 
-use super::recorded::SweepRecording;
 use crate::delay::sweep::{Agreement, Grid, ReportedDelay, SweptStep};
 use crate::experiment::Trial;
 use crate::recording::chunk::Index;
@@ -23,23 +22,16 @@ pub(super) struct Swept<'a> {
 }
 
 impl<'a> Swept<'a> {
-    pub(super) fn of(
-        recording: &SweepRecording<'a>,
-        reported: ReportedSweep<'a>,
-        starts: &TrialStarts,
-    ) -> Self {
-        let grid = recording.grid;
+    pub(super) fn of(grid: &'a Grid, reported: ReportedSweep<'a>, starts: &TrialStarts) -> Self {
         let trials = &reported.joint.trials;
         let trial_of = |step: &SweptStep| trials.iter().find(|trial| trial.label() == step.trial);
         let steps = reported.sweep.steps.iter();
         let steps: Vec<_> = steps.filter_map(|step| Some((step, trial_of(step)?))).collect();
-        let mut index = Index::default();
-        for ((step, trial), number) in steps.iter().zip(1..) {
-            let start = starts.of_trial(trial);
-            index.segment.push(number);
-            index.sample.push(start.sample(step.sample));
-            index.time_ns.push(start.time_ns(trial, step.sample));
-        }
+        let start = |trial: &Trial| starts.of_trial(trial);
+        let samples = steps.iter().map(|(step, trial)| start(trial).sample(step.sample));
+        let times = steps.iter().map(|(step, trial)| start(trial).time_ns(trial, step.sample));
+        let index = Index::on("segment", (1..).take(steps.len()));
+        let index = index.with("sample", samples).with("time", times);
         let mut votes = vec![0; grid.runs().len()];
         for one in grid.combinations() {
             votes.get_mut(one.run).into_iter().for_each(|votes| *votes += 1);
@@ -50,13 +42,17 @@ impl<'a> Swept<'a> {
 
     /// A tick per run.
     pub(super) fn settings(&self) -> Index {
-        Index::of_settings(self.names.len())
+        Index::on("setting", (1..).take(self.names.len()))
     }
 
     /// What a run reports of a step.
     pub(super) fn cell(step: &SweptStep, run: usize) -> Cell {
-        let Some(found) = step.delays.get(run).copied().flatten() else { return Cell::Silent };
-        step.agreement.map_or(Cell::Same, |agreed| Cell::of(&found, &agreed))
+        let found = step.delays.get(run).copied().flatten();
+        match (found, step.agreement) {
+            (None, _) => Cell { opinion: Opinion::Silent, by: 0.0 },
+            (Some(_), None) => Cell { opinion: Opinion::Same, by: 0.0 },
+            (Some(found), Some(agreed)) => Cell::of(&found, &agreed),
+        }
     }
 
     /// The delay that a run reports of a step; samples.
@@ -67,52 +63,38 @@ impl<'a> Swept<'a> {
 
 /// What a setting reports of a step, beside what most report.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Cell {
-    /// Nothing: it did not accept it.
-    Silent,
-    /// What most say.
-    Same,
-    /// A longer delay, by so many samples more than it allows.
-    Longer(f64),
-    /// A shorter one.
-    Shorter(f64),
+pub(super) struct Cell {
+    pub(super) opinion: Opinion,
+    /// By how many samples more than it allows its delay differs.
+    pub(super) by: f64,
 }
 
 impl Cell {
     fn of(found: &ReportedDelay, agreed: &Agreement) -> Self {
         let (longer, shorter) = (found.low - agreed.low, agreed.high - found.high);
-        if longer.max(shorter) <= 0.0 {
-            Self::Same
-        } else if longer >= shorter {
-            Self::Longer(longer)
-        } else {
-            Self::Shorter(shorter)
-        }
+        let by = longer.max(shorter);
+        let opinion = match by {
+            ..=0.0 => Opinion::Same,
+            _ if longer >= shorter => Opinion::Longer,
+            _ => Opinion::Shorter,
+        };
+        Self { opinion, by }
     }
 
     /// How far it is from what most say; what is not accepted is next to what agrees.
     pub(super) fn weight(self) -> f64 {
-        match self {
-            Self::Same => -2.0,
-            Self::Silent => -1.0,
-            Self::Longer(by) | Self::Shorter(by) => by,
-        }
-    }
-
-    /// Which way it differs, if at all.
-    pub(super) fn opinion(self) -> Opinion {
-        match self {
-            Self::Silent => Opinion::Silent,
-            Self::Same => Opinion::Same,
-            Self::Longer(_) => Opinion::Longer,
-            Self::Shorter(_) => Opinion::Shorter,
+        match self.opinion {
+            Opinion::Same => -2.0,
+            Opinion::Silent => -1.0,
+            Opinion::Longer | Opinion::Shorter => self.by,
         }
     }
 }
 
-/// A [`Cell`] without its distance.
+/// Which way it differs, if at all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Opinion {
+    /// It did not accept the step.
     Silent,
     Same,
     Longer,
@@ -141,10 +123,11 @@ mod tests {
         let cell = |low, high| {
             Cell::of(&ReportedDelay { delay: f64::midpoint(low, high), low, high }, &agreed)
         };
-        assert_eq!(cell(9.0, 11.0), Cell::Same);
-        assert_eq!(cell(12.0, 14.0), Cell::Longer(2.5));
-        assert_eq!(cell(4.0, 6.0), Cell::Shorter(5.0));
-        assert!(cell(4.0, 6.0).weight() > Cell::Silent.weight());
-        assert!(Cell::Silent.weight() > Cell::Same.weight());
+        assert_eq!(cell(9.0, 11.0).opinion, Opinion::Same);
+        assert_eq!(cell(12.0, 14.0), Cell { opinion: Opinion::Longer, by: 2.5 });
+        assert_eq!(cell(4.0, 6.0), Cell { opinion: Opinion::Shorter, by: 5.0 });
+        let silent = Cell { opinion: Opinion::Silent, by: 0.0 };
+        assert!(cell(4.0, 6.0).weight() > silent.weight());
+        assert!(silent.weight() > cell(9.0, 11.0).weight());
     }
 }

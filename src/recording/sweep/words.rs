@@ -2,42 +2,40 @@
 
 use std::fmt::Write as _;
 
-use rerun::{EntityPath, TextDocument, TextLog};
-
 use super::swept::{Opinion, Swept};
 use crate::delay::sweep::{Factor, SweptStep};
-use crate::recording::chunk::{Chunks, Index};
+use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
 use crate::recording::markdown::plain;
-use crate::recording::paths::{at, sweep as paths};
+use crate::recording::paths;
 use crate::report::{depends_on, level_cell, level_text, sweep_sentences};
 use crate::wording::{capitalized, number};
 
 /// Adds all words below `root`.
-pub(super) fn add(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    swept: &Swept<'_>,
-) -> Result<(), RecordError> {
-    let found = TextDocument::from_markdown(found(swept).unwrap_or_default());
-    chunks.push_static(at(root, paths::FOUND), &found)?;
-    let here = at(root, paths::HERE);
+pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
+    chunks.page(paths::FOUND, found(swept).unwrap_or_default())?;
     let settings = (0..swept.names.len()).map(|run| setting(swept, run).unwrap_or_default());
-    add_pages(chunks, &here, swept.settings(), settings.collect())?;
+    chunks.pages(paths::HERE, swept.settings(), settings)?;
     let steps = swept.steps.iter().map(|(step, _)| one_step(swept, step).unwrap_or_default());
-    add_pages(chunks, &here, swept.index.clone(), steps.collect())?;
-    add_list(chunks, at(root, paths::SENSITIVE_LOG), swept)
+    chunks.pages(paths::HERE, swept.index.clone(), steps)?;
+    // A line for each step that is sensitive to a setting, in the order of the record.
+    let sensitive: Vec<usize> = (0..swept.steps.len())
+        .filter(|place| {
+            let (step, _) = swept.steps[*place];
+            step.accepted > 0 && !step.is_unanimous()
+        })
+        .collect();
+    // All of them are there from the first setting on.
+    let index = swept.index.rows(&sensitive).all_at("setting", Some(1));
+    let lines = sensitive.iter().map(|place| (None, line(swept, swept.steps[*place].0)));
+    chunks.lines(paths::SENSITIVE_LOG, index, lines)
 }
 
-fn add_pages(
-    chunks: &mut Chunks,
-    entity: &EntityPath,
-    index: Index,
-    pages: Vec<String>,
-) -> Result<(), RecordError> {
-    let media = std::iter::repeat_n("text/markdown", pages.len());
-    let pages = TextDocument::update_fields().with_many_text(pages).with_many_media_type(media);
-    chunks.push(entity.clone(), index, pages.columns_of_unit_batches()?)
+/// A step, and what it is sensitive to.
+fn line(swept: &Swept<'_>, step: &SweptStep) -> String {
+    let agreed = step.agreement.map_or(0.0, |agreed| agreed.delay * step.period_s);
+    let (number, on) = (step.number, depends_on(swept.grid, step));
+    format!("step {number} at {:.2} s: {on}; most say {agreed:.3} s", step.time_s)
 }
 
 type Written = Result<String, std::fmt::Error>;
@@ -98,7 +96,7 @@ fn setting(swept: &Swept<'_>, run: usize) -> Written {
 /// A step on which a run differs, and what it says.
 fn differing(step: &SweptStep, run: usize) -> Option<String> {
     let delay = Swept::delay(step, run)? * step.period_s;
-    match Swept::cell(step, run).opinion() {
+    match Swept::cell(step, run).opinion {
         Opinion::Longer | Opinion::Shorter => Some(format!("{} ({delay:.3} s)", step.number)),
         Opinion::Same | Opinion::Silent => None,
     }
@@ -141,26 +139,4 @@ fn one_step(swept: &Swept<'_>, step: &SweptStep) -> Written {
         writeln!(page, "| {} | {delay} | {agree} |", plain(&name))?;
     }
     Ok(page)
-}
-
-/// A line for each step that is sensitive to a setting, in the order of the record.
-fn add_list(chunks: &mut Chunks, entity: EntityPath, swept: &Swept<'_>) -> Result<(), RecordError> {
-    let (mut index, mut lines) = (Index::default(), Vec::new());
-    let places = &swept.index;
-    let places = places.segment.iter().zip(&places.sample).zip(&places.time_ns);
-    for ((step, _), ((segment, sample), time_ns)) in swept.steps.iter().zip(places) {
-        if step.accepted == 0 || step.is_unanimous() {
-            continue;
-        }
-        index.segment.push(*segment);
-        index.sample.push(*sample);
-        index.time_ns.push(*time_ns);
-        // All of them are there from the first setting on.
-        index.setting.push(1);
-        let agreed = step.agreement.map_or(0.0, |agreed| agreed.delay * step.period_s);
-        let (number, on) = (step.number, depends_on(swept.grid, step));
-        lines.push(format!("step {number} at {:.2} s: {on}; most say {agreed:.3} s", step.time_s));
-    }
-    let lines = TextLog::update_fields().with_many_text(lines);
-    chunks.push(entity, index, lines.columns_of_unit_batches()?)
 }

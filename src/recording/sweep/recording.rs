@@ -1,0 +1,123 @@
+//! A recording of a sweep: what it is made of, its page on all of it, its joints and its views.
+
+use std::fmt::Write as _;
+
+use rerun::external::re_sdk_types::blueprint::components::PlayState;
+
+use super::swept::Swept;
+use super::{data, sheet, step, words};
+use crate::delay::sweep::{Factor, Grid};
+use crate::experiment::{ReadOptions, Source};
+use crate::recording::blueprint::{Blueprint, Page};
+use crate::recording::chunk::Chunks;
+use crate::recording::content::{Content, Growth, Tab, hashed, name_of};
+use crate::recording::error::RecordError;
+use crate::recording::layout::TrialStarts;
+use crate::recording::markdown::plain;
+use crate::recording::origin::made_from;
+use crate::recording::paths::{self, at, joint_root};
+use crate::report::{ReportedSweep, level_text, settings_rows, sweep_sentences};
+use crate::wording::number;
+
+/// Everything that a recording of a sweep holds.
+#[derive(Clone, Copy, Debug)]
+pub struct SweepRecording<'a> {
+    /// The joints, in the order of their tabs.
+    pub joints: &'a [ReportedSweep<'a>],
+    /// The settings that were tried.
+    pub grid: &'a Grid,
+    /// Delays that differ by so many samples more than each allows still agree.
+    pub tolerance: f64,
+    /// The files that were read.
+    pub sources: &'a [Source],
+    /// How they were read.
+    pub reading: &'a ReadOptions,
+}
+
+impl Content for SweepRecording<'_> {
+    fn name(&self) -> String {
+        format!("{} · sweep · {} settings", name_of(self.sources), self.grid.runs().len())
+    }
+
+    fn id(&self) -> String {
+        hashed(self.sources, self.joints.iter().map(|joint| joint.joint), |part| {
+            part(&format!("sweep {:?} {}", self.grid, self.tolerance));
+        })
+    }
+
+    fn about(&self) -> String {
+        page(self).unwrap_or_default()
+    }
+
+    fn tabs(&self, _: Growth) -> Vec<Tab<'_>> {
+        let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
+        let tab = |joint| {
+            let swept = Swept::of(self.grid, joint, &starts);
+            Tab { joint: Some(&joint.joint.name), add: Box::new(move |chunks| add(chunks, &swept)) }
+        };
+        self.joints.iter().copied().map(tab).collect()
+    }
+
+    fn blueprint(&self, _: Growth) -> Blueprint {
+        let tabs = self.joints.iter().map(|joint| tab(&joint.joint.name)).collect();
+        let about = "About".to_owned();
+        Blueprint { tabs, about, timeline: "setting", play: PlayState::Paused }
+    }
+}
+
+fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
+    data::add(chunks, swept)?;
+    sheet::add(chunks, swept)?;
+    step::add(chunks, swept)?;
+    words::add(chunks, swept)
+}
+
+/// All steps and one step; beside them what is found, what is under the cursor, and the
+/// steps to look at.
+fn tab(joint: &str) -> Page {
+    let root = joint_root(joint);
+    let path = |path: &str| at(&root, path);
+    let all = Page::drawing("All steps", &path(paths::SHEET), sheet::SIZE);
+    let one = Page::drawing("One step", &path(paths::ONE), step::SIZE);
+    let list = "Steps sensitive to a setting: click a number on the left";
+    let words = [
+        (5.0, Page::text("What is found", path(paths::FOUND))),
+        (2.6, Page::text("Under the cursor", path(paths::HERE))),
+        (2.4, Page::list(list, path(paths::SENSITIVE_LOG), "segment")),
+    ];
+    let columns = [(7.1, Page::tabs("Drawings", [all, one])), (2.9, Page::stacked("Words", words))];
+    Page::beside(joint, columns)
+}
+
+/// What was tried, and what it was made from.
+fn page(sweep: &SweepRecording<'_>) -> Result<String, std::fmt::Error> {
+    let mut page = String::new();
+    writeln!(page, "# Delays of {} joints with every setting\n", sweep.joints.len())?;
+    for joint in sweep.joints {
+        let sentences = sweep_sentences(sweep.grid, joint).join(" ");
+        writeln!(page, "- **{}**: {}", plain(&joint.joint.name), plain(&sentences))?;
+    }
+    writeln!(page, "\n## What was tried\n\n| setting | values |\n|---|---|")?;
+    for factor in Factor::ALL {
+        let level = |level| level_text(sweep.grid, factor, level);
+        let levels: Vec<_> = (0..sweep.grid.levels(factor)).map(level).collect();
+        writeln!(page, "| {factor} | {} |", plain(&levels.join(", ")))?;
+    }
+    let (combinations, runs) = (sweep.grid.combinations().len(), sweep.grid.runs().len());
+    writeln!(
+        page,
+        "\n{combinations} combinations, of which {runs} differ. Delays agree when they differ \
+         by {} samples at most, beside what the distance of candidates (β) or their own \
+         intervals allow.\n",
+        number(sweep.tolerance)
+    )?;
+    for base in sweep.grid.bases() {
+        writeln!(page, "### {}, where nothing else was tried\n", base.settings.method)?;
+        writeln!(page, "| setting | value |\n|---|---|")?;
+        for (name, value) in settings_rows(&base.settings) {
+            writeln!(page, "| {name} | {value} |")?;
+        }
+    }
+    made_from(&mut page, sweep.sources, sweep.reading)?;
+    Ok(page)
+}

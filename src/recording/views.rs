@@ -1,0 +1,481 @@
+//! Which view shows what of a recording of decisions and models: a tab per joint, and the timeline the
+//! viewer opens on.
+
+use rerun::EntityPath;
+use rerun::components::{Range1D, Visible};
+use rerun::datatypes::Utf8;
+use rerun::external::re_sdk_types::blueprint::archetypes::{
+    DataframeQuery, PlotLegend, ScalarAxis,
+};
+use rerun::external::re_sdk_types::blueprint::components::{Corner2D, PlayState};
+use rerun::external::re_sdk_types::blueprint::datatypes::{
+    ComponentColumnSelector, SelectedColumns,
+};
+
+use super::blueprint::{Blueprint, Page};
+use super::canvas::SHEET;
+use super::content::Growth;
+use super::overview::{LARGE_HEIGHT, MAP_HEIGHT};
+use super::paths::{self, at, child, joint_root, of_model};
+use super::recorded::Recording;
+use super::{
+    correlogram, delay_state, difference, error_share, palette, revision, scatter, segment_view,
+};
+use crate::delay::{Condition, Decision, Doubt};
+use crate::experiment::Joint;
+use crate::report::{ComparedJoint, EstimatedJoint, JointSummary, by_doubt, doubtful_lines};
+use crate::wording::number;
+
+/// What decides which views there are.
+pub(super) fn in_words(recording: &Recording<'_>, growth: Growth) -> String {
+    let name = |joint: &EstimatedJoint<'_>| match joint.estimate.dead_time {
+        Some(_) => format!("{} without steps", joint.joint.name),
+        None => joint.joint.name.clone(),
+    };
+    let joints: Vec<_> = recording.joints.iter().map(name).collect();
+    let models: Vec<_> = recording.models.iter().map(|m| (&m.joint.name, m.model)).collect();
+    let counted = recording.revisions.iter().map(|improved| improved.revisions.len().min(2));
+    match growth {
+        Growth::Growing => format!("{joints:?} {models:?}"),
+        Growth::Finished => format!("{joints:?} {models:?} {:?}", counted.collect::<Vec<_>>()),
+    }
+}
+
+/// A tab per joint and one about it all.
+pub(super) fn blueprint(recording: &Recording<'_>, growth: Growth) -> Blueprint {
+    let tab = |joint: &EstimatedJoint<'_>| {
+        let name = &joint.joint.name;
+        let models = recording.models.iter().filter(|m| m.joint.name == *name).collect();
+        let improved = recording.revisions_of(joint.joint);
+        // The first one is on its way, at least.
+        let expected = usize::from(growth == Growth::Growing);
+        let revisions = improved.map_or(expected, |improved| improved.revisions.len());
+        let is_compared = recording.also.iter().any(|it| it.joint(name).is_some());
+        Tab { estimated: *joint, models, revisions, is_compared }.page()
+    };
+    // One revision alone is there on every timeline.
+    let is_ladder = recording.revisions.iter().any(|improved| improved.revisions.len() > 1);
+    let has_steps = recording.joints.iter().any(|joint| joint.estimate.dead_time.is_none());
+    let (timeline, play) = match growth {
+        Growth::Growing => ("revision", PlayState::Following),
+        // Paused, so that the first arrow moves the cursor: at the tick that shows the last one.
+        Growth::Finished if is_ladder => ("revision", PlayState::Paused),
+        Growth::Finished if !recording.also.is_empty() => ("difference", PlayState::Paused),
+        // A model is seen along its record.
+        Growth::Finished if !has_steps || !recording.models.is_empty() => {
+            ("time", PlayState::Paused)
+        }
+        Growth::Finished => ("decision", PlayState::Paused),
+    };
+    let tabs = recording.joints.iter().map(tab).collect();
+    Blueprint { tabs, about: about(recording, growth), timeline, play }
+}
+
+/// The name of the page on it all: of one joint how many steps were accepted, of several how many
+/// decisions are doubtful, which no page of a joint says.
+fn about(recording: &Recording<'_>, growth: Growth) -> String {
+    let doubtful = match growth {
+        Growth::Finished => doubtful_lines(recording.joints).len(),
+        Growth::Growing => 0,
+    };
+    match (recording.joints.len(), doubtful) {
+        (0 | 1, _) => match recording.joints.first().map(|joint| JointSummary::of(*joint)) {
+            Some(JointSummary { steps, accepted, .. }) if steps > 0 => {
+                format!("About: {accepted} of {steps} accepted")
+            }
+            _ => "About".to_owned(),
+        },
+        (_, 0) if growth == Growth::Growing => "All joints".to_owned(),
+        (_, 0) if !recording.joints.iter().any(has_decisions) => {
+            "All joints: no decisions".to_owned()
+        }
+        (_, 0) => "All joints: none doubtful".to_owned(),
+        (_, doubtful) => format!("All joints: {doubtful} doubtful"),
+    }
+}
+
+fn has_decisions(joint: &EstimatedJoint<'_>) -> bool {
+    joint.estimate.estimated().any(|trial| !trial.decisions.is_empty())
+}
+
+/// What the lanes of the model that is judged are called.
+const LANES: &str =
+    "Where the error of its speed arises; what was not fitted; worst segments (1 first)";
+
+/// What plots along the record are called: they are empty on timelines that have no samples.
+const ALONG: &str = "Along sample, time or decision";
+
+/// `28 accepted · 26 rejected: at_rest 25 (joint at rest, before and after), before_input 1 (…)`, the most
+/// frequent reasons first.
+fn verdicts(summary: &JointSummary) -> String {
+    /// Reasons that are named.
+    const MOST: usize = 2;
+    let mut rejected = summary.rejected.clone();
+    rejected.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let reason = |(condition, count): &(Condition, usize)| {
+        format!("{condition} {count} ({})", condition.meaning())
+    };
+    let mut reasons: Vec<String> = rejected.iter().take(MOST).map(reason).collect();
+    if rejected.len() > MOST {
+        reasons.push("…".to_owned());
+    }
+    let accepted = format!("{} ✓ accepted", summary.accepted);
+    match summary.steps - summary.accepted {
+        0 => format!("{accepted} · none rejected"),
+        count => format!("{accepted} · {count} ✗ rejected: {}", reasons.join(", ")),
+    }
+}
+
+/// Where a plot says what its curves are: a legend covers data.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Legend {
+    InTitle,
+    Apart,
+}
+
+/// Scalars over the timeline.
+fn plot(name: impl Into<String>, entities: &[EntityPath], legend: Legend) -> Page {
+    let shown = Visible::from(legend == Legend::Apart);
+    // What a model was not fitted to lies at the right.
+    let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(shown);
+    Page::plot(name, entities).with("PlotLegend", legend)
+}
+
+/// The tab of a joint: its decisions, its record, its table; and before them the revisions
+/// of its model, and its models, where there are any.
+struct Tab<'t> {
+    estimated: EstimatedJoint<'t>,
+    models: Vec<&'t ComparedJoint<'t>>,
+    /// Revisions of its model.
+    revisions: usize,
+    /// Whether there are results beside this one.
+    is_compared: bool,
+}
+
+impl Tab<'_> {
+    fn page(&self) -> Page {
+        let mut pages = Vec::new();
+        if self.revisions > 0 {
+            pages.push(self.revisions());
+        }
+        if !self.models.is_empty() {
+            pages.push(self.models());
+        }
+        if self.is_compared {
+            pages.push(self.differences());
+        }
+        if has_decisions(&self.estimated) {
+            let size = (SHEET.0, delay_state::HEIGHT);
+            let delay = Page::drawing("Delay", &self.at(paths::AGAINST), size);
+            pages.extend([self.decisions(), self.record(), delay, self.table()]);
+        } else {
+            // In words why there are no steps, and its dead time.
+            let title = match &self.estimated.estimate.dead_time {
+                Some(found) if found.varies() => "The dead time varies",
+                Some(_) => "Dead time",
+                None => "No steps",
+            };
+            let parts = [(7.0, self.record()), (3.0, self.text(title, paths::VERDICT))];
+            pages.push(Page::beside(title, parts));
+        }
+        Page::tabs(&self.joint().name, pages)
+    }
+
+    fn joint(&self) -> &Joint {
+        self.estimated.joint
+    }
+
+    /// The entity at `path` below the joint.
+    fn at(&self, path: &str) -> EntityPath {
+        at(&joint_root(&self.joint().name), path)
+    }
+
+    fn text(&self, name: &str, path: &str) -> Page {
+        Page::text(name, self.at(path))
+    }
+
+    /// What a reviewer steps through.
+    fn decisions(&self) -> Page {
+        let size = (SHEET.0, MAP_HEIGHT);
+        let map = "Whole record: the framed segment is shown above";
+        // How many steps were accepted and why others were rejected, over the lanes that say of which.
+        let verdicts = verdicts(&JointSummary::of(self.estimated));
+        // The verdict names the trial: a lane for it would hide that of the verdicts in a small window.
+        let lanes = [paths::VERDICT, paths::SEGMENT].map(|path| self.at(path));
+        let left = [
+            (6.3, self.drawing()),
+            (2.1, Page::drawing(map, &self.at(paths::MAP), size)),
+            (2.3, Page::lanes(verdicts, &lanes)),
+        ];
+        let right = [(7.2, self.text("Verdict", paths::VERDICT)), (2.8, self.lists())];
+        let columns =
+            [(6.8, Page::stacked("Segment", left)), (3.2, Page::stacked("Verdicts", right))];
+        let headline = self.text("What was found", paths::HEADLINE);
+        Page::stacked("Decisions", [(1.3, headline), (8.7, Page::beside("Steps", columns))])
+    }
+
+    fn drawing(&self) -> Page {
+        let name = "The segment and its candidates; close-up: samples, Algorithm 1 white with 95 % of the noise";
+        Page::drawing(name, &self.at(paths::DRAWING), segment_view::SIZE)
+    }
+
+    /// The decisions by doubt, in their order, and by doubt with the reasons.
+    fn lists(&self) -> Page {
+        let doubts = by_doubt(self.estimated);
+        let open = doubts.iter().filter(|found| found.decision.reviewer_verdict.is_none());
+        let doubtful = open.filter(|found| found.doubt.is_doubtful()).count();
+        let limit = number(Doubt::DOUBTFUL_PERCENT);
+        let doubtful = format!("{doubtful} of {} doubtful (≥ {limit} %): click", doubts.len());
+        let lists = [
+            Page::list(doubtful, self.at(paths::DOUBT_LOG), "doubt"),
+            Page::list("All: click a number", self.at(paths::VERDICT_LOG), "decision"),
+            self.text("Doubts", paths::DOUBT),
+        ];
+        Page::tabs("Lists", lists)
+    }
+
+    /// Where the decisions differ from those of other results, the most different first.
+    fn differences(&self) -> Page {
+        let name = "Delays here and there, and their difference";
+        let sheet = Page::drawing(name, &self.at(paths::DIFFERENCE_SHEET), difference::SIZE);
+        let log = self.at(paths::DIFFERENCE_LOG);
+        let list = Page::list("Most different first: click a number", log, "difference");
+        let right = [
+            (2.3, self.text("In words", paths::DIFFERENCE)),
+            (2.7, list),
+            (5.0, self.text("Verdict", paths::VERDICT)),
+        ];
+        let left = Page::stacked("Steps", [(3.6, sheet), (6.4, self.drawing())]);
+        Page::beside("Differences", [(6.6, left), (3.4, Page::stacked("Lists", right))])
+    }
+
+    /// A line that says where the cursor is, or where to click.
+    fn place(&self) -> Page {
+        self.text("Where the cursor is", paths::PLACE)
+    }
+
+    fn input(&self) -> Page {
+        plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)
+    }
+
+    /// The whole record on the time axis.
+    fn record(&self) -> Page {
+        // What the plots of output and delay, the lanes below them, and the drawing show, of an input
+        // that has steps and of one that moves all the time.
+        let [output, delay, lanes, map] = if has_decisions(&self.estimated) {
+            [
+                "Output: measured grey, smoothed blue; chosen lines orange and green; breakpoints: \
+                 dot accepted, cross rejected",
+                "Delay [samples], up to the longest accepted: dot accepted, cross rejected",
+                "Steps and verdicts",
+                "Whole record, on every timeline: the framed step is under the cursor",
+            ]
+        } else {
+            [
+                "Output: measured grey, smoothed blue",
+                "Dead time of each window [samples]",
+                "Trials",
+                "Whole record, on every timeline",
+            ]
+        };
+        let outputs = [
+            paths::OUTPUT_RAW,
+            paths::OUTPUT_SMOOTHED,
+            paths::LINE_BEFORE,
+            paths::LINE_AFTER,
+            paths::BREAKPOINT_ACCEPTED,
+            paths::BREAKPOINT_REJECTED,
+        ];
+        let output = plot(output, &outputs.map(|path| self.at(path)), Legend::InTitle);
+        let mut rows = vec![(1.1, self.input()), (3.1, output), (1.6, self.delays(delay))];
+        let joint = self.joint();
+        if !joint.covariates.is_empty() {
+            let root = self.at(paths::COVARIATE);
+            let all = joint.covariates.iter().map(|signal| child(root.clone(), &signal.name));
+            rows.push((1.5, plot("Covariates", &all.collect::<Vec<_>>(), Legend::Apart)));
+        }
+        let (shown, share) = match joint.trials.len() {
+            ..=1 => (&[paths::VERDICT, paths::SEGMENT][..], 2.1),
+            _ => (&[paths::VERDICT, paths::SEGMENT, paths::TRIAL][..], 2.6),
+        };
+        let shown: Vec<_> = shown.iter().map(|path| self.at(path)).collect();
+        rows.push((share, Page::lanes(lanes, &shown)));
+        let map = Page::drawing(map, &self.at(paths::LARGE_MAP), (SHEET.0, LARGE_HEIGHT));
+        let tabs = Page::tabs("Record", [map, Page::stacked(ALONG, rows)]);
+        Page::stacked("Record", [(1.1, self.place()), (8.9, tabs)])
+    }
+
+    /// The delays along the record.
+    fn delays(&self, name: &str) -> Page {
+        let delays = [paths::TAU, paths::DELAY_ACCEPTED, paths::DELAY_REJECTED];
+        let delays = plot(name, &delays.map(|path| self.at(path)), Legend::InTitle);
+        let decisions = self.estimated.estimate.estimated().flat_map(|trial| &trial.decisions);
+        let longest = decisions.filter_map(Decision::accepted_delay).reduce(f64::max);
+        // One rejected at the end of a long hold would press the others to the axis.
+        match longest.filter(|longest| *longest > 0.0) {
+            Some(longest) => {
+                let range = Range1D::new(-0.1 * longest, 1.2 * longest);
+                delays.with("ScalarAxis", ScalarAxis::new().with_range(range))
+            }
+            None => delays,
+        }
+    }
+
+    /// A model as it grows.
+    fn revisions(&self) -> Page {
+        let drawing = |name, path, size| Page::drawing(name, &self.at(path), size);
+        let name = "The error falls; what shows it; what was tried";
+        let sheet = drawing(name, paths::REVISION_SHEET, revision::SIZE);
+        let name =
+            "Where the error of the speed arises: its share (bars), share of the time (white)";
+        let share = drawing(name, paths::REVISION_SHARE, error_share::SIZE);
+        let record = drawing("The whole record", paths::REVISION_RECORD, revision::RECORD_SIZE);
+        let words = self.text("In words", paths::REVISION_WORDS);
+        let parameters = self.text("Parameters", paths::REVISION_PARAMETERS);
+        let left = [(4.4, Page::tabs("Ladder", [sheet, share])), (5.6, record)];
+        let right = Page::tabs("Texts", [words, parameters]);
+        Page::beside("Revisions", [(7.3, Page::stacked("Drawings", left)), (2.7, right)])
+    }
+
+    /// Numbers of the models that are drawn beside the measurement: of many revisions of one model the
+    /// first and the last, since what came between is on the page of the revisions.
+    fn drawn(&self) -> Vec<usize> {
+        let models = self.models.len();
+        if self.revisions > 0 && models > palette::NAMED {
+            vec![0, models - 1]
+        } else {
+            (0..models).collect()
+        }
+    }
+
+    /// Models beside the measurement, and their residuals.
+    fn models(&self) -> Page {
+        let shown = self.drawn();
+        let names: Vec<&str> =
+            shown.iter().filter_map(|number| Some(self.models.get(*number)?.model)).collect();
+        let root = self.at(paths::MODEL);
+        let with_models = |others: &[&str], part| -> Vec<EntityPath> {
+            let models = names.iter().map(|name| at(&child(root.clone(), name), part));
+            others.iter().map(|path| self.at(path)).chain(models).collect()
+        };
+        // A model keeps its colour where others are not drawn.
+        let colors = shown.iter().map(|number| palette::name(*number));
+        let (legend, colors) = match shown.len() {
+            ..=palette::NAMED => {
+                let own = names.iter().zip(colors).map(|(name, color)| format!("{name} {color}"));
+                let own: Vec<_> = own.collect();
+                (Legend::InTitle, format!(": measured grey, {}", own.join(", ")))
+            }
+            _ => (Legend::Apart, String::new()),
+        };
+        let horizon = self.models.first().map(|model| model.comparison.fit.evaluation.horizon);
+        let residual = format!(
+            "Residual ({}); 95 % of the noise lies in the band",
+            horizon.unwrap_or_default()
+        );
+        let outputs = with_models(&[paths::OUTPUT_RAW], paths::SIMULATED);
+        let residuals = with_models(&[paths::NOISE_UPPER, paths::NOISE_LOWER], paths::RESIDUAL);
+        let plots = [
+            (2.3, plot(format!("Measured and simulated{colors}"), &outputs, legend)),
+            (1.8, plot(residual, &residuals, legend)),
+            (1.5, self.input()),
+            (2.9, self.lanes_of_models()),
+        ];
+        let plots = Page::stacked(ALONG, plots);
+        let map = self.at(match self.revisions {
+            0 => paths::MODEL_MAP,
+            _ => paths::REVISION_RECORD,
+        });
+        let map = Page::drawing("Whole record, on every timeline", &map, revision::RECORD_SIZE);
+        // Models side by side are compared in the plots: the map is of the first one alone.
+        let tabs = if self.are_side_by_side() { [plots, map] } else { [map, plots] };
+        let rows = [
+            (1.3, self.place()),
+            (7.2, Page::tabs("Record", tabs)),
+            (3.5, self.residuals(&names, &shown)),
+        ];
+        let texts = [
+            self.text("Models", paths::MODEL_PAGE),
+            self.text("Worst", paths::MODEL_WORST),
+            self.text("Parameters", paths::MODEL_PARAMETERS),
+        ];
+        let columns = [(7.2, Page::stacked("Plots", rows)), (2.8, Page::tabs("Texts", texts))];
+        Page::beside("Models", columns)
+    }
+
+    fn are_side_by_side(&self) -> bool {
+        self.models.len() > 1 && self.revisions == 0
+    }
+
+    /// The worst segments, what was not fitted to, and where the model fails.
+    fn lanes_of_models(&self) -> Page {
+        let mut lanes = vec![self.at(paths::WORST)];
+        if self.models.iter().any(|model| !model.comparison.per_step.is_empty()) {
+            lanes.push(self.at(paths::PART));
+        }
+        if self.models.iter().any(|model| model.comparison.failure.is_some()) {
+            lanes.push(self.at(paths::FAILS));
+        }
+        Page::lanes(LANES, &lanes)
+    }
+
+    /// What the residual depends on, in three drawings; and which of several models is better, along the
+    /// record.
+    fn residuals(&self, names: &[&str], shown: &[usize]) -> Page {
+        let hidden = || (0..self.models.len()).filter(|number| !shown.contains(number));
+        let drawing = |name: &str, root: &str, parts: &[&str], size| {
+            let root = self.at(root);
+            let of_models = parts.iter().flat_map(|part| hidden().map(move |n| (part, n)));
+            let of_models = of_models.map(|(part, number)| at(&root, &of_model(part, number)));
+            Page::drawing(name, &root, size).without(of_models.collect::<Vec<_>>())
+        };
+        let drawings = [
+            drawing(
+                "Residual against four quantities: points, and their mean",
+                paths::SCATTER,
+                &["curve"],
+                scatter::SIZE,
+            ),
+            drawing(
+                "Share of the error: bars; of the time: white",
+                paths::ERROR_SHARE,
+                &["bars"],
+                error_share::SIZE,
+            ),
+            drawing(
+                "Correlation: that of noise stays between the lines (99 %)",
+                paths::CORRELATION,
+                &["band", "curve"],
+                correlogram::SIZE,
+            ),
+        ];
+        let difference = names.split_first().filter(|_| self.are_side_by_side());
+        let difference = difference.map(|(first, others)| {
+            let root = self.at(paths::MODEL_DIFFERENCE);
+            let others: Vec<_> = others.iter().map(|name| child(root.clone(), name)).collect();
+            let name = format!(
+                "Squared error so far less that of {first}: it rises where {first} is better"
+            );
+            plot(name, &others, Legend::Apart)
+        });
+        Page::tabs("Residual", difference.into_iter().chain(drawings))
+    }
+
+    /// Every number: a row per decision, and a row per candidate.
+    fn table(&self) -> Page {
+        /// Columns of the table of candidates, in the order in which a viewer shows them.
+        const COLUMNS: [&str; 7] =
+            ["breakpoint", "delay_s", "error", "error_rank", "error_times_least", "i", "verdict"];
+        let entity = self.at(paths::DECISION_TABLE);
+        let select = |name: &str| ComponentColumnSelector::new(&entity, name.to_owned());
+        let select = SelectedColumns {
+            time_columns: vec![Utf8::from("decision")],
+            component_columns: COLUMNS.into_iter().map(select).collect(),
+        };
+        let query = DataframeQuery::new().with_timeline("decision").with_auto_scroll(true);
+        let candidates = Page::view("Dataframe", "Candidates", [&entity]);
+        let candidates = candidates.with("DataframeQuery", query.with_select(select));
+        let decisions = self.text("Decisions", paths::DECISION_PAGE);
+        Page::beside("Table", [(1.15, decisions), (0.85, candidates)])
+    }
+}
