@@ -1,12 +1,11 @@
 //! Which column of a table is time, trial, and which signal of which joint.
 
 use std::collections::{HashMap, HashSet};
-use std::path::Path;
 
 use super::columns::{ColumnMap, JointColumns};
-use super::error::ReadError;
+use super::error::{ReadError, ReadErrorKind};
 use super::joint::Signal;
-use super::names::{listed, nearest_name};
+use super::names::{did_you_mean, listed, nearest_name};
 use super::table::{Head, Header};
 use super::time_column::{TimeSource, find_any, find_time_column, rest_of_times, times};
 use super::unit;
@@ -74,8 +73,8 @@ impl Layout {
         period: Option<SamplePeriod>,
     ) -> Result<Self, ReadError> {
         let columns = Columns::of(head);
-        if head.is_of_numbers() && !map.names().any(|name| columns.find(name).is_ok()) {
-            return Err(ReadError::NoHeader { path: head.path.clone(), row: head.header_row });
+        if !map.names().any(|name| columns.find(name).is_ok()) {
+            head.check_is_header()?;
         }
         let trial = match map.trial.as_deref() {
             Some(NO_TRIAL) => None,
@@ -136,7 +135,7 @@ impl Layout {
 
     /// Keeps the joints named in `wanted`, the others apart; those that are not there come back
     /// as errors.
-    pub(super) fn keep(&mut self, path: &Path, wanted: &[String]) -> Vec<(String, ReadError)> {
+    pub(super) fn keep(&mut self, wanted: &[String]) -> Vec<(String, ReadError)> {
         if wanted.is_empty() {
             return Vec::new();
         }
@@ -148,7 +147,7 @@ impl Layout {
         let mut unknown = Vec::new();
         for joint in wanted {
             if !names.contains(joint) && self.incomplete.iter().all(|(name, _)| name != joint) {
-                unknown.push((joint.clone(), unknown_joint(path, joint, &names)));
+                unknown.push((joint.clone(), unknown_joint(joint, &names)));
             }
         }
         unknown
@@ -177,9 +176,8 @@ impl Layout {
         self.joints = whole;
         let error = |joint: JointLayout| {
             let column = unequal(&joint)?;
-            let found = rows(column)?;
-            let (path, other, column) = (head.path.clone(), head.text(other), head.text(column));
-            Some((joint.name, ReadError::UnequalColumns { path, column, found, other, expected }))
+            let (other, found) = ((head.text(other), expected), (head.text(column), rows(column)?));
+            Some((joint.name, ReadError::unequal_columns(found, other)))
         };
         short.into_iter().filter_map(error).collect()
     }
@@ -209,8 +207,8 @@ impl Layout {
         let mut names: Vec<_> = joints.iter().map(|joint| &joint.name).collect();
         names.sort();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-            let (path, joint) = (columns.head.path.clone(), pair[0].clone());
-            return Err(ReadError::DuplicateJoint { path, joint });
+            let text = format!("two joints are named `{}`; give each its own name", pair[0]);
+            return Err(ReadError::new(ReadErrorKind::Joints, text));
         }
         for joint in joints {
             match mapped_joint(columns, joint) {
@@ -234,9 +232,13 @@ impl Layout {
             }
         }
         if names.is_empty() {
-            let (path, row) = (head.path.clone(), head.header_row);
-            let available = head.names();
-            return Err(ReadError::NoJoints { path, row, available, likely: Box::default() });
+            let text = format!(
+                "no joint found; a joint needs the columns `<joint>.input` and `<joint>.output`; the \
+                 columns are: {}",
+                head.names()
+            );
+            let kind = ReadErrorKind::NoJoints(Box::default());
+            return Err(ReadError::new(kind, text).in_row(head.header_row));
         }
         for name in names {
             let covariates = covariates.get(name).map_or(&[][..], Vec::as_slice);
@@ -250,14 +252,11 @@ impl Layout {
 }
 
 /// That a joint is not among those of these `names`.
-pub(super) fn unknown_joint(path: &Path, joint: &str, names: &[String]) -> ReadError {
+pub(super) fn unknown_joint(joint: &str, names: &[String]) -> ReadError {
     let names = || names.iter().map(String::as_str);
-    ReadError::UnknownJoint {
-        path: path.to_owned(),
-        joint: joint.to_owned(),
-        nearest: nearest_name(joint, names()).map(str::to_owned),
-        available: listed(names()),
-    }
+    let (nearest, all) = (did_you_mean(nearest_name(joint, names())), listed(names()));
+    let text = format!("no joint `{joint}`{nearest}; the joints are: {all}");
+    ReadError::new(ReadErrorKind::Joints, text)
 }
 
 /// Joint and signal of a native column: `boom.output` is `("boom", "output")`.
@@ -284,9 +283,12 @@ fn mapped_joint(columns: &Columns<'_>, joint: &JointColumns) -> Result<JointLayo
     let input = signal_column(columns, &joint.input, "input", joint.input_unit.as_ref())?;
     let output = signal_column(columns, &joint.output, "output", joint.output_unit.as_ref())?;
     if input.column == output.column {
-        let (path, joint) = (columns.head.path.clone(), joint.name.clone());
         let column = columns.head.text(input.column);
-        return Err(ReadError::OneColumn { path, joint, column });
+        let text = format!(
+            "joint `{}` has column `{column}` for its input and for its output; give each its own",
+            joint.name
+        );
+        return Err(ReadError::new(ReadErrorKind::Joints, text).about(column));
     }
     Ok(JointLayout {
         name: joint.name.clone(),
@@ -336,12 +338,12 @@ fn find_time(
     }
     match find_time_column(head) {
         Some(column) => times(head, column, None),
-        None => Err(ReadError::NoTime {
-            path: head.path.clone(),
-            row: head.header_row,
-            available: head.names(),
-            index: index_column(head),
-        }),
+        None => {
+            let names = head.names();
+            let text = format!("no time column (`time_s`, `t_s`, `time` or `t`); found {names}");
+            let kind = ReadErrorKind::NoTime(index_column(head));
+            Err(ReadError::new(kind, text).in_row(head.header_row))
+        }
     }
 }
 
@@ -410,16 +412,19 @@ impl<'a> Columns<'a> {
     /// whose name it is but for a unit at its end.
     fn find(&self, wanted: &str) -> Result<usize, ReadError> {
         let head = self.head;
-        let (path, row, column) = (head.path.clone(), head.header_row, wanted.to_owned());
         match self.by_name.get(wanted) {
             Some(Named::One(index)) => Ok(*index),
-            Some(Named::Several(_)) => Err(ReadError::DuplicateColumn { path, row, column }),
+            Some(Named::Several(_)) => Err(head.two_columns(wanted)),
             None => {
                 let few = Some(&head.headers).filter(|headers| headers.len() <= MOST_COMPARED);
                 let names = few.into_iter().flatten().map(|header| header.name.as_str());
-                let nearest = nearest_name(wanted, names).map(str::to_owned);
-                let available = head.names();
-                Err(ReadError::MissingColumn { path, row, column, nearest, available })
+                let text = format!(
+                    "column `{wanted}` is missing{}; the columns are: {}",
+                    did_you_mean(nearest_name(wanted, names)),
+                    head.names()
+                );
+                let error = ReadError::new(ReadErrorKind::MissingColumn, text);
+                Err(error.in_row(head.header_row).about(wanted))
             }
         }
     }

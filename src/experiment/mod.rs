@@ -42,7 +42,7 @@ pub use columns::{ColumnMap, ColumnMapError, JointColumns};
 pub(crate) use conditions::are_opposites;
 pub use conditions::conditions;
 pub(crate) use conditions::has_word;
-pub use error::ReadError;
+pub use error::{ReadError, ReadErrorKind};
 pub(crate) use format::{format_names, is_named_like_a_log, line_end_of};
 pub(crate) use gaps::longest_gap_s;
 pub use grid::Repair;

@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::grid::Repair;
 use crate::experiment::layout::Layout;
 use crate::experiment::memory::Budget;
-use crate::experiment::table::{BadCell, Column, Head, Table, TrialRows};
+use crate::experiment::table::{Column, Head, Table, TrialRows};
 use crate::units::SamplePeriod;
 
 /// A table that was read, with what is needed to mend it and to speak of its cells.
@@ -69,7 +69,7 @@ impl<'a> Log<'a> {
     }
 
     /// The outputs of all joints, each column once.
-    pub(in crate::experiment) fn outputs(&self) -> impl Iterator<Item = Output> {
+    pub(in crate::experiment) fn outputs(&self) -> Vec<Output> {
         let mut seen = HashSet::new();
         let wanted = self.layout.joints.iter().map(|joint| (joint, true));
         let others = self.layout.others.iter().map(|joint| (joint, false));
@@ -80,7 +80,7 @@ impl<'a> Log<'a> {
             joint: joint.name.clone(),
             is_wanted,
         });
-        outputs.filter(move |output| seen.insert(output.column))
+        outputs.filter(|output| seen.insert(output.column)).collect()
     }
 
     /// The rows of each trial.
@@ -103,8 +103,7 @@ impl<'a> Log<'a> {
 
     /// Takes the memory of `count` values of `size` bytes each.
     pub(super) fn take(&self, count: usize, size: usize) -> Result<(), ReadError> {
-        let taken = self.budget.take_values(count, size);
-        taken.map_err(|error| error.refuse(&self.head.path))
+        self.budget.take_values(count, size)
     }
 
     pub(in crate::experiment) fn column(&self, index: usize) -> Option<&Column> {
@@ -131,23 +130,11 @@ impl<'a> Log<'a> {
         self.table.rows.number(index)
     }
 
-    /// `note` behind the name of the file.
-    pub(in crate::experiment) fn named(&self, note: &str) -> String {
-        format!("{}: {note}", self.head.path.display())
-    }
-
     /// The first bad cell of a column.
     pub(super) fn bad_cell(&self, column: usize) -> Option<ReadError> {
-        let (row, bad) = self.column(column)?.error.clone()?;
-        let (path, column) = (self.head.path.clone(), self.header(column));
-        Some(match bad {
-            BadCell::Kind(found) => ReadError::NotNumbers { path, column, found },
-            BadCell::Text(text) => ReadError::NotANumber { path, row, column, text },
-            BadCell::Thousands(text) => ReadError::Thousands { path, row, column, text },
-            BadCell::DecimalMark(text) => ReadError::DecimalMarks { path, row, column, text },
-            BadCell::Infinite => ReadError::Infinite { path, row, column },
-            BadCell::TooLarge(value) => ReadError::BeyondPrecision { path, row, column, value },
-        })
+        let (row, bad) = self.column(column)?.error.as_ref()?;
+        let error = ReadError::new(ReadErrorKind::Cell, bad.to_string());
+        Some(error.in_row(*row).in_column(self.header(column)))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The joints of a log: cells checked, trials cut and put on a uniform grid.
 
 use super::cells::Log;
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::gaps::{gap_with_all_steps_s, unlogged};
 use crate::experiment::grid::{Grid, Piece, Repair, Signals};
 use crate::experiment::joint::{Joint, Signal};
@@ -74,8 +74,8 @@ impl Log<'_> {
             }
         }
         if trials.is_empty() {
-            let (path, joint) = (self.head.path.clone(), layout.name.clone());
-            return Err(ReadError::NoSamples { path, joint });
+            let text = format!("joint `{}` has no usable sample", layout.name);
+            return Err(ReadError::new(ReadErrorKind::Empty, text));
         }
         let joint = Joint {
             name: layout.name.clone(),
@@ -131,10 +131,11 @@ impl Log<'_> {
         let Signals { input, output, covariates } = piece.signals;
         let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
             .and_then(|trial| trial.with_covariates(covariates));
-        trial.map_err(|source| ReadError::Trial {
-            path: self.head.path.clone(),
-            joint: layout.name.clone(),
-            source,
+        trial.map_err(|source| {
+            ReadError::new(
+                ReadErrorKind::Trial(Box::new(source)),
+                format!("joint `{}`", layout.name),
+            )
         })
     }
 
@@ -196,12 +197,18 @@ impl Log<'_> {
         }
         for index in needed {
             let Some(column) = self.column(index) else { continue };
-            let (path, name) = (self.head.path.clone(), self.header(index));
             if column.values.iter().all(|value| value.is_nan()) {
-                return Err(ReadError::NeverMeasured { path, column: name });
+                let text = "there is no number in it; choose another column";
+                return Err(
+                    ReadError::new(ReadErrorKind::Empty, text).in_column(self.header(index))
+                );
             }
             if let Some(largest) = column.too_small() {
-                return Err(ReadError::BelowPrecision { path, column: name, largest });
+                let text = format!(
+                    "its largest number, {largest:e}, is below what double precision can square; write \
+                     it in a smaller unit"
+                );
+                return Err(ReadError::new(ReadErrorKind::Cell, text).in_column(self.header(index)));
             }
         }
         Ok(())

@@ -6,7 +6,7 @@
 //! one, or the sensor has a clock of its own. A grid fills them so. A further signal stays missing.
 
 use super::cells::{Log, Times};
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::grid::Repair;
 use crate::experiment::layout::JointLayout;
 use crate::numerics::median;
@@ -16,7 +16,7 @@ impl Log<'_> {
     /// and what is said of missing cells. Of other outputs the gaps are filled that are filled in a clock.
     ///
     /// # Errors
-    /// [`ReadError::Missing`] where nothing may be filled.
+    /// [`ReadErrorKind::Missing`] where nothing may be filled.
     pub(super) fn missing(
         &self,
         layout: &JointLayout,
@@ -39,11 +39,10 @@ impl Log<'_> {
         };
         let needed = [layout.input.column, layout.output.column];
         match needed.into_iter().filter_map(first_missing).min() {
-            Some((index, column)) => Err(ReadError::Missing {
-                path: self.head.path.clone(),
-                row: self.row(index),
-                column: self.header(column),
-            }),
+            Some((index, column)) => {
+                let error = ReadError::new(ReadErrorKind::Missing, "the cell is empty or NaN");
+                Err(error.in_row(self.row(index)).in_column(self.header(column)))
+            }
             None => Ok(()),
         }
     }

@@ -7,36 +7,24 @@
 mod turn;
 
 use self::turn::{RANGE, powers_of_two, seen, turns};
-use super::repair::Repair;
-use crate::experiment::log::{Log, Output};
+use crate::experiment::log::Log;
+use crate::experiment::table::Column;
 use crate::numerics::{quantile, to_decimals};
 
-/// An output that wraps.
-pub(super) struct Wrapped {
-    output: Output,
-    wrap: Wrap,
-}
-
-impl Repair for Wrapped {
-    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
-        let of = move |output: Output| {
-            let trials = log.parts(output.column)?;
-            let wrap = Wrap::of(&trials, output.unit.as_deref())?;
-            Some(Self { output, wrap })
-        };
-        log.outputs().filter_map(of)
-    }
-
-    fn apply(self, log: &mut Log<'_>) -> Option<String> {
-        let Self { output, wrap } = self;
+/// Takes the turns out of outputs that wrap.
+pub(super) fn unwrap(log: &mut Log<'_>) {
+    for output in log.outputs() {
+        let unit = output.unit.as_deref();
+        let trials = log.parts(output.column);
+        let Some(wrap) = trials.and_then(|trials| Wrap::of(&trials, unit)) else { continue };
         let spans = log.spans();
-        let values = &mut log.column_mut(output.column)?.values;
+        let Some(Column { values, .. }) = log.column_mut(output.column) else { continue };
         let mut count = 0;
         for rows in spans {
             count += values.get_mut(rows).map_or(0, |part| wrap.unwrap(part));
         }
         log.unwrapped.push(output.column);
-        output.note(&wrap.note(count, output.unit.as_deref())).filter(|_| count > 0)
+        log.notes.extend(output.note(&wrap.note(count, unit)).filter(|_| count > 0));
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::variable::{Content, Variable};
 use super::{v5, v73};
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::format::first_bytes::{is_matlab_73, start_of};
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{Column, Head, Labels, OpenTable, Rows, Table, Wanted};
@@ -13,6 +13,8 @@ use crate::experiment::table::{Column, Head, Labels, OpenTable, Rows, Table, Wan
 struct Unread {
     variables: Vec<Variable>,
     places: Vec<(usize, usize)>,
+    /// Bytes of the file.
+    size: u64,
     budget: Budget,
 }
 
@@ -33,23 +35,19 @@ pub(in crate::experiment::format) fn open(
         }
     }
     if variables.iter().all(|variable| variable.shape().0 == 0) {
-        check_kinds(path, &variables)?;
+        check_kinds(&variables)?;
     }
-    let rows = Box::new(Unread { variables, places, budget });
-    let head = Head { path: path.to_owned(), headers, header_row: 0, unread: Vec::new() };
-    Ok(OpenTable { head, rows })
+    let rows = Box::new(Unread { variables, places, size: path.metadata()?.len(), budget });
+    Ok(OpenTable { head: Head::without_lines(headers), rows })
 }
 
 /// Refuses a file in which nothing has rows, and says of the first variable what it is.
-fn check_kinds(path: &Path, variables: &[Variable]) -> Result<(), ReadError> {
+fn check_kinds(variables: &[Variable]) -> Result<(), ReadError> {
     for variable in variables {
         if let Content::Other(kind) = &variable.content {
-            return Err(ReadError::Format {
-                path: path.to_owned(),
-                format: "MATLAB",
-                reason: format!("it has no column of numbers: `{}` is {kind}", variable.name),
-                remedy: "save each signal as a vector, with `save -v7`",
-            });
+            let reason = format!("it has no column of numbers: `{}` is {kind}", variable.name);
+            let remedy = "save each signal as a vector, with `save -v7`";
+            return Err(ReadError::format("MATLAB", reason, remedy));
         }
     }
     Ok(())
@@ -57,17 +55,16 @@ fn check_kinds(path: &Path, variables: &[Variable]) -> Result<(), ReadError> {
 
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let path = wanted.path();
         let rows = self.rows(wanted)?;
-        let columns = wanted.numeric.iter().map(|index| self.column(*index, path));
+        let columns = wanted.numeric.iter().map(|index| self.column(*index));
         let columns = columns.collect::<Result<_, _>>()?;
         let mut labels = Labels::default();
         if let Some(index) = wanted.label {
-            for (text, row) in self.labels(index, path)?.iter().zip(1..) {
-                labels.push(text, row, (path, &self.budget))?;
+            for (text, row) in self.labels(index)?.iter().zip(1..) {
+                labels.push(text, row, &self.budget)?;
             }
         }
-        Table::counted(path, rows, columns, &labels)
+        Ok(Table::counted(rows, columns, labels))
     }
 
     fn rows_of(&self, column: usize) -> Option<usize> {
@@ -79,19 +76,16 @@ impl Unread {
     /// The rows of the columns that are wanted, which must be as many in each. What is no column spoils
     /// its own joint.
     fn rows(&self, wanted: &Wanted<'_>) -> Result<usize, ReadError> {
-        let name = |index: usize| wanted.head.headers.get(index).map_or("", |header| &header.name);
+        let name = |index: usize| {
+            wanted.head.headers.get(index).map(|header| header.name.clone()).unwrap_or_default()
+        };
         let mut first = None;
         for index in wanted.numeric.iter().chain(&wanted.label).copied() {
             let Some(found) = self.rows_of(index) else { continue };
             let (other, expected) = *first.get_or_insert((index, found));
             if found != expected {
-                return Err(ReadError::UnequalColumns {
-                    path: wanted.path().to_owned(),
-                    column: name(index).to_owned(),
-                    found,
-                    other: name(other).to_owned(),
-                    expected,
-                });
+                let (found, other) = ((name(index), found), (name(other), expected));
+                return Err(ReadError::unequal_columns(found, other));
             }
         }
         Ok(first.map_or(0, |(_, rows)| rows))
@@ -103,7 +97,7 @@ impl Unread {
     }
 
     /// The numbers of a column, or what is there instead.
-    fn column(&self, header: usize, path: &Path) -> Result<Column, ReadError> {
+    fn column(&self, header: usize) -> Result<Column, ReadError> {
         let Some((variable, column)) = self.place(header) else { return Ok(Column::default()) };
         if let Some(kind) = variable.is_no_column() {
             return Ok(Column::not_numbers(kind));
@@ -112,25 +106,29 @@ impl Unread {
             Content::Numbers(values) => {
                 let (rows, _) = variable.shape();
                 let values = values.iter().skip(column * rows).take(rows);
-                Column::of(values.copied())
+                Column::of(values.copied().collect())
             }
             Content::Stored(dataset) => {
-                Column::of(v73::column(dataset, column, path, &self.budget)?)
+                Column::of(v73::column(dataset, column, self.size, &self.budget)?)
             }
             Content::Texts(_) | Content::Other(_) => Column::not_numbers("text"),
         })
     }
 
     /// The label of each row.
-    fn labels(&self, header: usize, path: &Path) -> Result<Vec<String>, ReadError> {
+    fn labels(&self, header: usize) -> Result<Vec<String>, ReadError> {
         let Some((variable, _)) = self.place(header) else { return Ok(Vec::new()) };
         if let Some(found) = variable.is_no_column() {
-            let (column, found) = (variable.name.clone(), found.to_owned());
-            return Err(ReadError::NoLabels { path: path.to_owned(), column, found });
+            let text = format!(
+                "it holds {found}, not a label per row; save it as numbers or as a cell array of texts, \
+                 or read all as one trial with `--trial none`"
+            );
+            let error = ReadError::new(ReadErrorKind::Cell, text);
+            return Err(error.in_column(&variable.name));
         }
         match &variable.content {
             Content::Texts(texts) => Ok(texts.clone()),
-            _ => Ok(self.column(header, path)?.values.iter().map(f64::to_string).collect()),
+            _ => Ok(self.column(header)?.values.iter().map(f64::to_string).collect()),
         }
     }
 }

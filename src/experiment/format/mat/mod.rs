@@ -15,57 +15,20 @@ mod v73;
 mod variable;
 mod watched;
 
-use std::path::Path;
+use std::fmt::Display;
 
 pub(super) use columns::open;
 
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::TooLarge;
 
 /// Why a file is refused.
-#[derive(Debug)]
-enum Fault {
-    /// What is wrong with it.
-    Damaged(String),
-    TooLarge(TooLarge),
+fn damaged(reason: impl Display) -> ReadError {
+    let remedy = "save it again, with `save -v7` if it is of another version";
+    ReadError::format("MATLAB", reason, remedy)
 }
 
-impl Fault {
-    fn refuse(self, path: &Path) -> ReadError {
-        match self {
-            Self::Damaged(reason) => ReadError::Format {
-                path: path.to_owned(),
-                format: "MATLAB",
-                reason,
-                remedy: "save it again, with `save -v7` if it is of another version",
-            },
-            Self::TooLarge(error) => error.refuse(path),
-        }
-    }
-
-    /// Says in what part of the file it is.
-    fn within(self, place: &str) -> Self {
-        match self {
-            Self::Damaged(reason) => Self::Damaged(format!("{place}: {reason}")),
-            Self::TooLarge(_) => self,
-        }
-    }
-}
-
-impl From<std::io::Error> for Fault {
-    fn from(error: std::io::Error) -> Self {
-        Self::Damaged(error.to_string())
-    }
-}
-
-impl From<hdf5_pure::Error> for Fault {
+impl From<hdf5_pure::Error> for ReadError {
     fn from(error: hdf5_pure::Error) -> Self {
-        Self::Damaged(error.to_string())
-    }
-}
-
-impl From<TooLarge> for Fault {
-    fn from(error: TooLarge) -> Self {
-        Self::TooLarge(error)
+        damaged(error)
     }
 }

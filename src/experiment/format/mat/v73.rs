@@ -7,7 +7,7 @@ use std::path::Path;
 
 use hdf5_pure::{AttrValue, Chunk, DType, Dataset, Group};
 
-use super::Fault;
+use super::damaged;
 use super::variable::{Content, Variable, object};
 use super::watched::{Reads, open};
 use crate::experiment::error::ReadError;
@@ -32,8 +32,8 @@ const FEW_OBJECTS: u64 = 256;
 /// of one.
 const LARGEST_RATIO: u64 = 1100;
 
-fn fault<T>(text: String) -> Result<T, Fault> {
-    Err(Fault::Damaged(text))
+fn fault<T>(text: String) -> Result<T, ReadError> {
+    Err(damaged(text))
 }
 
 /// A file whose variables are being listed.
@@ -50,10 +50,6 @@ struct Listing<'a> {
 
 /// The variables of a file, their numbers still stored.
 pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
-    listed(path, budget).map_err(|fault| fault.refuse(path))
-}
-
-fn listed(path: &Path, budget: &Budget) -> Result<Vec<Variable>, Fault> {
     let (file, reads) = open(path)?;
     let size = file.file_size();
     let objects = size / OBJECT_SIZE + FEW_OBJECTS;
@@ -64,19 +60,13 @@ fn listed(path: &Path, budget: &Budget) -> Result<Vec<Variable>, Fault> {
     Ok(listing.found)
 }
 
-/// The numbers of a column of a matrix that is stored, as it lies in the file.
+/// The numbers of a column of a matrix that is stored, as it lies in the file of `size` bytes.
 pub(super) fn column(
     dataset: &Dataset,
     column: usize,
-    path: &Path,
+    size: u64,
     budget: &Budget,
 ) -> Result<Vec<f64>, ReadError> {
-    let size = path.metadata();
-    let size = size.map_err(|source| ReadError::Io { path: path.to_owned(), source })?.len();
-    stored(dataset, column, size, budget).map_err(|fault| fault.refuse(path))
-}
-
-fn stored(dataset: &Dataset, column: usize, size: u64, budget: &Budget) -> Result<Vec<f64>, Fault> {
     // Memory is taken for each chunk before it is read.
     let ends = |chunk: &Chunk| chunk.address.checked_add(chunk.storage_size);
     let lies_within = |chunk: &Chunk| ends(chunk).is_some_and(|end| end <= size);
@@ -104,7 +94,7 @@ fn product(first: u64, others: &[u64]) -> Option<u64> {
 
 impl Listing<'_> {
     /// Adds what lies in a group, which is a structure; by name, so that the order is certain.
-    fn group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), Fault> {
+    fn group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), ReadError> {
         let mut datasets = group.datasets()?;
         datasets.sort();
         let count = datasets.len();
@@ -139,7 +129,7 @@ impl Listing<'_> {
         Ok(())
     }
 
-    fn variable(&self, name: String, dataset: Dataset) -> Result<Variable, Fault> {
+    fn variable(&self, name: String, dataset: Dataset) -> Result<Variable, ReadError> {
         let shape = dataset.shape()?;
         let chunk = dataset.chunk_shape()?.unwrap_or_default();
         let (element, most) = (dataset.element_size()?, self.size.saturating_mul(LARGEST_RATIO));

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::fault::Fault;
-use super::notes;
 use super::runs::in_runs;
 use super::series::{NUMBER_SIZE, Series, interval};
 use super::topics::{Clock, Topics};
+use super::{notes, refused};
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::Budget;
 use crate::experiment::names::listed;
 use crate::experiment::table::Column;
@@ -56,18 +56,18 @@ impl Alignment<'_> {
     /// from its latest message.
     /// What comes before the first message of all others is left out; what begins later is NaN up to
     /// there, so that a joint whose command comes late takes no rows from those beside it.
-    pub(super) fn align(&self, series: Vec<Series>) -> Result<Aligned, Fault> {
+    pub(super) fn align(&self, series: Vec<Series>) -> Result<Aligned, ReadError> {
         let (mut aligned, mut failed) = (Aligned::default(), Vec::new());
         for run in in_runs(series, self.topic) {
             match self.align_run(run) {
                 Ok(run) => aligned.append(run),
-                Err(fault @ Fault::Damaged { .. }) => failed.push(fault),
-                Err(fault) => return Err(fault),
+                Err(error) if matches!(error.kind, ReadErrorKind::Format) => failed.push(error),
+                Err(error) => return Err(error),
             }
         }
         let left_out = failed.len();
         match failed.into_iter().next() {
-            Some(fault) if aligned.times.is_empty() => return Err(fault),
+            Some(error) if aligned.times.is_empty() => return Err(error),
             Some(_) => aligned.notes.push(format!(
                 "its clock starts anew, and {left_out} runs without a message of each topic are left out"
             )),
@@ -77,7 +77,7 @@ impl Alignment<'_> {
     }
 
     /// [`Self::align`] of a run in which the clock does not start anew.
-    fn align_run(&self, mut series: Vec<Series>) -> Result<Aligned, Fault> {
+    fn align_run(&self, mut series: Vec<Series>) -> Result<Aligned, ReadError> {
         series.iter_mut().for_each(Series::sort);
         let Some(place) = series.iter().position(|series| series.topic == self.topic) else {
             return Ok(Aligned::default());
@@ -115,11 +115,11 @@ impl Alignment<'_> {
         Ok(Aligned { times, columns, notes })
     }
 
-    fn never_together(&self, held: &[Series]) -> Fault {
+    fn never_together(&self, held: &[Series]) -> ReadError {
         let topic = self.topics.name(self.topic);
         let others = listed(held.iter().map(|series| self.topics.name(series.topic)));
         let reason = format!("no message of {topic} comes after the first ones of {others}");
-        Fault::new(
+        refused(
             reason,
             "choose topics that were recorded together, and `--time log_time` where their stamps are of \
              several clocks",
@@ -246,7 +246,7 @@ impl Aligned {
     /// Seconds from `zero` on, by the clock that the messages were collected by.
     pub(super) fn times(&self, wanted: Clock, clock: Clock, zero: i64) -> Column {
         let times = self.times.iter().filter(|_| wanted == clock);
-        Column::of(times.map(|time| time.saturating_sub(zero) as f64 / 1e9))
+        Column::of(times.map(|time| time.saturating_sub(zero) as f64 / 1e9).collect())
     }
 }
 

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use mcap::records::{Channel, MessageHeader, Record};
 
-use super::fault::Fault;
 use super::fields::each_number;
 use super::message::{Decoder, Value};
-use crate::experiment::memory::{Budget, TooLarge};
+use super::refused;
+use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
 use crate::experiment::names::listed;
 use crate::experiment::table::Header;
 
@@ -73,7 +74,7 @@ struct Topic {
 
 impl Topic {
     /// Learns the numbers of a message.
-    fn learn(&mut self, message: &Value<'_>, budget: &Budget) -> Result<(), TooLarge> {
+    fn learn(&mut self, message: &Value<'_>, budget: &Budget) -> Result<(), ReadError> {
         each_number(
             message,
             |_| true,
@@ -120,7 +121,7 @@ pub(super) struct Topics {
 
 impl Topics {
     /// Learns from a record.
-    pub(super) fn look_at(&mut self, record: Record<'_>, budget: &Budget) -> Result<(), Fault> {
+    pub(super) fn look_at(&mut self, record: Record<'_>, budget: &Budget) -> Result<(), ReadError> {
         match record {
             Record::Schema { header, data } => {
                 // It may be repeated; a file that was appended to may use its number anew.
@@ -140,7 +141,7 @@ impl Topics {
     }
 
     /// Keeps a channel; of one that cannot be read its topic, as another may be all that is asked for.
-    fn register(&mut self, channel: Channel, budget: &Budget) -> Result<(), Fault> {
+    fn register(&mut self, channel: Channel, budget: &Budget) -> Result<(), ReadError> {
         if self.channels.contains_key(&channel.id) {
             return Ok(());
         }
@@ -167,7 +168,12 @@ impl Topics {
     }
 
     /// Learns the fields and the times of a message.
-    fn learn(&mut self, header: &MessageHeader, data: &[u8], budget: &Budget) -> Result<(), Fault> {
+    fn learn(
+        &mut self,
+        header: &MessageHeader,
+        data: &[u8],
+        budget: &Budget,
+    ) -> Result<(), ReadError> {
         let [start, ..] = &mut self.zero;
         *start = [*start, i64::try_from(header.log_time).ok()].into_iter().flatten().min();
         let Some(channel) = self.channels.get_mut(&header.channel_id) else { return Ok(()) };
@@ -188,11 +194,11 @@ impl Topics {
             let time = clock.time(header, &value);
             *zero = [*zero, time].into_iter().flatten().min();
         }
-        Ok(topic.learn(&value, budget)?)
+        topic.learn(&value, budget)
     }
 
     /// Refuses a file in which no message can be read.
-    pub(super) fn check(&self) -> Result<(), Fault> {
+    pub(super) fn check(&self) -> Result<(), ReadError> {
         if self.list.iter().any(|topic| !topic.fields.is_empty()) {
             return Ok(());
         }
@@ -203,7 +209,7 @@ impl Topics {
                 listed(left.iter().map(String::as_str))
             ),
         };
-        Err(Fault::new(reason, "record topics of ROS 2 with `ros2 bag record -s mcap`"))
+        Err(refused(reason, "record topics of ROS 2 with `ros2 bag record -s mcap`"))
     }
 
     /// The times, and the fields of all topics.
