@@ -95,9 +95,9 @@ impl Layout {
             incomplete: Vec::new(),
         };
         if map.joints.is_empty() {
-            layout.add_native_joints(&columns)?;
+            layout.add_joints(&columns, &native_joints(head)?)?;
         } else {
-            layout.add_mapped_joints(&columns, &map.joints)?;
+            layout.add_joints(&columns, &map.joints)?;
         }
         Ok(layout)
     }
@@ -199,7 +199,7 @@ impl Layout {
         self.time.column().or(self.unused_time)
     }
 
-    fn add_mapped_joints(
+    fn add_joints(
         &mut self,
         columns: &Columns<'_>,
         joints: &[JointColumns],
@@ -211,40 +211,9 @@ impl Layout {
             return Err(ReadError::new(ReadErrorKind::Joints, text));
         }
         for joint in joints {
-            match mapped_joint(columns, joint) {
+            match joint_layout(columns, joint) {
                 Ok(layout) => self.joints.push(layout),
                 Err(error) => self.incomplete.push((joint.name.clone(), error)),
-            }
-        }
-        Ok(())
-    }
-
-    fn add_native_joints(&mut self, columns: &Columns<'_>) -> Result<(), ReadError> {
-        let head = columns.head;
-        let mut names: Vec<&str> = Vec::new();
-        let mut seen = HashSet::new();
-        let mut covariates: HashMap<&str, Vec<&str>> = HashMap::new();
-        for (name, signal) in head.headers.iter().filter_map(native_name) {
-            if !["input", "output"].contains(&signal) {
-                covariates.entry(name).or_default().push(signal);
-            } else if seen.insert(name) {
-                names.push(name);
-            }
-        }
-        if names.is_empty() {
-            let text = format!(
-                "no joint found; a joint needs the columns `<joint>.input` and `<joint>.output`; the \
-                 columns are: {}",
-                head.names()
-            );
-            let kind = ReadErrorKind::NoJoints(Box::default());
-            return Err(ReadError::new(kind, text).in_row(head.header_row));
-        }
-        for name in names {
-            let covariates = covariates.get(name).map_or(&[][..], Vec::as_slice);
-            match native_joint(columns, name, covariates) {
-                Ok(layout) => self.joints.push(layout),
-                Err(error) => self.incomplete.push((name.to_owned(), error)),
             }
         }
         Ok(())
@@ -264,21 +233,37 @@ fn native_name(header: &Header) -> Option<(&str, &str)> {
     header.name.rsplit_once('.').filter(|(joint, signal)| !joint.is_empty() && !signal.is_empty())
 }
 
-fn native_joint(
-    columns: &Columns<'_>,
-    name: &str,
-    covariates: &[&str],
-) -> Result<JointLayout, ReadError> {
-    let signal = |kind: &str| signal_column(columns, &format!("{name}.{kind}"), kind, None);
-    Ok(JointLayout {
-        name: name.to_owned(),
-        input: signal("input")?,
-        output: signal("output")?,
-        covariates: covariates.iter().map(|kind| signal(kind)).collect::<Result<_, _>>()?,
-    })
+/// The joints whose columns have native names, each with its further signals.
+fn native_joints(head: &Head) -> Result<Vec<JointColumns>, ReadError> {
+    let mut names: Vec<&str> = Vec::new();
+    let mut seen = HashSet::new();
+    let mut covariates: HashMap<&str, Vec<(String, String)>> = HashMap::new();
+    for (name, signal) in head.headers.iter().filter_map(native_name) {
+        if !["input", "output"].contains(&signal) {
+            let column = (signal.to_owned(), format!("{name}.{signal}"));
+            covariates.entry(name).or_default().push(column);
+        } else if seen.insert(name) {
+            names.push(name);
+        }
+    }
+    if names.is_empty() {
+        let text = format!(
+            "no joint found; a joint needs the columns `<joint>.input` and `<joint>.output`; the columns \
+             are: {}",
+            head.names()
+        );
+        let kind = ReadErrorKind::NoJoints(Box::default());
+        return Err(ReadError::new(kind, text).in_row(head.header_row));
+    }
+    let joint = |name: &str| {
+        let (input, output) = (format!("{name}.input"), format!("{name}.output"));
+        let covariates = covariates.remove(name).unwrap_or_default();
+        JointColumns { covariates, ..JointColumns::new(name, &input, &output) }
+    };
+    Ok(names.into_iter().map(joint).collect())
 }
 
-fn mapped_joint(columns: &Columns<'_>, joint: &JointColumns) -> Result<JointLayout, ReadError> {
+fn joint_layout(columns: &Columns<'_>, joint: &JointColumns) -> Result<JointLayout, ReadError> {
     let covariate = |(name, column): &(String, String)| signal_column(columns, column, name, None);
     let input = signal_column(columns, &joint.input, "input", joint.input_unit.as_ref())?;
     let output = signal_column(columns, &joint.output, "output", joint.output_unit.as_ref())?;
@@ -362,23 +347,8 @@ const MOST_COMPARED: usize = 1000;
 /// The columns of a log by their names: logs may have very many.
 struct Columns<'a> {
     head: &'a Head,
-    by_name: HashMap<&'a str, Named>,
-}
-
-/// The columns that share a name.
-#[derive(Clone, Copy)]
-enum Named {
-    One(usize),
-    /// Several, and the first of them.
-    Several(usize),
-}
-
-impl Named {
-    fn first(self) -> usize {
-        match self {
-            Self::One(index) | Self::Several(index) => index,
-        }
-    }
+    /// The first column of each name, and whether there are several.
+    by_name: HashMap<&'a str, (usize, bool)>,
 }
 
 impl<'a> Columns<'a> {
@@ -393,9 +363,9 @@ impl<'a> Columns<'a> {
         for name in kinds {
             let mut named = HashMap::new();
             for (index, header) in head.headers.iter().enumerate() {
-                let several = |named: &mut Named| *named = Named::Several(named.first());
                 if let Some(name) = name(header) {
-                    named.entry(name).and_modify(several).or_insert(Named::One(index));
+                    let several = |(_, several): &mut (usize, bool)| *several = true;
+                    named.entry(name).and_modify(several).or_insert((index, false));
                 }
             }
             by_name.extend(named);
@@ -405,7 +375,7 @@ impl<'a> Columns<'a> {
 
     /// The first column of this name.
     fn first(&self, wanted: &str) -> Option<usize> {
-        self.by_name.get(wanted).map(|named| named.first())
+        self.by_name.get(wanted).map(|(index, _)| *index)
     }
 
     /// The column whose whole header is `wanted`, else the one whose name it is, else the one
@@ -413,8 +383,8 @@ impl<'a> Columns<'a> {
     fn find(&self, wanted: &str) -> Result<usize, ReadError> {
         let head = self.head;
         match self.by_name.get(wanted) {
-            Some(Named::One(index)) => Ok(*index),
-            Some(Named::Several(_)) => Err(head.two_columns(wanted)),
+            Some((index, false)) => Ok(*index),
+            Some((_, true)) => Err(head.two_columns(wanted)),
             None => {
                 let few = Some(&head.headers).filter(|headers| headers.len() <= MOST_COMPARED);
                 let names = few.into_iter().flatten().map(|header| header.name.as_str());

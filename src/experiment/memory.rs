@@ -55,6 +55,9 @@ pub(crate) fn address_space() -> Option<u64> {
     None
 }
 
+/// Memory of a number that is read: itself, and a copy or what its vector has to spare.
+pub(super) const NUMBER_SIZE: usize = 2 * size_of::<f64>();
+
 /// What is left of the limit while a log is read.
 #[derive(Debug)]
 pub(super) struct Budget {

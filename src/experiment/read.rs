@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::clock::is_period;
 use super::columns::{ColumnMap, JointColumns};
 use super::error::{ReadError, ReadErrorKind};
 use super::format::{self, is_named_like_a_log};
@@ -14,7 +15,6 @@ use super::layout::{JointLayout, Layout};
 use super::log::Log;
 use super::memory::{Budget, MemoryLimit};
 use super::names::on_one_line;
-use super::period::is_period;
 use super::repairs::mend_all;
 use super::source::{Source, source_of};
 use super::survey::{Survey, further_joint};

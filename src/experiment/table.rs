@@ -307,17 +307,14 @@ impl Column {
         (largest > 0.0 && largest < SMALLEST).then_some(largest)
     }
 
-    /// How far apart doubles are where its numbers are, if that is much of what they differ by.
-    pub(super) fn coarse(&self) -> Option<Coarse> {
+    /// Its largest magnitude, how far apart doubles are there, and the range of its numbers, where an offset is
+    /// so large that doubles are too far apart for what the signal does.
+    pub(super) fn coarse(&self) -> Option<[f64; 3]> {
         let known = || self.values.iter().copied().filter(|value| value.is_finite());
         let (low, high) = known().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
         let largest = low.abs().max(high.abs());
         let apart = largest.next_up() - largest;
-        (low < high && apart > COARSE * (high - low)).then_some(Coarse {
-            largest,
-            apart,
-            range: high - low,
-        })
+        (low < high && apart > COARSE * (high - low)).then_some([largest, apart, high - low])
     }
 
     /// A column that holds texts.
@@ -404,17 +401,6 @@ const SMALLEST: f64 = 1e-75;
 /// The part of the range of a signal from which it matters how far apart doubles are: that of a
 /// sensor of ten bits.
 const COARSE: f64 = 1e-3;
-
-/// A signal with an offset so large that doubles are too far apart for what it does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Coarse {
-    /// The largest magnitude in it.
-    pub(super) largest: f64,
-    /// The distance of doubles there.
-    pub(super) apart: f64,
-    /// Highest minus lowest number.
-    pub(super) range: f64,
-}
 
 /// Memory of a trial beside the bytes of its label: its run of rows and the text with what their
 /// allocations have to spare, once as they come, once in the table and once in the log; its label

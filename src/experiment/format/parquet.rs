@@ -21,11 +21,8 @@ use parquet::basic::Compression;
 use parquet::file::metadata::RowGroupMetaData;
 
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::Budget;
+use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
-
-/// Memory of a number: itself, and what its vector has to spare.
-const NUMBER_SIZE: usize = 2 * size_of::<f64>();
 
 /// Rows that are read at once, at most.
 const BATCH: u64 = 8192;

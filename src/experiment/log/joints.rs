@@ -6,7 +6,7 @@ use crate::experiment::gaps::{gap_with_all_steps_s, unlogged};
 use crate::experiment::grid::{Grid, Piece, Repair, Signals};
 use crate::experiment::joint::{Joint, Signal};
 use crate::experiment::layout::JointLayout;
-use crate::experiment::table::{Coarse, TrialRows};
+use crate::experiment::table::TrialRows;
 use crate::experiment::trial::Trial;
 use crate::numerics::to_digits_by;
 
@@ -162,7 +162,7 @@ impl Log<'_> {
     /// The signals whose offset is so large that double precision does not hold their motion.
     fn coarse_notes(&self, layout: &JointLayout) -> Vec<String> {
         let note = |column: usize| {
-            let Coarse { largest, apart, range } = self.column(column)?.coarse()?;
+            let [largest, apart, range] = self.column(column)?.coarse()?;
             let (name, column) = (&layout.name, self.header(column));
             Some(format!(
                 "joint `{name}`: numbers near {largest:.1e} as in `{column}` are {apart} apart, and \

@@ -2,14 +2,13 @@
 
 use super::cells::{Log, Times};
 use super::unit_change::unit_change;
-use crate::experiment::clock::Fault;
+use crate::experiment::clock::{Fault, is_period};
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::format::date_of_seconds;
 use crate::experiment::grid::{Grid, Repair};
 use crate::experiment::grids::grids;
 use crate::experiment::names::shown;
 use crate::experiment::origin::{Counting, origin_s};
-use crate::experiment::period::is_period;
 use crate::experiment::table::{BadCell, Column, TrialRows};
 use crate::experiment::time_column::TimeSource;
 use crate::numerics::median;

@@ -5,7 +5,7 @@ use super::super::spelling::{are_units, is_over_lines, is_remark};
 use super::lines::Place;
 use super::milliseconds::Milliseconds;
 use crate::experiment::error::{ReadError, ReadErrorKind};
-use crate::experiment::memory::Budget;
+use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::names::shown;
 use crate::experiment::source::Source;
 use crate::experiment::table::{BadCell, Column, Header, Labels, RowNumbers, Table, Wanted};
@@ -16,9 +16,6 @@ const LONGEST_REMARK: usize = 1 << 16;
 
 /// The last column of a log of LabVIEW, which rows without a comment do not have.
 const COMMENT: &str = "Comment";
-
-/// Memory of a number: itself, and what its vector has to spare.
-const NUMBER_SIZE: usize = 2 * size_of::<f64>();
 
 /// Rows as they come.
 pub(super) struct Gathered<'w> {

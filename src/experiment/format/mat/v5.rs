@@ -12,7 +12,7 @@ use flate2::read::ZlibDecoder;
 use super::damaged;
 use super::variable::{Content, Variable, object};
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::Budget;
+use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::table::LONGEST_NAME;
 
 /// Structures may lie in structures, but not without end.
@@ -30,9 +30,6 @@ const OPAQUE: u32 = 17;
 
 /// The flag of an array whose numbers have an imaginary part.
 const COMPLEX: u32 = 0x800;
-
-/// Memory of a number: itself, and its copy as a column.
-const NUMBER_SIZE: usize = 2 * size_of::<f64>();
 
 /// Memory of a variable beside its values and its name: itself twice, as a list that grows is copied to one
 /// of twice its size, and what the allocator adds.

@@ -93,7 +93,7 @@ impl Rows for Unread {
             budget: &self.budget,
         };
         let mut aligned = alignment.align(series)?;
-        let zero = self.topics.zero(clock).unwrap_or_default();
+        let zero = self.topics.zero.get(&clock).copied().unwrap_or_default();
         let times = format!("times are {} from {:.9} s on", clock.name(), zero as f64 * 1e-9);
         let notes = [times].into_iter().chain(std::mem::take(&mut aligned.notes)).chain(of_several);
         let notes = notes.collect();

@@ -1,6 +1,6 @@
 //! What is known of a file before its values are read: topics, their fields, times.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use mcap::records::{Channel, MessageHeader, Record};
@@ -25,7 +25,7 @@ const DECODER_SIZE: usize = 20;
 const FIELD_SIZE: usize = 40;
 
 /// The times that a message bears.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Clock {
     /// When it was recorded.
     Log,
@@ -36,8 +36,6 @@ pub(super) enum Clock {
 }
 
 impl Clock {
-    const ALL: [Self; 3] = [Self::Log, Self::Publish, Self::Stamp];
-
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Log => "log_time",
@@ -115,8 +113,8 @@ pub(super) struct Topics {
     pub(super) channels: HashMap<u16, Readable>,
     /// Topics that cannot be read, and why.
     pub(super) left: Vec<String>,
-    /// The earliest time by each clock.
-    zero: [Option<i64>; 3],
+    /// The earliest time by each clock that messages have, in nanoseconds.
+    pub(super) zero: BTreeMap<Clock, i64>,
 }
 
 impl Topics {
@@ -147,12 +145,10 @@ impl Topics {
         }
         let decoder = match self.schemas.get(&channel.schema_id).map(|schema| &schema.decoder) {
             Some(Ok(decoder)) if channel.message_encoding == "cdr" => Arc::clone(decoder),
-            Some(Err(reason)) => {
+            other => {
+                let refused = other.and_then(|decoder| decoder.as_ref().err());
+                let reason = refused.unwrap_or(&channel.message_encoding);
                 leave(&mut self.left, format!("{} ({reason})", channel.topic));
-                return Ok(());
-            }
-            _ => {
-                leave(&mut self.left, format!("{} ({})", channel.topic, channel.message_encoding));
                 return Ok(());
             }
         };
@@ -174,8 +170,13 @@ impl Topics {
         data: &[u8],
         budget: &Budget,
     ) -> Result<(), ReadError> {
-        let [start, ..] = &mut self.zero;
-        *start = [*start, i64::try_from(header.log_time).ok()].into_iter().flatten().min();
+        let zero = &mut self.zero;
+        let mut note = |clock, time: Option<i64>| {
+            if let Some(time) = time {
+                zero.entry(clock).and_modify(|zero| *zero = time.min(*zero)).or_insert(time);
+            }
+        };
+        note(Clock::Log, i64::try_from(header.log_time).ok());
         let Some(channel) = self.channels.get_mut(&header.channel_id) else { return Ok(()) };
         let Some(topic) = self.list.get_mut(channel.topic) else { return Ok(()) };
         channel.seen += 1;
@@ -190,9 +191,8 @@ impl Topics {
                 return Ok(());
             }
         };
-        for (clock, zero) in Clock::ALL.into_iter().zip(&mut self.zero) {
-            let time = clock.time(header, &value);
-            *zero = [*zero, time].into_iter().flatten().min();
+        for clock in [Clock::Log, Clock::Publish, Clock::Stamp] {
+            note(clock, clock.time(header, &value));
         }
         topic.learn(&value, budget)
     }
@@ -214,8 +214,7 @@ impl Topics {
 
     /// The times, and the fields of all topics.
     pub(super) fn places(&self) -> Vec<Place> {
-        let clocks = Clock::ALL.into_iter().filter(|clock| self.zero(*clock).is_some());
-        let mut places: Vec<Place> = clocks.map(Place::Time).collect();
+        let mut places: Vec<Place> = self.zero.keys().copied().map(Place::Time).collect();
         for (number, topic) in self.list.iter().enumerate() {
             places.extend(topic.fields.iter().map(|field| Place::Field(number, field.clone())));
         }
@@ -237,16 +236,6 @@ impl Topics {
 
     pub(super) fn name(&self, topic: usize) -> &str {
         self.list.get(topic).map_or("", |topic| &topic.name)
-    }
-
-    /// The earliest time by a clock, in nanoseconds, where messages have it.
-    pub(super) fn zero(&self, clock: Clock) -> Option<i64> {
-        let [log, publish, stamp] = self.zero;
-        match clock {
-            Clock::Log => log,
-            Clock::Publish => publish,
-            Clock::Stamp => stamp,
-        }
     }
 }
 
