@@ -120,24 +120,30 @@ impl Experiment {
 
 /// What stands for the file: the hash of all numbers.
 fn source(path: &Path, joints: &[Joint]) -> Source {
-    let mut hasher = Sha256::new();
-    let mut bytes = 0;
     let trials = joints.iter().flat_map(|joint| &joint.trials);
-    for values in trials.flat_map(|trial| [trial.input(), trial.output()]) {
-        bytes += hash(&mut hasher, values);
-    }
-    hashed(path, hasher, bytes)
+    let mut hash = Digested::default();
+    trials.flat_map(|trial| [trial.input(), trial.output()]).for_each(|values| hash.take(values));
+    hashed(path, hash.hasher, hash.bytes)
 }
 
-/// Takes in the numbers as they lie in memory; how many bytes they are.
-fn hash(hasher: &mut Sha256, values: &[f64]) -> u64 {
-    /// Numbers that are turned into bytes at once.
-    const AT_ONCE: usize = 512;
-    for part in values.chunks(AT_ONCE) {
-        let bytes: Vec<u8> = part.iter().flat_map(|value| value.to_le_bytes()).collect();
-        hasher.update(&bytes);
+/// The hash of what was taken in, and how many bytes that were.
+#[derive(Default)]
+struct Digested {
+    hasher: Sha256,
+    bytes: u64,
+}
+
+impl Digested {
+    /// Takes in numbers as they lie in memory.
+    fn take(&mut self, values: &[f64]) {
+        /// Numbers that are turned into bytes at once.
+        const AT_ONCE: usize = 512;
+        for part in values.chunks(AT_ONCE) {
+            let bytes: Vec<u8> = part.iter().flat_map(|value| value.to_le_bytes()).collect();
+            self.hasher.update(&bytes);
+        }
+        self.bytes += size_of_val(values) as u64;
     }
-    size_of_val(values) as u64
 }
 
 fn read(
@@ -194,21 +200,18 @@ fn same_length(log: &HandedLog) -> Result<usize, ReadError> {
 }
 
 fn source_of(log: &HandedLog) -> Source {
-    let mut hasher = Sha256::new();
-    let mut bytes = 0;
+    let mut hash = Digested::default();
     for column in &log.columns {
-        hasher.update(column.name.as_bytes());
+        hash.hasher.update(column.name.as_bytes());
         match &column.values {
-            HandedValues::Numbers(numbers) => bytes += hash(&mut hasher, numbers),
+            HandedValues::Numbers(numbers) => hash.take(numbers),
             HandedValues::Texts(texts) => {
-                for text in texts {
-                    hasher.update(text.as_bytes());
-                    bytes += text.len() as u64;
-                }
+                texts.iter().for_each(|text| hash.hasher.update(text.as_bytes()));
+                hash.bytes += texts.iter().map(|text| text.len() as u64).sum::<u64>();
             }
         }
     }
-    hashed(Path::new(&log.name), hasher, bytes)
+    hashed(Path::new(&log.name), hash.hasher, hash.bytes)
 }
 
 #[cfg(test)]

@@ -38,6 +38,11 @@ pub(super) struct JointLayout {
 }
 
 impl JointLayout {
+    /// `text` as said of the joint.
+    pub(super) fn note(&self, text: &str) -> String {
+        format!("joint `{}`: {text}", self.name)
+    }
+
     /// All columns of the joint.
     pub(super) fn columns(&self) -> impl Iterator<Item = usize> {
         [&self.input, &self.output].into_iter().chain(&self.covariates).map(|signal| signal.column)

@@ -473,9 +473,9 @@ impl Experiment {
         self.notes.append(&mut log.notes);
         for joint in &log.layout.joints {
             match log.joint(joint, &grids) {
-                Ok((joint, notes)) => {
-                    self.notes.extend(notes);
-                    self.joints.push(joint);
+                Ok((read, notes)) => {
+                    self.notes.extend(notes.iter().map(|note| joint.note(note)));
+                    self.joints.push(read);
                 }
                 Err(error) => self.failures.push(failed((joint.name.clone(), error))),
             }

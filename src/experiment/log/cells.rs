@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::grid::Repair;
-use crate::experiment::layout::Layout;
+use crate::experiment::layout::{JointLayout, Layout};
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{Column, Head, Table, TrialRows};
 use crate::units::SamplePeriod;
@@ -35,23 +35,6 @@ pub(in crate::experiment) enum Times {
     Rows(SamplePeriod),
 }
 
-/// The output of a joint among the columns.
-pub(in crate::experiment) struct Output {
-    pub(in crate::experiment) column: usize,
-    /// The column of the joint's input.
-    pub(in crate::experiment) input: usize,
-    pub(in crate::experiment) unit: Option<String>,
-    joint: String,
-    is_wanted: bool,
-}
-
-impl Output {
-    /// `text` of its joint, where that is among the results.
-    pub(in crate::experiment) fn note(&self, text: &str) -> Option<String> {
-        self.is_wanted.then(|| format!("joint `{}`: {text}", self.joint))
-    }
-}
-
 impl<'a> Log<'a> {
     /// The log with the columns `numeric` in `table`, as it stands; a file without labels is one trial, named
     /// `1` or by its `stem`.
@@ -68,19 +51,18 @@ impl<'a> Log<'a> {
         Self { head, layout, numeric, table, budget, options, times, trials, unwrapped, notes }
     }
 
-    /// The outputs of all joints, each column once.
-    pub(in crate::experiment) fn outputs(&self) -> Vec<Output> {
+    /// The joints, of those with the same output the first.
+    pub(in crate::experiment) fn with_own_outputs(&self) -> Vec<&'a JointLayout> {
         let mut seen = HashSet::new();
-        let wanted = self.layout.joints.iter().map(|joint| (joint, true));
-        let others = self.layout.others.iter().map(|joint| (joint, false));
-        let outputs = wanted.chain(others).map(|(joint, is_wanted)| Output {
-            column: joint.output.column,
-            input: joint.input.column,
-            unit: joint.output.signal.unit.clone(),
-            joint: joint.name.clone(),
-            is_wanted,
-        });
-        outputs.filter(|output| seen.insert(output.column)).collect()
+        let joints = self.layout.joints.iter().chain(&self.layout.others);
+        joints.filter(|joint| seen.insert(joint.output.column)).collect()
+    }
+
+    /// Notes `text` of a joint, where that is among the results.
+    pub(in crate::experiment) fn note_on(&mut self, joint: &JointLayout, text: &str) {
+        if self.layout.joints.contains(joint) {
+            self.notes.push(joint.note(text));
+        }
     }
 
     /// The rows of each trial.

@@ -44,7 +44,7 @@ impl Log<'_> {
         notes.extend(unread);
         let grids = own.as_deref().unwrap_or(grids);
         let (joint, split) = self.on_grids(layout, grids, longest_s)?;
-        notes.extend(shown(&joint.name, split));
+        notes.extend(shown(split));
         Ok((joint, notes))
     }
 
@@ -64,7 +64,7 @@ impl Log<'_> {
             self.take(grid.samples(), size)?;
             let pieces = grid.pieces(self.signals(layout, rows));
             if pieces.len() > 1 {
-                split.push(self.split_note(&layout.name, rows, &pieces, grid));
+                split.push(self.split_note(rows, &pieces, grid));
             }
             let labels = part_labels(&rows.label, pieces.len(), &self.trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
@@ -113,10 +113,9 @@ impl Log<'_> {
         });
         joint.trials = marked.collect();
         notes.push(format!(
-            "joint `{}`: its input changes only in gaps (of up to {gap_s} s): they are filled, the \
+            "its input changes only in gaps (of up to {gap_s} s): they are filled, the \
              output interpolated and the input held, and delays count from their ends; a reaction within a \
-             gap is not seen, and what is accepted behind it then is none",
-            joint.name
+             gap is not seen, and what is accepted behind it then is none"
         ));
         Some((joint, notes))
     }
@@ -140,7 +139,7 @@ impl Log<'_> {
     }
 
     /// A line on a trial that was split in `pieces` at gaps, the longest of which it names.
-    fn split_note(&self, name: &str, trial: &TrialRows, pieces: &[Piece], grid: &Grid) -> String {
+    fn split_note(&self, trial: &TrialRows, pieces: &[Piece], grid: &Grid) -> String {
         let period = grid.period().seconds();
         let gap = |pair: &[Piece]| {
             let last_s = pair[0].start_s + (pair[0].signals.output.len() - 1) as f64 * period;
@@ -156,16 +155,16 @@ impl Log<'_> {
             }
             None => String::new(),
         };
-        format!("joint `{name}`: trial `{label}` is split in {count} at long gaps{gap}")
+        format!("trial `{label}` is split in {count} at long gaps{gap}")
     }
 
     /// The signals whose offset is so large that double precision does not hold their motion.
     fn coarse_notes(&self, layout: &JointLayout) -> Vec<String> {
         let note = |column: usize| {
             let [largest, apart, range] = self.column(column)?.coarse()?;
-            let (name, column) = (&layout.name, self.header(column));
+            let column = self.header(column);
             Some(format!(
-                "joint `{name}`: numbers near {largest:.1e} as in `{column}` are {apart} apart, and \
+                "numbers near {largest:.1e} as in `{column}` are {apart} apart, and \
                  these differ by {range} at most: how the signal moves is beyond double precision; \
                  log it without the offset"
             ))
@@ -180,8 +179,8 @@ impl Log<'_> {
         let mut notes = Vec::new();
         readable.covariates.retain(|covariate| match self.bad_cell(covariate.column) {
             Some(error) => {
-                let (joint, signal) = (&layout.name, &covariate.signal.name);
-                notes.push(format!("joint `{joint}`: the signal `{signal}` is left out: {error}"));
+                let signal = &covariate.signal.name;
+                notes.push(format!("the signal `{signal}` is left out: {error}"));
                 false
             }
             None => true,
@@ -234,11 +233,11 @@ impl Log<'_> {
 }
 
 /// The first few of notes of one kind.
-fn shown(joint: &str, mut split: Vec<String>) -> Vec<String> {
+fn shown(mut split: Vec<String>) -> Vec<String> {
     const SHOWN: usize = 3;
     if let Some(more) = split.len().checked_sub(SHOWN).filter(|more| *more > 0) {
         split.truncate(SHOWN);
-        split.push(format!("joint `{joint}`: {more} more trials are split at long gaps"));
+        split.push(format!("{more} more trials are split at long gaps"));
     }
     split
 }

@@ -67,11 +67,10 @@ impl Log<'_> {
         let all = output.len();
         let usual_s = median(&apart).filter(|_| (all - count) as f64 > SPARSE * all as f64)?;
         let note = format!(
-            "joint `{}`: {count} of {all} rows have an output, which is interpolated between them, so that \
+            "{count} of {all} rows have an output, which is interpolated between them, so that \
              steps of the input keep their times; what follows from its noise, as intervals, takes all \
              samples for measured, and an onset model the lines between them for a lag; models are held \
-             against those that are measured",
-            layout.name,
+             against those that are measured"
         );
         Some((LONGEST * usual_s, note))
     }
@@ -90,10 +89,10 @@ impl Log<'_> {
             let values = &self.column(column)?.values;
             let missing = values.iter().filter(|value| value.is_nan()).count();
             let first = values.iter().position(|value| value.is_nan())?;
-            let (name, column, row) = (&layout.name, self.header(column), self.row(first));
+            let (column, row) = (self.header(column), self.row(first));
             let cells = if missing == 1 { "cell is" } else { "cells are" };
             Some(format!(
-                "joint `{name}`: {missing} {cells} empty or NaN in `{column}` (first at row \
+                "{missing} {cells} empty or NaN in `{column}` (first at row \
                  {row}): {what}"
             ))
         };

@@ -3,44 +3,47 @@
 //! An incremental encoder that is homed again goes on from another value: from one row to the next the
 //! output jumps as it never moves. What follows is taken back by the jump.
 
-use crate::experiment::log::{Log, Output, Times};
+use crate::experiment::layout::JointLayout;
+use crate::experiment::log::{Log, Times};
 use crate::experiment::table::Column;
 use crate::numerics::{median, to_digits};
 
 /// Takes back what outputs jump by where their zero is set anew.
 pub(super) fn put_back(log: &mut Log<'_>) {
-    for output in log.outputs() {
-        let Some(shifts) = shifts(log, &output) else { continue };
+    for joint in log.with_own_outputs() {
+        let Some(shifts) = shifts(log, joint) else { continue };
         let spans = log.spans();
-        let Some(Column { values, .. }) = log.column_mut(output.column) else { continue };
+        let Some(Column { values, .. }) = log.column_mut(joint.output.column) else { continue };
         let mut jumps = Vec::new();
         for rows in spans {
             let Some(part) = values.get_mut(rows.clone()) else { continue };
             jumps.extend(shifts.put_back(part).into_iter().map(|(row, by)| (rows.start + row, by)));
         }
         let Some((row, by)) = jumps.first() else { continue };
-        let unit = output.unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+        let unit =
+            joint.output.signal.unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
         let (row, by) = (log.row(*row), to_digits(*by, 3));
         let more = match jumps.len() {
             1 => String::new(),
             2 => ", and once more".to_owned(),
             count => format!(", and {} times more", count - 1),
         };
-        log.notes.extend(output.note(&format!(
+        let text = format!(
             "the output jumps by {by}{unit} at row {row}{more}, much farther than it moves \
              between any other rows: taken for a sensor that was re-zeroed, and later samples are shifted \
              back by as much"
-        )));
+        );
+        log.note_on(joint, &text);
     }
 }
 
-/// The jumps of an output. Rows behind a gap lie as far apart as the joint moved there, and where the clock
+/// The jumps of the output of a joint. Rows behind a gap lie as far apart as the joint moved there, and where the clock
 /// starts anew so does the record. Of what wraps it is not known.
-fn shifts(log: &Log<'_>, output: &Output) -> Option<Shifts> {
-    if log.unwrapped.contains(&output.column) {
+fn shifts(log: &Log<'_>, joint: &JointLayout) -> Option<Shifts> {
+    if log.unwrapped.contains(&joint.output.column) {
         return None;
     }
-    let (inputs, outputs) = (log.parts(output.input)?, log.parts(output.column)?);
+    let (inputs, outputs) = (log.parts(joint.input.column)?, log.parts(joint.output.column)?);
     let signals = inputs.into_iter().zip(&outputs).map(|(input, output)| [input, output]);
     let shifts = Shifts::of(&signals.collect::<Vec<_>>())?;
     let mut trials = log.trials.iter().zip(outputs);

@@ -14,13 +14,14 @@ const FEWEST: usize = 20;
 /// Leaves of each reading of an output the first row alone, where a sensor is slower than the log.
 pub(super) fn keep_first_readings(log: &mut Log<'_>) {
     let spans = log.spans();
-    for output in log.outputs() {
-        let Some(column) = log.column_mut(output.column) else { continue };
+    for joint in log.with_own_outputs() {
+        let Some(column) = log.column_mut(joint.output.column) else { continue };
         let Some(rows) = rows_of_a_reading(&column.values, &spans) else { continue };
         keep_first(&mut column.values, &spans, rows);
-        log.notes.extend(output.note(&format!(
+        let text = format!(
             "each reading of the output stands in {rows} rows, and counts in the first of them"
-        )));
+        );
+        log.note_on(joint, &text);
     }
 }
 

@@ -13,18 +13,20 @@ use crate::numerics::{quantile, to_decimals};
 
 /// Takes the turns out of outputs that wrap.
 pub(super) fn unwrap(log: &mut Log<'_>) {
-    for output in log.outputs() {
-        let unit = output.unit.as_deref();
-        let trials = log.parts(output.column);
+    for joint in log.with_own_outputs() {
+        let (column, unit) = (joint.output.column, joint.output.signal.unit.as_deref());
+        let trials = log.parts(column);
         let Some(wrap) = trials.and_then(|trials| Wrap::of(&trials, unit)) else { continue };
         let spans = log.spans();
-        let Some(Column { values, .. }) = log.column_mut(output.column) else { continue };
+        let Some(Column { values, .. }) = log.column_mut(column) else { continue };
         let mut count = 0;
         for rows in spans {
             count += values.get_mut(rows).map_or(0, |part| wrap.unwrap(part));
         }
-        log.unwrapped.push(output.column);
-        log.notes.extend(output.note(&wrap.note(count, unit)).filter(|_| count > 0));
+        log.unwrapped.push(column);
+        if count > 0 {
+            log.note_on(joint, &wrap.note(count, unit));
+        }
     }
 }
 
