@@ -166,12 +166,9 @@ fn read(
         found.sources.push(source);
         return Ok(found);
     }
-    let mut labels = Labels::default();
-    if let Some(column) = layout.trial.and_then(|place| log.columns.get(place)) {
-        for row in 0..rows {
-            labels.push(&column.values.text(row), row as u64 + 1, budget)?;
-        }
-    }
+    let trial = layout.trial.and_then(|place| log.columns.get(place));
+    let labels = trial.into_iter().flat_map(|column| (0..rows).map(|row| column.values.text(row)));
+    let labels = Labels::of(labels, budget)?;
     let numeric = layout.numeric_columns();
     let column = |place: &usize| log.columns.get_mut(*place).map(|column| column.values.column());
     let columns = numeric.iter().filter_map(column).collect();

@@ -421,6 +421,16 @@ pub(super) struct Labels {
 }
 
 impl Labels {
+    /// The labels of all rows, counted from 1.
+    pub(super) fn of(
+        labels: impl IntoIterator<Item = String>,
+        budget: &Budget,
+    ) -> Result<Self, ReadError> {
+        let mut all = Self::default();
+        labels.into_iter().zip(1..).try_for_each(|(label, row)| all.push(&label, row, budget))?;
+        Ok(all)
+    }
+
     /// Adds the label of the next row; a new trial is taken from `budget`.
     pub(super) fn push(&mut self, label: &str, row: u64, budget: &Budget) -> Result<(), ReadError> {
         let index = self.rows;

@@ -17,7 +17,7 @@ use std::fmt::Display;
 use std::path::Path;
 
 use self::variable::{Content, Variable};
-use super::first_bytes::{is_matlab_73, start_of};
+use super::registry::{is_matlab_73, start_of};
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{Column, Head, Labels, OpenTable, Rows, Table, Wanted};
@@ -80,13 +80,8 @@ impl Rows for Unread {
         let rows = self.rows(wanted)?;
         let columns = wanted.numeric.iter().map(|index| self.column(*index));
         let columns = columns.collect::<Result<_, _>>()?;
-        let mut labels = Labels::default();
-        if let Some(index) = wanted.label {
-            for (text, row) in self.labels(index)?.iter().zip(1..) {
-                labels.push(text, row, &self.budget)?;
-            }
-        }
-        Ok(Table::counted(rows, columns, labels))
+        let labels = wanted.label.map_or_else(|| Ok(Vec::new()), |index| self.labels(index))?;
+        Ok(Table::counted(rows, columns, Labels::of(labels, &self.budget)?))
     }
 
     fn rows_of(&self, column: usize) -> Option<usize> {

@@ -28,12 +28,11 @@ use std::path::{Path, PathBuf};
 use mcap::McapError;
 use mcap::records::{MessageHeader, Record};
 
-use self::align::{Aligned, Alignment};
 use self::series::Series;
 use self::topics::{Clock, Place, Topics};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
-use crate::experiment::table::{Head, Labels, OpenTable, Rows, Table, Wanted};
+use crate::experiment::table::{Column, Head, Labels, OpenTable, Rows, Table, Wanted};
 
 /// A file whose topics are known.
 struct Unread {
@@ -86,23 +85,23 @@ impl Rows for Unread {
         let series = self.collect(clock, self.series(wanted))?;
         let name = |topic| self.topics.name(topic);
         let of_several = notes::clocks_differ(&series, name, clock.name());
-        let alignment = Alignment {
-            topics: &self.topics,
-            topic: wanted.clock,
-            label: wanted.label,
-            budget: &self.budget,
-        };
-        let mut aligned = alignment.align(series)?;
+        let mut aligned = self.align(series, wanted)?;
         let zero = self.topics.zero.get(&clock).copied().unwrap_or_default();
         let times = format!("times are {} from {:.9} s on", clock.name(), zero as f64 * 1e-9);
         let notes = [times].into_iter().chain(std::mem::take(&mut aligned.notes)).chain(of_several);
         let notes = notes.collect();
-        let (rows, labels) = (aligned.rows(), self.labels(wanted, &aligned)?);
+        let labels = wanted.label.and_then(|label| aligned.columns.get(&label));
+        let labels = labels.into_iter().flatten().map(f64::to_string);
+        let labels = Labels::of(labels, &self.budget)?;
         let column = |index: &usize| match self.places.get(*index) {
-            Some(Place::Time(other)) => aligned.times(*other, clock, zero),
-            _ => aligned.column(*index),
+            Some(Place::Time(other)) => {
+                let times = aligned.times.iter().filter(|_| *other == clock);
+                times.map(|time| time.saturating_sub(zero) as f64 / 1e9).collect()
+            }
+            _ => aligned.columns.remove(index).unwrap_or_default(),
         };
-        let columns = wanted.numeric.iter().map(column).collect();
+        let columns = wanted.numeric.iter().map(column).map(Column::of).collect();
+        let rows = aligned.times.len();
         Ok(Table { notes, ..Table::counted(rows, columns, labels) })
     }
 }
@@ -175,15 +174,5 @@ impl Unread {
         let lag = Clock::Log.time(header, &value).map(|recorded| recorded.saturating_sub(time));
         series.least_lag = [series.least_lag, lag].into_iter().flatten().min();
         series.push((time, place), &value, &self.budget)
-    }
-
-    /// The labels of the rows.
-    fn labels(&self, wanted: &Wanted<'_>, aligned: &Aligned) -> Result<Labels, ReadError> {
-        let mut labels = Labels::default();
-        let values = wanted.label.map_or(&[][..], |label| aligned.values(label));
-        for (value, row) in values.iter().zip(1..) {
-            labels.push(&value.to_string(), row, &self.budget)?;
-        }
-        Ok(labels)
     }
 }
