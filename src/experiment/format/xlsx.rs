@@ -121,8 +121,8 @@ impl Rows for OfSheet {
         for column in &mut table.columns {
             let Some((row, BadCell::Text(text))) = &column.error else { continue };
             if *text == unknown {
-                let (row, found) = (*row, unknown_value(&name, *row));
-                column.error = Some((row, BadCell::Kind(found)));
+                // It is of the whole column.
+                column.error = Some((0, BadCell::Kind(unknown_value(&name, *row))));
             }
         }
         if count > 1 {
