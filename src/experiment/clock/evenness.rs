@@ -1,7 +1,7 @@
 //! How far stamps are from an even grid, and what that makes of the clock.
 
 use super::period::Typical;
-use super::{Fault, LOST_SHARE, Run};
+use super::run::{Fault, LOST_SHARE, Run};
 use crate::numerics::{median, quantile};
 
 /// Rows whose stamps lie within this part of a period of the even grid stay as they are; what

@@ -9,6 +9,7 @@ mod cell;
 mod csv;
 mod date;
 mod fence;
+mod first_bytes;
 #[cfg(feature = "mat")]
 mod mat;
 #[cfg(feature = "mcap")]

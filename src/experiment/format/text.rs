@@ -10,7 +10,7 @@ use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use encoding_rs_io::DecodeReaderBytesBuilder;
 use flate2::read::MultiGzDecoder;
 
-use super::registry::is_gzip;
+use super::first_bytes::is_gzip;
 use crate::experiment::error::ReadError;
 use crate::experiment::source::{Hashing, Source};
 

@@ -13,26 +13,13 @@ mod v5;
 mod v73;
 mod variable;
 
-use std::fmt::Display;
 use std::path::Path;
 
 use self::variable::{Content, Variable};
-use super::registry::{is_matlab_73, start_of};
+use super::first_bytes::{is_matlab_73, start_of};
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{Column, Head, Labels, OpenTable, Rows, Table, Wanted};
-
-/// Why a file is refused.
-fn damaged(reason: impl Display) -> ReadError {
-    let remedy = "save it again, with `save -v7` if it is of another version";
-    ReadError::format("MATLAB", reason, remedy)
-}
-
-impl From<hdf5_pure::Error> for ReadError {
-    fn from(error: hdf5_pure::Error) -> Self {
-        damaged(error)
-    }
-}
 
 /// The variables with the place of each header: its variable, and the column of that.
 struct Unread {

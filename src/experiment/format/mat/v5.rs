@@ -9,8 +9,7 @@ use std::path::Path;
 
 use flate2::read::ZlibDecoder;
 
-use super::damaged;
-use super::variable::{Content, Variable, object};
+use super::variable::{Content, Variable, damaged, object};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::table::LONGEST_NAME;

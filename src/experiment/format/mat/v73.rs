@@ -14,8 +14,7 @@ use hdf5_pure::{
     AttrValue, Chunk, DType, Dataset, Error, File, FormatError, Group, ReadSeekSource, Source,
 };
 
-use super::damaged;
-use super::variable::{Content, Variable, object};
+use super::variable::{Content, Variable, damaged, object};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::table::LONGEST_NAME;

@@ -2,10 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use super::notes;
 use super::runs::in_runs;
 use super::series::{NUMBER_SIZE, Series, interval};
-use super::{Unread, notes, refused};
+use super::stream::refused;
+use super::topics::Topics;
 use crate::experiment::error::{ReadError, ReadErrorKind};
+use crate::experiment::memory::Budget;
 use crate::experiment::names::listed;
 use crate::experiment::table::Wanted;
 
@@ -39,7 +42,7 @@ struct Row {
     is_own: bool,
 }
 
-impl Unread {
+impl Topics {
     /// All series at the messages of the topic, and at times between these where it is slow: each is held
     /// from its latest message.
     /// What comes before the first message of all others is left out; what begins later is NaN up to
@@ -48,10 +51,11 @@ impl Unread {
         &self,
         series: Vec<Series>,
         wanted: &Wanted<'_>,
+        budget: &Budget,
     ) -> Result<Aligned, ReadError> {
         let (mut aligned, mut failed) = (Aligned::default(), Vec::new());
         for run in in_runs(series, wanted.clock) {
-            match self.align_run(run, wanted) {
+            match self.align_run(run, wanted, budget) {
                 Ok(run) => aligned.append(run),
                 Err(error) if matches!(error.kind, ReadErrorKind::Format) => failed.push(error),
                 Err(error) => return Err(error),
@@ -73,6 +77,7 @@ impl Unread {
         &self,
         mut series: Vec<Series>,
         wanted: &Wanted<'_>,
+        budget: &Budget,
     ) -> Result<Aligned, ReadError> {
         series.iter_mut().for_each(Series::sort);
         let Some(place) = series.iter().position(|series| series.topic == wanted.clock) else {
@@ -84,7 +89,7 @@ impl Unread {
         let columns = held.iter().chain([&clock]).map(|series| series.columns.len()).sum();
         // A topic of one message is held at as many rows as there are.
         let most = clock.times.len().saturating_mul(usize::try_from(parts).unwrap_or(1));
-        self.budget.take_values(most.saturating_mul(columns), NUMBER_SIZE)?;
+        budget.take_values(most.saturating_mul(columns), NUMBER_SIZE)?;
         let rows = rows(&clock, parts);
         let mut columns = BTreeMap::new();
         let mut start = if held.is_empty() { 0 } else { rows.len() };
@@ -112,8 +117,8 @@ impl Unread {
     }
 
     fn never_together(&self, clock: &Series, held: &[Series]) -> ReadError {
-        let topic = self.topics.name(clock.topic);
-        let others = listed(held.iter().map(|series| self.topics.name(series.topic)));
+        let topic = self.name(clock.topic);
+        let others = listed(held.iter().map(|series| self.name(series.topic)));
         let reason = format!("no message of {topic} comes after the first ones of {others}");
         refused(
             reason,
@@ -124,8 +129,8 @@ impl Unread {
 
     /// What was held, where the first rows up to `start` are left out, and what is missing.
     fn notes(&self, clock: &Series, held: &[Series], start: usize) -> Vec<String> {
-        let topic = self.topics.name(clock.topic);
-        let others: Vec<&str> = held.iter().map(|held| self.topics.name(held.topic)).collect();
+        let topic = self.name(clock.topic);
+        let others: Vec<&str> = held.iter().map(|held| self.name(held.topic)).collect();
         let mut notes: Vec<String> = notes::held(topic, &others, start).into_iter().collect();
         notes.extend(notes::without_values(clock, topic));
         let end = clock.times.last().copied().unwrap_or_default();

@@ -20,15 +20,14 @@ mod stream;
 mod topics;
 
 use std::collections::BTreeMap;
-use std::fmt::Display;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use mcap::McapError;
 use mcap::records::{MessageHeader, Record};
 
 use self::series::Series;
+use self::stream::refused;
 use self::topics::{Clock, Place, Topics};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
@@ -62,30 +61,13 @@ fn opened(path: &Path) -> Result<(BufReader<File>, u64), ReadError> {
     Ok((BufReader::new(file), size))
 }
 
-/// Why a file is refused.
-fn refused(reason: impl Display, remedy: &str) -> ReadError {
-    ReadError::format("MCAP", reason, remedy)
-}
-
-impl From<McapError> for ReadError {
-    fn from(error: McapError) -> Self {
-        let remedy = match error {
-            McapError::UnsupportedCompression(_) => {
-                "write it with the compression zstd, lz4 or none: `mcap compress FILE`"
-            }
-            _ => "`mcap recover FILE` saves what is whole",
-        };
-        refused(error, remedy)
-    }
-}
-
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         let clock = self.clock(wanted);
         let series = self.collect(clock, self.series(wanted))?;
         let name = |topic| self.topics.name(topic);
         let of_several = notes::clocks_differ(&series, name, clock.name());
-        let mut aligned = self.align(series, wanted)?;
+        let mut aligned = self.topics.align(series, wanted, &self.budget)?;
         let zero = self.topics.zero.get(&clock).copied().unwrap_or_default();
         let times = format!("times are {} from {:.9} s on", clock.name(), zero as f64 * 1e-9);
         let notes = [times].into_iter().chain(std::mem::take(&mut aligned.notes)).chain(of_several);

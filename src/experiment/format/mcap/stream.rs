@@ -6,6 +6,7 @@
 //! # References
 //! MCAP format specification, <https://mcap.dev/spec>, records 0x03 to 0x06.
 
+use std::fmt::Display;
 use std::io::Read;
 
 use mcap::McapError;
@@ -20,6 +21,23 @@ const LARGEST_RECORD: u64 = 1 << 30;
 
 /// Bytes before a record: what it is, and its length.
 const RECORD_HEAD: usize = 9;
+
+/// Why a file is refused.
+pub(super) fn refused(reason: impl Display, remedy: &str) -> ReadError {
+    ReadError::format("MCAP", reason, remedy)
+}
+
+impl From<McapError> for ReadError {
+    fn from(error: McapError) -> Self {
+        let remedy = match error {
+            McapError::UnsupportedCompression(_) => {
+                "write it with the compression zstd, lz4 or none: `mcap compress FILE`"
+            }
+            _ => "`mcap recover FILE` saves what is whole",
+        };
+        refused(error, remedy)
+    }
+}
 
 /// Hands the schemas, channels and messages of a file of `size` bytes to `visit`, those in chunks
 /// too, with memory for one chunk. Checksums of chunks and of all data are compared where the

@@ -7,7 +7,7 @@ use mcap::records::{Channel, MessageHeader, Record};
 
 use super::fields::each_number;
 use super::message::{Decoder, Value};
-use super::refused;
+use super::stream::refused;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::names::listed;
