@@ -6,7 +6,7 @@ use std::error::Error;
 use super::typed::mapping_options;
 use crate::delay::{EstimateError, Growing, Method};
 use crate::design::{NotKept, PlanError, SuspectsError, rounded};
-use crate::experiment::ReadError;
+use crate::experiment::{ReadError, ReadErrorKind};
 use crate::explain::AddError;
 use crate::numerics::FilterError;
 
@@ -41,8 +41,8 @@ pub(crate) fn advice(error: &(dyn Error + 'static)) -> String {
 }
 
 fn on_reading(error: &ReadError) -> String {
-    let text = match error {
-        ReadError::NoJoints { likely, .. } if !likely.1.is_empty() => {
+    let text = match &error.kind {
+        ReadErrorKind::NoJoints(likely) if !likely.1.is_empty() => {
             let (time, mappings) = likely.as_ref();
             let options =
                 |joints: &Vec<_>| format!("`{}`", mapping_options([time.as_deref(), None], joints));
@@ -52,33 +52,30 @@ fn on_reading(error: &ReadError) -> String {
                 options.join(" or ")
             );
         }
-        ReadError::NoJoints { .. } => {
+        ReadErrorKind::NoJoints(_) => {
             "; `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN` says which are those of a joint, and \
              `tauscope columns` which they may be"
         }
-        ReadError::NoTime { index: Some(index), .. } => {
+        ReadErrorKind::NoTime(Some(index)) => {
             return format!(
                 "; `--time '{index}'` takes the first column, which has no name of its own, or give the \
                  period with `--sample-period SECONDS`"
             );
         }
-        ReadError::NoTime { .. } => {
+        ReadErrorKind::NoTime(None) => {
             "; name one with `--time COLUMN`, or give the period with `--sample-period SECONDS`"
         }
-        ReadError::FewTimes { .. }
-        | ReadError::CoarseTimes { .. }
-        | ReadError::NoPeriod { .. }
-        | ReadError::WrongTimeUnit { .. } => ", or give the period with `--sample-period SECONDS`",
-        ReadError::NotATime { .. } => " and give `--sample-period SECONDS`",
-        ReadError::Missing { .. } => {
+        ReadErrorKind::Times => ", or give the period with `--sample-period SECONDS`",
+        ReadErrorKind::NotATime => " and give `--sample-period SECONDS`",
+        ReadErrorKind::Missing => {
             "; `--fill SECONDS` fills gaps up to that length and splits the trial at longer ones"
         }
-        ReadError::NotUniform { step, period, .. } => return on_uneven_times(*step, *period),
-        ReadError::TrialNotContiguous { .. } => {
+        ReadErrorKind::NotUniform { step, period } => return on_uneven_times(*step, *period),
+        ReadErrorKind::TrialNotContiguous => {
             ", or choose `--trial none` if the column does not name trials"
         }
-        ReadError::TooLarge { .. } => ", or allow more with `--max-memory`",
-        ReadError::TooManySamples { .. } => ", or choose a longer `--resample`",
+        ReadErrorKind::TooLarge => ", or allow more with `--max-memory`",
+        ReadErrorKind::TooManySamples => ", or choose a longer `--resample`",
         _ => "",
     };
     text.to_owned()

@@ -165,9 +165,7 @@ impl ColumnMap {
         })?;
         Ok(file.into())
     }
-}
 
-impl ColumnMap {
     /// The columns that it names.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         let joints = self.joints.iter().flat_map(|joint| [&joint.input, &joint.output]);
@@ -178,7 +176,13 @@ impl ColumnMap {
     pub fn to_toml(&self) -> String {
         let mut joints: BTreeMap<String, MapJoint> = BTreeMap::new();
         for joint in &self.joints {
-            joints.insert(joint.name.clone(), joint.into());
+            let JointColumns { name, input, output, input_unit, output_unit, covariates } =
+                joint.clone();
+            let (input, output) = (Some(input), Some(output));
+            let covariates = covariates.into_iter().collect();
+            let estimate = BTreeMap::new();
+            let joint = MapJoint { input, output, input_unit, output_unit, covariates, estimate };
+            joints.insert(name, joint);
         }
         for (name, settings) in &self.estimate {
             let settings = settings.iter().map(|(name, text)| (name.clone(), text.clone().into()));
@@ -230,16 +234,6 @@ impl MapJoint {
     fn is_native(&self) -> bool {
         let named = [&self.input, &self.output, &self.input_unit, &self.output_unit];
         self.covariates.is_empty() && named.into_iter().all(Option::is_none)
-    }
-}
-
-impl From<&JointColumns> for MapJoint {
-    fn from(joint: &JointColumns) -> Self {
-        let JointColumns { name: _, input, output, input_unit, output_unit, covariates } =
-            joint.clone();
-        let covariates = covariates.into_iter().collect();
-        let (input, output) = (Some(input), Some(output));
-        Self { input, output, input_unit, output_unit, covariates, estimate: BTreeMap::new() }
     }
 }
 

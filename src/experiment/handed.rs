@@ -12,7 +12,7 @@ use super::memory::Budget;
 use super::read::{Experiment, Failure, ReadOptions, laid_out, laid_out_by_names};
 use super::source::{Source, hashed};
 use super::survey::Survey;
-use super::table::{Column, Head, Header, Labels, RowNumbers, Table};
+use super::table::{Column, Head, Header, Labels, Table};
 
 /// A log in memory: columns of equal length, with the names that a file would have.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,7 +52,7 @@ impl HandedValues {
     /// What is missing in it stays so; rows are counted from 1.
     fn column(&mut self) -> Column {
         match self {
-            Self::Numbers(numbers) => Column::checked(std::mem::take(numbers)),
+            Self::Numbers(numbers) => Column::of(std::mem::take(numbers)),
             Self::Texts(_) => Column::text(),
         }
     }
@@ -96,10 +96,7 @@ impl Experiment {
         for log in logs {
             let path = PathBuf::from(&log.name);
             let stem = (!is_one).then(|| log.name.clone());
-            match read(log, stem.as_deref(), options, &budget) {
-                Ok(found) => experiment.add(found, &path),
-                Err(error) => experiment.failures.push(Failure { joint: None, error }),
-            }
+            experiment.add(read(log, stem.as_deref(), options, &budget), &path);
         }
         experiment
     }
@@ -111,7 +108,7 @@ impl Experiment {
         experiment.sources.push(source(Path::new(name), &joints));
         let names: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();
         for wanted in options.joints.iter().filter(|wanted| !names.contains(wanted)) {
-            let error = unknown_joint(Path::new(name), wanted, &names);
+            let error = unknown_joint(wanted, &names).in_file(Path::new(name));
             experiment.failures.push(Failure { joint: Some(wanted.clone()), error });
         }
         let is_kept =
@@ -123,24 +120,30 @@ impl Experiment {
 
 /// What stands for the file: the hash of all numbers.
 fn source(path: &Path, joints: &[Joint]) -> Source {
-    let mut hasher = Sha256::new();
-    let mut bytes = 0;
     let trials = joints.iter().flat_map(|joint| &joint.trials);
-    for values in trials.flat_map(|trial| [trial.input(), trial.output()]) {
-        bytes += hash(&mut hasher, values);
-    }
-    hashed(path, hasher, bytes)
+    let mut hash = Digested::default();
+    trials.flat_map(|trial| [trial.input(), trial.output()]).for_each(|values| hash.take(values));
+    hashed(path, hash.hasher, hash.bytes)
 }
 
-/// Takes in the numbers as they lie in memory; how many bytes they are.
-fn hash(hasher: &mut Sha256, values: &[f64]) -> u64 {
-    /// Numbers that are turned into bytes at once.
-    const AT_ONCE: usize = 512;
-    for part in values.chunks(AT_ONCE) {
-        let bytes: Vec<u8> = part.iter().flat_map(|value| value.to_le_bytes()).collect();
-        hasher.update(&bytes);
+/// The hash of what was taken in, and how many bytes that were.
+#[derive(Default)]
+struct Digested {
+    hasher: Sha256,
+    bytes: u64,
+}
+
+impl Digested {
+    /// Takes in numbers as they lie in memory.
+    fn take(&mut self, values: &[f64]) {
+        /// Numbers that are turned into bytes at once.
+        const AT_ONCE: usize = 512;
+        for part in values.chunks(AT_ONCE) {
+            let bytes: Vec<u8> = part.iter().flat_map(|value| value.to_le_bytes()).collect();
+            self.hasher.update(&bytes);
+        }
+        self.bytes += size_of_val(values) as u64;
     }
-    size_of_val(values) as u64
 }
 
 fn read(
@@ -149,31 +152,27 @@ fn read(
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Experiment, ReadError> {
-    let path = PathBuf::from(&log.name);
     let headers = log.columns.iter().map(|column| Header::parse(&column.name)).collect();
-    let head = Head { path, headers, header_row: 0, unread: Vec::new() };
-    let rows = same_length(&head, &log)?;
+    let head = Head::without_lines(headers);
+    let rows = same_length(&log)?;
     let (layout, mut found) = match laid_out(&head, options) {
-        Err(ReadError::NoJoints { .. }) => laid_out_by_names(&head, &survey(&head, &log), options)?,
+        Err(error) if error.has_no_joints() => {
+            laid_out_by_names(&head, &survey(&head, &log), options)?
+        }
         found => found?,
     };
-    let source = source_of(&head, &log);
+    let source = source_of(&log);
     if layout.joints.is_empty() {
         found.sources.push(source);
         return Ok(found);
     }
-    let mut labels = Labels::default();
-    if let Some(column) = layout.trial.and_then(|place| log.columns.get(place)) {
-        for row in 0..rows {
-            let memory = (head.path.as_path(), budget);
-            labels.push(&column.values.text(row), row as u64 + 1, memory)?;
-        }
-    }
+    let trial = layout.trial.and_then(|place| log.columns.get(place));
+    let labels = trial.into_iter().flat_map(|column| (0..rows).map(|row| column.values.text(row)));
+    let labels = Labels::of(labels, budget)?;
     let numeric = layout.numeric_columns();
     let column = |place: &usize| log.columns.get_mut(*place).map(|column| column.values.column());
     let columns = numeric.iter().filter_map(column).collect();
-    let (rows, trials) = (RowNumbers::counted(rows), labels.runs());
-    let table = Table { source, rows, columns, trials, notes: Vec::new() };
+    let table = Table { source: Some(source), ..Table::counted(rows, columns, labels) };
     let how = (options.repair, stem);
     found.add_log(Log::new(&head, &layout, &numeric, table, budget, how))?;
     Ok(found)
@@ -187,33 +186,29 @@ fn survey(head: &Head, log: &HandedLog) -> Survey {
 }
 
 /// How many rows there are.
-fn same_length(head: &Head, log: &HandedLog) -> Result<usize, ReadError> {
-    let path = head.path.clone();
-    let Some(first) = log.columns.first() else { return Err(ReadError::Empty { path }) };
-    let (other, expected) = (first.name.clone(), first.values.len());
-    if let Some(odd) = log.columns.iter().find(|column| column.values.len() != expected) {
-        let (column, found) = (odd.name.clone(), odd.values.len());
-        return Err(ReadError::UnequalColumns { path, column, found, other, expected });
+fn same_length(log: &HandedLog) -> Result<usize, ReadError> {
+    let Some(first) = log.columns.first() else { return Err(ReadError::empty()) };
+    let length = |column: &HandedColumn| (column.name.clone(), column.values.len());
+    let rows = first.values.len();
+    if let Some(odd) = log.columns.iter().find(|column| column.values.len() != rows) {
+        return Err(ReadError::unequal_columns(length(odd), length(first)));
     }
-    if expected == 0 { Err(ReadError::HeaderOnly { path }) } else { Ok(expected) }
+    if rows == 0 { Err(ReadError::header_only()) } else { Ok(rows) }
 }
 
-fn source_of(head: &Head, log: &HandedLog) -> Source {
-    let mut hasher = Sha256::new();
-    let mut bytes = 0;
+fn source_of(log: &HandedLog) -> Source {
+    let mut hash = Digested::default();
     for column in &log.columns {
-        hasher.update(column.name.as_bytes());
+        hash.hasher.update(column.name.as_bytes());
         match &column.values {
-            HandedValues::Numbers(numbers) => bytes += hash(&mut hasher, numbers),
+            HandedValues::Numbers(numbers) => hash.take(numbers),
             HandedValues::Texts(texts) => {
-                for text in texts {
-                    hasher.update(text.as_bytes());
-                    bytes += text.len() as u64;
-                }
+                texts.iter().for_each(|text| hash.hasher.update(text.as_bytes()));
+                hash.bytes += texts.iter().map(|text| text.len() as u64).sum::<u64>();
             }
         }
     }
-    hashed(&head.path, hasher, bytes)
+    hashed(Path::new(&log.name), hash.hasher, hash.bytes)
 }
 
 #[cfg(test)]

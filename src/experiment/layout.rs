@@ -1,12 +1,11 @@
 //! Which column of a table is time, trial, and which signal of which joint.
 
 use std::collections::{HashMap, HashSet};
-use std::path::Path;
 
 use super::columns::{ColumnMap, JointColumns};
-use super::error::ReadError;
+use super::error::{ReadError, ReadErrorKind};
 use super::joint::Signal;
-use super::names::{listed, nearest_name};
+use super::names::{did_you_mean, listed, nearest_name};
 use super::table::{Head, Header};
 use super::time_column::{TimeSource, find_any, find_time_column, rest_of_times, times};
 use super::unit;
@@ -39,6 +38,11 @@ pub(super) struct JointLayout {
 }
 
 impl JointLayout {
+    /// `text` as said of the joint.
+    pub(super) fn note(&self, text: &str) -> String {
+        format!("joint `{}`: {text}", self.name)
+    }
+
     /// All columns of the joint.
     pub(super) fn columns(&self) -> impl Iterator<Item = usize> {
         [&self.input, &self.output].into_iter().chain(&self.covariates).map(|signal| signal.column)
@@ -74,8 +78,8 @@ impl Layout {
         period: Option<SamplePeriod>,
     ) -> Result<Self, ReadError> {
         let columns = Columns::of(head);
-        if head.is_of_numbers() && !map.names().any(|name| columns.find(name).is_ok()) {
-            return Err(ReadError::NoHeader { path: head.path.clone(), row: head.header_row });
+        if !map.names().any(|name| columns.find(name).is_ok()) {
+            head.check_is_header()?;
         }
         let trial = match map.trial.as_deref() {
             Some(NO_TRIAL) => None,
@@ -96,9 +100,9 @@ impl Layout {
             incomplete: Vec::new(),
         };
         if map.joints.is_empty() {
-            layout.add_native_joints(&columns)?;
+            layout.add_joints(&columns, &native_joints(head)?)?;
         } else {
-            layout.add_mapped_joints(&columns, &map.joints)?;
+            layout.add_joints(&columns, &map.joints)?;
         }
         Ok(layout)
     }
@@ -136,7 +140,7 @@ impl Layout {
 
     /// Keeps the joints named in `wanted`, the others apart; those that are not there come back
     /// as errors.
-    pub(super) fn keep(&mut self, path: &Path, wanted: &[String]) -> Vec<(String, ReadError)> {
+    pub(super) fn keep(&mut self, wanted: &[String]) -> Vec<(String, ReadError)> {
         if wanted.is_empty() {
             return Vec::new();
         }
@@ -148,7 +152,7 @@ impl Layout {
         let mut unknown = Vec::new();
         for joint in wanted {
             if !names.contains(joint) && self.incomplete.iter().all(|(name, _)| name != joint) {
-                unknown.push((joint.clone(), unknown_joint(path, joint, &names)));
+                unknown.push((joint.clone(), unknown_joint(joint, &names)));
             }
         }
         unknown
@@ -177,9 +181,8 @@ impl Layout {
         self.joints = whole;
         let error = |joint: JointLayout| {
             let column = unequal(&joint)?;
-            let found = rows(column)?;
-            let (path, other, column) = (head.path.clone(), head.text(other), head.text(column));
-            Some((joint.name, ReadError::UnequalColumns { path, column, found, other, expected }))
+            let (other, found) = ((head.text(other), expected), (head.text(column), rows(column)?));
+            Some((joint.name, ReadError::unequal_columns(found, other)))
         };
         short.into_iter().filter_map(error).collect()
     }
@@ -201,7 +204,7 @@ impl Layout {
         self.time.column().or(self.unused_time)
     }
 
-    fn add_mapped_joints(
+    fn add_joints(
         &mut self,
         columns: &Columns<'_>,
         joints: &[JointColumns],
@@ -209,40 +212,13 @@ impl Layout {
         let mut names: Vec<_> = joints.iter().map(|joint| &joint.name).collect();
         names.sort();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-            let (path, joint) = (columns.head.path.clone(), pair[0].clone());
-            return Err(ReadError::DuplicateJoint { path, joint });
+            let text = format!("two joints are named `{}`; give each its own name", pair[0]);
+            return Err(ReadError::new(ReadErrorKind::Joints, text));
         }
         for joint in joints {
-            match mapped_joint(columns, joint) {
+            match joint_layout(columns, joint) {
                 Ok(layout) => self.joints.push(layout),
                 Err(error) => self.incomplete.push((joint.name.clone(), error)),
-            }
-        }
-        Ok(())
-    }
-
-    fn add_native_joints(&mut self, columns: &Columns<'_>) -> Result<(), ReadError> {
-        let head = columns.head;
-        let mut names: Vec<&str> = Vec::new();
-        let mut seen = HashSet::new();
-        let mut covariates: HashMap<&str, Vec<&str>> = HashMap::new();
-        for (name, signal) in head.headers.iter().filter_map(native_name) {
-            if !["input", "output"].contains(&signal) {
-                covariates.entry(name).or_default().push(signal);
-            } else if seen.insert(name) {
-                names.push(name);
-            }
-        }
-        if names.is_empty() {
-            let (path, row) = (head.path.clone(), head.header_row);
-            let available = head.names();
-            return Err(ReadError::NoJoints { path, row, available, likely: Box::default() });
-        }
-        for name in names {
-            let covariates = covariates.get(name).map_or(&[][..], Vec::as_slice);
-            match native_joint(columns, name, covariates) {
-                Ok(layout) => self.joints.push(layout),
-                Err(error) => self.incomplete.push((name.to_owned(), error)),
             }
         }
         Ok(())
@@ -250,14 +226,11 @@ impl Layout {
 }
 
 /// That a joint is not among those of these `names`.
-pub(super) fn unknown_joint(path: &Path, joint: &str, names: &[String]) -> ReadError {
+pub(super) fn unknown_joint(joint: &str, names: &[String]) -> ReadError {
     let names = || names.iter().map(String::as_str);
-    ReadError::UnknownJoint {
-        path: path.to_owned(),
-        joint: joint.to_owned(),
-        nearest: nearest_name(joint, names()).map(str::to_owned),
-        available: listed(names()),
-    }
+    let (nearest, all) = (did_you_mean(nearest_name(joint, names())), listed(names()));
+    let text = format!("no joint `{joint}`{nearest}; the joints are: {all}");
+    ReadError::new(ReadErrorKind::Joints, text)
 }
 
 /// Joint and signal of a native column: `boom.output` is `("boom", "output")`.
@@ -265,28 +238,47 @@ fn native_name(header: &Header) -> Option<(&str, &str)> {
     header.name.rsplit_once('.').filter(|(joint, signal)| !joint.is_empty() && !signal.is_empty())
 }
 
-fn native_joint(
-    columns: &Columns<'_>,
-    name: &str,
-    covariates: &[&str],
-) -> Result<JointLayout, ReadError> {
-    let signal = |kind: &str| signal_column(columns, &format!("{name}.{kind}"), kind, None);
-    Ok(JointLayout {
-        name: name.to_owned(),
-        input: signal("input")?,
-        output: signal("output")?,
-        covariates: covariates.iter().map(|kind| signal(kind)).collect::<Result<_, _>>()?,
-    })
+/// The joints whose columns have native names, each with its further signals.
+fn native_joints(head: &Head) -> Result<Vec<JointColumns>, ReadError> {
+    let mut names: Vec<&str> = Vec::new();
+    let mut seen = HashSet::new();
+    let mut covariates: HashMap<&str, Vec<(String, String)>> = HashMap::new();
+    for (name, signal) in head.headers.iter().filter_map(native_name) {
+        if !["input", "output"].contains(&signal) {
+            let column = (signal.to_owned(), format!("{name}.{signal}"));
+            covariates.entry(name).or_default().push(column);
+        } else if seen.insert(name) {
+            names.push(name);
+        }
+    }
+    if names.is_empty() {
+        let text = format!(
+            "no joint found; a joint needs the columns `<joint>.input` and `<joint>.output`; the columns \
+             are: {}",
+            head.names()
+        );
+        let kind = ReadErrorKind::NoJoints(Box::default());
+        return Err(ReadError::new(kind, text).in_row(head.header_row));
+    }
+    let joint = |name: &str| {
+        let (input, output) = (format!("{name}.input"), format!("{name}.output"));
+        let covariates = covariates.remove(name).unwrap_or_default();
+        JointColumns { covariates, ..JointColumns::new(name, &input, &output) }
+    };
+    Ok(names.into_iter().map(joint).collect())
 }
 
-fn mapped_joint(columns: &Columns<'_>, joint: &JointColumns) -> Result<JointLayout, ReadError> {
+fn joint_layout(columns: &Columns<'_>, joint: &JointColumns) -> Result<JointLayout, ReadError> {
     let covariate = |(name, column): &(String, String)| signal_column(columns, column, name, None);
     let input = signal_column(columns, &joint.input, "input", joint.input_unit.as_ref())?;
     let output = signal_column(columns, &joint.output, "output", joint.output_unit.as_ref())?;
     if input.column == output.column {
-        let (path, joint) = (columns.head.path.clone(), joint.name.clone());
         let column = columns.head.text(input.column);
-        return Err(ReadError::OneColumn { path, joint, column });
+        let text = format!(
+            "joint `{}` has column `{column}` for its input and for its output; give each its own",
+            joint.name
+        );
+        return Err(ReadError::new(ReadErrorKind::Joints, text).about(column));
     }
     Ok(JointLayout {
         name: joint.name.clone(),
@@ -336,12 +328,12 @@ fn find_time(
     }
     match find_time_column(head) {
         Some(column) => times(head, column, None),
-        None => Err(ReadError::NoTime {
-            path: head.path.clone(),
-            row: head.header_row,
-            available: head.names(),
-            index: index_column(head),
-        }),
+        None => {
+            let names = head.names();
+            let text = format!("no time column (`time_s`, `t_s`, `time` or `t`); found {names}");
+            let kind = ReadErrorKind::NoTime(index_column(head));
+            Err(ReadError::new(kind, text).in_row(head.header_row))
+        }
     }
 }
 
@@ -360,23 +352,8 @@ const MOST_COMPARED: usize = 1000;
 /// The columns of a log by their names: logs may have very many.
 struct Columns<'a> {
     head: &'a Head,
-    by_name: HashMap<&'a str, Named>,
-}
-
-/// The columns that share a name.
-#[derive(Clone, Copy)]
-enum Named {
-    One(usize),
-    /// Several, and the first of them.
-    Several(usize),
-}
-
-impl Named {
-    fn first(self) -> usize {
-        match self {
-            Self::One(index) | Self::Several(index) => index,
-        }
-    }
+    /// The first column of each name, and whether there are several.
+    by_name: HashMap<&'a str, (usize, bool)>,
 }
 
 impl<'a> Columns<'a> {
@@ -391,9 +368,9 @@ impl<'a> Columns<'a> {
         for name in kinds {
             let mut named = HashMap::new();
             for (index, header) in head.headers.iter().enumerate() {
-                let several = |named: &mut Named| *named = Named::Several(named.first());
                 if let Some(name) = name(header) {
-                    named.entry(name).and_modify(several).or_insert(Named::One(index));
+                    let several = |(_, several): &mut (usize, bool)| *several = true;
+                    named.entry(name).and_modify(several).or_insert((index, false));
                 }
             }
             by_name.extend(named);
@@ -403,23 +380,26 @@ impl<'a> Columns<'a> {
 
     /// The first column of this name.
     fn first(&self, wanted: &str) -> Option<usize> {
-        self.by_name.get(wanted).map(|named| named.first())
+        self.by_name.get(wanted).map(|(index, _)| *index)
     }
 
     /// The column whose whole header is `wanted`, else the one whose name it is, else the one
     /// whose name it is but for a unit at its end.
     fn find(&self, wanted: &str) -> Result<usize, ReadError> {
         let head = self.head;
-        let (path, row, column) = (head.path.clone(), head.header_row, wanted.to_owned());
         match self.by_name.get(wanted) {
-            Some(Named::One(index)) => Ok(*index),
-            Some(Named::Several(_)) => Err(ReadError::DuplicateColumn { path, row, column }),
+            Some((index, false)) => Ok(*index),
+            Some((_, true)) => Err(head.two_columns(wanted)),
             None => {
                 let few = Some(&head.headers).filter(|headers| headers.len() <= MOST_COMPARED);
                 let names = few.into_iter().flatten().map(|header| header.name.as_str());
-                let nearest = nearest_name(wanted, names).map(str::to_owned);
-                let available = head.names();
-                Err(ReadError::MissingColumn { path, row, column, nearest, available })
+                let text = format!(
+                    "column `{wanted}` is missing{}; the columns are: {}",
+                    did_you_mean(nearest_name(wanted, names)),
+                    head.names()
+                );
+                let error = ReadError::new(ReadErrorKind::MissingColumn, text);
+                Err(error.in_row(head.header_row).about(wanted))
             }
         }
     }

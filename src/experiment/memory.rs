@@ -1,17 +1,16 @@
 //! How much memory reading a log may take. Readers ask before they allocate.
 
 use std::cell::Cell;
-use std::path::Path;
 use std::sync::LazyLock;
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
-use super::error::ReadError;
+use super::error::{ReadError, ReadErrorKind};
 
 /// The most memory that reading logs may take.
 ///
 /// What a log says of its own size is not trusted: past this limit it is refused before memory
-/// is taken ([`ReadError::TooLarge`]).
+/// is taken ([`ReadErrorKind::TooLarge`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryLimit(u64);
 
@@ -56,19 +55,14 @@ pub(crate) fn address_space() -> Option<u64> {
     None
 }
 
+/// Memory of a number that is read: itself, and a copy or what its vector has to spare.
+pub(super) const NUMBER_SIZE: usize = 2 * size_of::<f64>();
+
 /// What is left of the limit while a log is read.
 #[derive(Debug)]
 pub(super) struct Budget {
     limit: u64,
     taken: Cell<u64>,
-}
-
-/// More was asked for than is left.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct TooLarge {
-    /// Bytes that are needed, as far as is known.
-    needed: u64,
-    limit: u64,
 }
 
 impl Budget {
@@ -87,7 +81,7 @@ impl Budget {
     }
 
     /// Takes `bytes`, before they are allocated.
-    pub(super) fn take(&self, bytes: u64) -> Result<(), TooLarge> {
+    pub(super) fn take(&self, bytes: u64) -> Result<(), ReadError> {
         self.check(bytes)?;
         self.taken.set(self.taken.get() + bytes);
         Ok(())
@@ -100,21 +94,31 @@ impl Budget {
     }
 
     /// Takes the memory of `count` values of `size` bytes each.
-    pub(super) fn take_values(&self, count: usize, size: usize) -> Result<(), TooLarge> {
+    pub(super) fn take_values(&self, count: usize, size: usize) -> Result<(), ReadError> {
         self.take((count as u64).saturating_mul(size as u64))
     }
 
     /// Whether `bytes` are left, which are given back at once.
-    pub(super) fn check(&self, bytes: u64) -> Result<(), TooLarge> {
+    pub(super) fn check(&self, bytes: u64) -> Result<(), ReadError> {
         let needed = self.taken.get().saturating_add(bytes);
-        if needed <= self.limit { Ok(()) } else { Err(TooLarge { needed, limit: self.limit }) }
+        if needed <= self.limit {
+            return Ok(());
+        }
+        let [needed, limit] = [needed, self.limit].map(in_words);
+        let text = format!(
+            "it would take {needed} of memory to read it, and {limit} are allowed; check that the file is \
+             what it should be"
+        );
+        Err(ReadError::new(ReadErrorKind::TooLarge, text))
     }
 }
 
-impl TooLarge {
-    /// The log at `path` is refused.
-    pub(super) fn refuse(self, path: &Path) -> ReadError {
-        ReadError::TooLarge { path: path.to_owned(), needed: self.needed, limit: self.limit }
+/// A number of bytes for people: `1.5 GB`.
+fn in_words(count: u64) -> String {
+    match count as f64 {
+        count @ 1e9.. => format!("{:.1} GB", count / 1e9),
+        count @ 1e6.. => format!("{:.0} MB", count / 1e6),
+        count => format!("{count} bytes"),
     }
 }
 
@@ -125,11 +129,12 @@ mod tests {
     #[test]
     fn what_is_past_the_limit_is_refused_and_the_rest_given_back() {
         let budget = Budget::new(MemoryLimit::of_bytes(100));
-        assert_eq!(budget.take(60), Ok(()));
-        assert_eq!(budget.rest().take(40), Ok(()));
-        assert_eq!(budget.take_values(usize::MAX, 8).unwrap_err().limit, 100);
-        assert_eq!(budget.take(41), Err(TooLarge { needed: 101, limit: 100 }));
-        assert_eq!(budget.take(40), Ok(()));
+        budget.take(60).unwrap();
+        budget.rest().take(40).unwrap();
+        assert!(budget.take_values(usize::MAX, 8).is_err());
+        let refused = budget.take(41).unwrap_err().to_string();
+        assert!(refused.contains("101 bytes of memory to read it, and 100 bytes"), "{refused}");
+        budget.take(40).unwrap();
     }
 
     #[test]

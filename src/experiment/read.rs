@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::clock::is_period;
 use super::columns::{ColumnMap, JointColumns};
-use super::error::ReadError;
+use super::error::{ReadError, ReadErrorKind};
 use super::format::{self, is_named_like_a_log};
 use super::grid::Repair;
 use super::joint::Joint;
@@ -14,7 +15,6 @@ use super::layout::{JointLayout, Layout};
 use super::log::Log;
 use super::memory::{Budget, MemoryLimit};
 use super::names::on_one_line;
-use super::period::is_period;
 use super::repairs::mend_all;
 use super::source::{Source, source_of};
 use super::survey::{Survey, further_joint};
@@ -86,28 +86,38 @@ impl Experiment {
                 continue;
             }
             let stem = (paths.len() > 1).then(|| unique_stem(path, &stems));
-            match read_log(path, stem.as_deref(), options, &budget) {
-                Ok(log) => experiment.add(log, path),
-                Err(error) => experiment.failures.push(Failure { joint: None, error }),
-            }
+            experiment.add(read_log(path, stem.as_deref(), options, &budget), path);
             stems.extend(stem);
         }
         experiment
     }
 
-    pub(super) fn add(&mut self, log: Self, path: &Path) {
+    /// Adds what was read of the log at `path`, whose name stands before what is said of it; a note that begins
+    /// with a joint is said of that.
+    pub(super) fn add(&mut self, log: Result<Self, ReadError>, path: &Path) {
+        let log = log.unwrap_or_else(|error| Self {
+            failures: vec![Failure { joint: None, error }],
+            ..Self::default()
+        });
+        let whose = |note: String| {
+            if note.starts_with("joint `") { note } else { format!("{}: {note}", path.display()) }
+        };
         self.sources.extend(log.sources);
-        self.failures.extend(log.failures);
-        self.notes.extend(log.notes);
-        self.failures.extend(add_joints(&mut self.joints, log.joints, path));
+        self.notes.extend(log.notes.into_iter().map(whose));
+        let contradictions = add_joints(&mut self.joints, log.joints);
+        let failures = log.failures.into_iter().chain(contradictions);
+        self.failures.extend(failures.map(|Failure { joint, error }| {
+            let error = error.in_file(path);
+            Failure { joint, error }
+        }));
         // One whose units differ from log to log still has an input.
-        add_joints(&mut self.others, log.others, path);
+        add_joints(&mut self.others, log.others);
     }
 }
 
 /// Adds `joints` to the `known` ones, trials to those of a joint that is there; what differs
 /// comes back.
-fn add_joints(known: &mut Vec<Joint>, joints: Vec<Joint>, path: &Path) -> Vec<Failure> {
+fn add_joints(known: &mut Vec<Joint>, joints: Vec<Joint>) -> Vec<Failure> {
     let mut failures = Vec::new();
     let names = known.iter().map(|joint| joint.name.clone());
     let mut places: HashMap<String, usize> = names.zip(0..).collect();
@@ -116,9 +126,8 @@ fn add_joints(known: &mut Vec<Joint>, joints: Vec<Joint>, path: &Path) -> Vec<Fa
         match known.get_mut(place) {
             None => known.push(joint),
             Some(known) => {
-                if let Err(error) = merge(known, joint, path) {
-                    failures.push(Failure { joint: Some(known.name.clone()), error });
-                }
+                let merged = merge(known, joint);
+                failures.extend(merged.err().map(|error| failed((known.name.clone(), error))));
             }
         }
     }
@@ -126,7 +135,7 @@ fn add_joints(known: &mut Vec<Joint>, joints: Vec<Joint>, path: &Path) -> Vec<Fa
 }
 
 /// Adds the trials of `joint` to those of the same joint in earlier logs.
-fn merge(known: &mut Joint, joint: Joint, path: &Path) -> Result<(), ReadError> {
+fn merge(known: &mut Joint, joint: Joint) -> Result<(), ReadError> {
     let units = |joint: &Joint| (joint.input_unit.clone(), joint.output_unit.clone());
     if units(known) != units(&joint) || known.covariates != joint.covariates {
         let describe = |joint: &Joint| {
@@ -135,12 +144,10 @@ fn merge(known: &mut Joint, joint: Joint, path: &Path) -> Result<(), ReadError> 
             parts.extend(joint.covariates.iter().map(|s| format!("{} {}", s.name, unit(&s.unit))));
             parts.join(", ")
         };
-        return Err(ReadError::UnitsDiffer {
-            path: path.to_owned(),
-            joint: joint.name.clone(),
-            found: describe(&joint),
-            expected: describe(known),
-        });
+        let (name, found, expected) = (&joint.name, describe(&joint), describe(known));
+        let text =
+            format!("joint `{name}` is in [{found}] here but in [{expected}] in an earlier log");
+        return Err(ReadError::new(ReadErrorKind::Joints, text));
     }
     // The clocks of logs that both count from 1970 are one.
     let origin_s = known.trials.first().map_or(0.0, Trial::origin_s);
@@ -172,14 +179,14 @@ fn unique_stem(path: &Path, taken: &[String]) -> String {
 /// Hidden files (`.*`) are left out. Truth files (`*.truth.csv`) are no logs and are left out: of a folder, and beside logs, as
 /// a shell's pattern `*.csv` names both.
 ///
-/// Beside the files, the folders that cannot be listed ([`ReadError::Io`]) or hold no log
-/// ([`ReadError::EmptyFolder`], [`ReadError::OnlyFolders`]).
+/// Beside the files, the folders that cannot be listed ([`ReadErrorKind::Io`]) or hold no log
+/// ([`ReadErrorKind::Empty`]).
 pub fn expand_folders(paths: &[PathBuf]) -> (Vec<PathBuf>, Vec<Failure>) {
     let (mut files, mut failures) = (Vec::new(), Vec::new());
     for path in paths {
         match logs_in(path) {
             Ok(logs) => files.extend(logs),
-            Err(error) => failures.push(Failure { joint: None, error }),
+            Err(error) => failures.push(Failure { joint: None, error: error.in_file(path) }),
         }
     }
     if !files.iter().all(|file| is_truth(file)) {
@@ -192,21 +199,22 @@ fn logs_in(path: &Path) -> Result<Vec<PathBuf>, ReadError> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
-    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
     let mut logs = Vec::new();
-    for entry in path.read_dir().map_err(io_error)? {
-        logs.push(entry.map_err(io_error)?.path());
+    for entry in path.read_dir()? {
+        logs.push(entry?.path());
     }
     logs.retain(|file| is_log(file));
     logs.sort();
     if !logs.is_empty() {
         return Ok(logs);
     }
-    let path = path.to_owned();
-    Err(match folders_with_logs(&path).into_iter().next() {
-        Some(first) => ReadError::OnlyFolders { path, first },
-        None => ReadError::EmptyFolder { path, endings: format::endings() },
-    })
+    let inner = folders_with_logs(path);
+    let text = match inner.first() {
+        Some(first) => format!("but in folders within it; name those, as `{}`", first.display()),
+        None => format!("logs end in {}", format::endings()),
+    };
+    let mark = if inner.is_empty() { ';' } else { ',' };
+    Err(ReadError::new(ReadErrorKind::Empty, format!("no log in this folder{mark} {text}")))
 }
 
 /// A note on each of the folders in `paths` that has logs in folders of its own, which
@@ -262,7 +270,7 @@ fn read_log(
     let open = || format::open(path, budget.rest());
     let table = open()?;
     let (mut layout, mut found) = match laid_out(&table.head, options) {
-        Err(ReadError::NoJoints { .. }) => laid_out_foreign(&table.head, options)?,
+        Err(error) if error.has_no_joints() => laid_out_foreign(&table.head, path, options)?,
         found => found?,
     };
     let unequal = layout.without_unequal(&table.head, |column| table.rows.rows_of(column));
@@ -272,7 +280,7 @@ fn read_log(
     for layout in layout.by_clock() {
         // Each clock has rows of its own, and is read in a pass of its own.
         let table = next.take().map_or_else(open, Ok)?;
-        if let Err(error) = found.read_clock(table, &layout, stem, options.repair, budget) {
+        if let Err(error) = found.read_clock(table, &layout, (path, stem), options.repair, budget) {
             failed_clocks.push((layout.joints, error));
         }
     }
@@ -283,8 +291,11 @@ fn read_log(
     for (joints, error) in failed_clocks {
         let Some((first, others)) = joints.split_first() else { return Err(error) };
         let as_first = |joint: &JointLayout| {
-            let (path, other) = (path.to_owned(), first.name.clone());
-            failed((joint.name.clone(), ReadError::AsOther { path, other }))
+            let text = format!(
+                "it cannot be read, as joint `{}`, whose output has the same clock",
+                first.name
+            );
+            failed((joint.name.clone(), ReadError::new(ReadErrorKind::Joints, text)))
         };
         found.failures.push(failed((first.name.clone(), error)));
         found.failures.extend(others.iter().map(as_first));
@@ -297,9 +308,9 @@ pub(super) fn laid_out(
     head: &Head,
     options: &ReadOptions,
 ) -> Result<(Layout, Experiment), ReadError> {
-    let period = sample_period(&head.path, &options.columns)?;
+    let period = sample_period(&options.columns)?;
     let mut layout = Layout::find(head, &options.columns, period)?;
-    let unknown = layout.keep(&head.path, &options.joints);
+    let unknown = layout.keep(&options.joints);
     head.check_names(layout.joints.iter().flat_map(JointLayout::columns))?;
     if !options.others {
         layout.others.clear();
@@ -309,18 +320,15 @@ pub(super) fn laid_out(
     found.failures.extend(incomplete.into_iter().chain(unknown).map(failed));
     let unused = period.filter(|_| options.columns.time.is_none()).and(find_time_column(head));
     if let Some(time) = unused.and_then(|column| head.headers.get(column)) {
-        found.notes.push(format!(
-            "{}: the times in `{}` are not used: a sample period was given",
-            head.path.display(),
-            time.name
-        ));
+        let name = &time.name;
+        let note = format!("the times in `{name}` are not used: a sample period was given");
+        found.notes.push(note);
     }
     let signals = layout.numeric_columns();
     let note = layout.time.column().and_then(|column| note_on_times(head, column, &signals));
     let are_native = options.columns.joints.is_empty() && options.joints.is_empty();
     let further = if are_native { note_on_further_joint(head, &layout) } else { None };
-    let notes = note.into_iter().chain(further);
-    found.notes.extend(notes.map(|note| format!("{}: {note}", head.path.display())));
+    found.notes.extend(note.into_iter().chain(further));
     Ok((layout, found))
 }
 
@@ -338,29 +346,32 @@ fn note_on_further_joint(head: &Head, layout: &Layout) -> Option<String> {
 
 /// What every column means in a log without native names: as the mapping beside it says, else by names and
 /// data.
-fn laid_out_foreign(head: &Head, options: &ReadOptions) -> Result<(Layout, Experiment), ReadError> {
-    let unusable = match ColumnMap::kept_beside(&head.path) {
+fn laid_out_foreign(
+    head: &Head,
+    path: &Path,
+    options: &ReadOptions,
+) -> Result<(Layout, Experiment), ReadError> {
+    let unusable = match ColumnMap::kept_beside(path) {
         Ok(Some((file, kept))) => match laid_out_as_kept(head, &file, kept, options) {
             // It was kept for another log of the folder.
-            Err(ReadError::MissingColumn { column, .. }) => {
-                let file = file.display();
+            Err(error) if matches!(error.kind, ReadErrorKind::MissingColumn) => {
+                let (file, column) = (file.display(), error.column().unwrap_or_default());
                 Some(format!("`{file}` names the column `{column}`, which this log lacks"))
             }
-            Err(error) => Some(format!("`{}`: {error}", file.display())),
+            Err(error) => Some(format!("`{}`: {}", file.display(), error.in_file(path))),
             laid_out => return laid_out,
         },
         Ok(None) => None,
         Err(error) => Some(error.to_string()),
     };
     let unusable = unusable.map(|why| format!("the mapping beside it is not used: {why}"));
-    let survey = Survey::of(&head.path, options.memory)?;
-    let (layout, mut found) = laid_out_by_names(head, &survey, options).map_err(|mut error| {
-        if let (ReadError::NoJoints { available, .. }, Some(why)) = (&mut error, &unusable) {
-            available.extend(["; ", why]);
-        }
-        error
+    let survey = Survey::of(path, options.memory)?;
+    let laid_out = laid_out_by_names(head, &survey, options);
+    let (layout, mut found) = laid_out.map_err(|error| match &unusable {
+        Some(why) if error.has_no_joints() => error.with(&format!("; {why}")),
+        _ => error,
     })?;
-    found.notes.extend(unusable.map(|why| format!("{}: {why}", head.path.display())));
+    found.notes.extend(unusable);
     Ok((layout, found))
 }
 
@@ -391,8 +402,8 @@ fn laid_out_as_kept(
     } else {
         "; `--columns` with this file takes the settings of its joints, too"
     };
-    let (log, file) = (head.path.display(), file.display());
-    found.notes.push(format!("{log}: its columns are those that `{file}` names{settings}"));
+    let file = file.display();
+    found.notes.push(format!("its columns are those that `{file}` names{settings}"));
     Ok((layout, found))
 }
 
@@ -406,23 +417,18 @@ pub(super) fn laid_out_by_names(
     if survey.is_sure {
         options.columns.joints.clone_from(&survey.map.joints);
     }
-    let suggested = |error| match error {
-        ReadError::NoJoints { path, row, available, .. } => {
-            let likely = Box::new((survey.map.time.clone(), survey.named_joints()));
-            ReadError::NoJoints { path, row, available, likely }
+    let suggested = |mut error: ReadError| {
+        if let ReadErrorKind::NoJoints(likely) = &mut error.kind {
+            **likely = (survey.map.time.clone(), survey.named_joints());
         }
-        error => error,
+        error
     };
     let (layout, mut found) = laid_out(head, &options).map_err(suggested)?;
     let joint = |joint: &JointColumns| {
         format!("{} (input `{}`, output `{}`)", joint.name, joint.input, joint.output)
     };
     let joints: Vec<String> = options.columns.joints.iter().map(joint).collect();
-    found.notes.push(format!(
-        "{}: joints by the names of the columns: {}",
-        head.path.display(),
-        joints.join(", ")
-    ));
+    found.notes.push(format!("joints by the names of the columns: {}", joints.join(", ")));
     let further = survey.further_inputs.iter().filter(|_| survey.is_sure);
     found.notes.extend(further.map(|(joint, column)| {
         format!(
@@ -443,17 +449,20 @@ impl Experiment {
         &mut self,
         table: OpenTable,
         layout: &Layout,
-        stem: Option<&str>,
+        (path, stem): (&Path, Option<&str>),
         repair: Repair,
         budget: &Budget,
     ) -> Result<(), ReadError> {
         let head = table.head.clone();
         if layout.joints.is_empty() {
-            self.sources.push(source_of(&head.path)?);
+            self.sources.push(source_of(path)?);
             return Ok(());
         }
         let numeric = layout.numeric_columns();
-        let table = table.read(&numeric, layout.trial, layout.time_column(), layout.clock())?;
+        let mut table = table.read(&numeric, layout.trial, layout.time_column(), layout.clock())?;
+        if table.source.is_none() {
+            table.source = Some(source_of(path)?);
+        }
         self.add_log(Log::new(&head, layout, &numeric, table, budget, (repair, stem)))
     }
 
@@ -464,28 +473,30 @@ impl Experiment {
         self.notes.append(&mut log.notes);
         for joint in &log.layout.joints {
             match log.joint(joint, &grids) {
-                Ok((joint, notes)) => {
-                    self.notes.extend(notes);
-                    self.joints.push(joint);
+                Ok((read, notes)) => {
+                    self.notes.extend(notes.iter().map(|note| joint.note(note)));
+                    self.joints.push(read);
                 }
                 Err(error) => self.failures.push(failed((joint.name.clone(), error))),
             }
         }
         let others = log.layout.others.iter().map(|joint| log.joint(joint, &grids));
         self.others.extend(others.filter_map(Result::ok).map(|(joint, _)| joint));
-        self.notes.extend(log.table.notes.iter().cloned());
+        self.notes.append(&mut log.table.notes);
         if self.sources.is_empty() {
-            self.sources.push(log.table.source.clone());
+            self.sources.extend(log.table.source);
         }
         Ok(())
     }
 }
 
-fn sample_period(path: &Path, map: &ColumnMap) -> Result<Option<SamplePeriod>, ReadError> {
+fn sample_period(map: &ColumnMap) -> Result<Option<SamplePeriod>, ReadError> {
     let Some(seconds) = map.sample_period_s else {
         return Ok(None);
     };
-    let bad = || ReadError::BadPeriod { path: path.to_owned(), seconds };
     let period = Some(seconds).filter(|seconds| is_period(*seconds));
-    period.and_then(SamplePeriod::from_seconds).map(Some).ok_or_else(bad)
+    period.and_then(SamplePeriod::from_seconds).map(Some).ok_or_else(|| {
+        let text = format!("a sample period of {seconds} s is not one from 1e-9 to 1e8 s");
+        ReadError::new(ReadErrorKind::Period, text)
+    })
 }

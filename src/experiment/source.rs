@@ -21,9 +21,7 @@ pub struct Source {
 
 /// Reads a file to its end for its hash and its length.
 pub(super) fn source_of(path: &Path) -> Result<Source, ReadError> {
-    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-    let file = File::open(path).map_err(io_error)?;
-    Hashing::new(BufReader::new(file)).finish(path)
+    Hashing::new(BufReader::new(File::open(path)?)).finish(path)
 }
 
 /// A file of which `hasher` has seen all `bytes`.
@@ -46,8 +44,7 @@ impl<R: Read> Hashing<R> {
 
     /// Reads what is left and gives the hash of all of it.
     pub(super) fn finish(mut self, path: &Path) -> Result<Source, ReadError> {
-        io::copy(&mut self, &mut io::sink())
-            .map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
+        io::copy(&mut self, &mut io::sink())?;
         Ok(hashed(path, self.hasher, self.bytes))
     }
 }

@@ -4,14 +4,12 @@
 //! decided in [`super::layout`].
 
 use std::collections::HashSet;
-use std::path::{Path, PathBuf};
+use std::fmt;
 
-use super::error::ReadError;
+use super::error::{ReadError, ReadErrorKind};
 use super::memory::Budget;
 use super::names::{listed, on_one_line, shown};
 use super::source::Source;
-#[cfg(any(feature = "mat", feature = "parquet"))]
-use super::source::source_of;
 use super::unit;
 
 /// Name and unit of a column.
@@ -46,7 +44,6 @@ impl Header {
 /// What columns a log has.
 #[derive(Clone, Debug)]
 pub(super) struct Head {
-    pub(super) path: PathBuf,
     pub(super) headers: Vec<Header>,
     /// Line of the header in the file; 0 where the file has no lines.
     pub(super) header_row: u64,
@@ -55,10 +52,9 @@ pub(super) struct Head {
 }
 
 impl Head {
-    /// Whether all names are numbers, as in a table without a header.
-    pub(super) fn is_of_numbers(&self) -> bool {
-        let is_number = |header: &Header| header.text.replace(',', ".").parse::<f64>().is_ok();
-        self.headers.len() > 1 && self.headers.iter().all(is_number)
+    /// Of a file that has no lines.
+    pub(super) fn without_lines(headers: Vec<Header>) -> Self {
+        Self { headers, header_row: 0, unread: Vec::new() }
     }
 
     /// Refuses columns whose names are none: each page, table and path of an output would bear them.
@@ -68,8 +64,25 @@ impl Head {
     ) -> Result<(), ReadError> {
         columns.try_for_each(|column| {
             let name = self.headers.get(column).map_or("", |header| header.text.as_str());
-            check_name(name, self.header_row, &self.path)
+            check_name(name, self.header_row)
         })
+    }
+
+    /// Refuses a table without a header.
+    pub(super) fn check_is_header(&self) -> Result<(), ReadError> {
+        let is_number = |header: &Header| header.text.replace(',', ".").parse::<f64>().is_ok();
+        if self.headers.len() < 2 || !self.headers.iter().all(is_number) {
+            return Ok(());
+        }
+        let text = "the first row holds numbers, and no names of columns; write a header above it, as in \
+                    `time_s,boom.input,boom.output`";
+        Err(ReadError::new(ReadErrorKind::Header, text).in_row(self.header_row))
+    }
+
+    /// That two columns are named so.
+    pub(super) fn two_columns(&self, name: &str) -> ReadError {
+        let text = format!("two columns are named `{name}`; rename one of them");
+        ReadError::new(ReadErrorKind::Header, text).in_row(self.header_row).about(name)
     }
 
     /// A column's header as it stands in the file.
@@ -94,12 +107,15 @@ impl Head {
 pub(super) const LONGEST_NAME: usize = 1000;
 
 /// Refuses a name that is longer than any.
-fn check_name(name: &str, row: u64, path: &Path) -> Result<(), ReadError> {
+fn check_name(name: &str, row: u64) -> Result<(), ReadError> {
     if name.len() <= LONGEST_NAME {
         return Ok(());
     }
-    let (path, start) = (path.to_owned(), shown(name));
-    Err(ReadError::LongName { path, row, start, most: LONGEST_NAME })
+    let start = shown(name);
+    let text = format!(
+        "the name `{start}` is longer than {LONGEST_NAME} bytes, the most of a name; shorten it"
+    );
+    Err(ReadError::new(ReadErrorKind::Header, text).in_row(row))
 }
 
 /// The columns of a log, and what is in them still unread.
@@ -137,13 +153,6 @@ pub(super) struct Wanted<'a> {
     pub(super) clock: usize,
 }
 
-impl Wanted<'_> {
-    /// The file.
-    pub(super) fn path(&self) -> &Path {
-        &self.head.path
-    }
-}
-
 impl OpenTable {
     /// Reads the columns `numeric` as numbers and `label` as text, in the rows of `clock`.
     pub(super) fn read(
@@ -156,7 +165,7 @@ impl OpenTable {
         let wanted = Wanted { head: &self.head, numeric, label, time, clock };
         let table = self.rows.read(&wanted)?;
         if table.rows.is_empty() {
-            return Err(ReadError::HeaderOnly { path: self.head.path });
+            return Err(ReadError::header_only());
         }
         Ok(table)
     }
@@ -164,7 +173,8 @@ impl OpenTable {
 
 /// The columns that were asked for.
 pub(super) struct Table {
-    pub(super) source: Source,
+    /// Where the file was read to its end; whoever reads the log looks at it again where it was not.
+    pub(super) source: Option<Source>,
     /// What messages call each row: its line of the file, or its number.
     pub(super) rows: RowNumbers,
     pub(super) columns: Vec<Column>,
@@ -190,20 +200,9 @@ impl Table {
     }
 
     /// The rows of a file that has no lines, counted from 1.
-    #[cfg(any(feature = "mat", feature = "parquet"))]
-    pub(super) fn counted(
-        path: &Path,
-        rows: usize,
-        columns: Vec<Column>,
-        labels: &Labels,
-    ) -> Result<Self, ReadError> {
-        Ok(Self {
-            source: source_of(path)?,
-            rows: RowNumbers::counted(rows),
-            columns,
-            trials: labels.runs(),
-            notes: Vec::new(),
-        })
+    pub(super) fn counted(rows: usize, columns: Vec<Column>, labels: Labels) -> Self {
+        let (rows, notes) = (RowNumbers::counted(rows), Vec::new());
+        Self { source: None, rows, columns, trials: labels.runs, notes }
     }
 }
 
@@ -283,21 +282,13 @@ pub(super) struct Column {
 }
 
 impl Column {
-    /// Numbers in the order of their rows, counted from 1.
-    #[cfg(any(feature = "mat", feature = "mcap"))]
-    pub(super) fn of(values: impl IntoIterator<Item = f64>) -> Self {
-        let mut column = Self::default();
-        values.into_iter().for_each(|value| column.add(value));
-        column
-    }
-
     /// A column that holds `kind`.
     pub(super) fn not_numbers(kind: &str) -> Self {
         Self { error: Some((0, BadCell::Kind(kind.to_owned()))), ..Self::default() }
     }
 
     /// Numbers in the order of their rows, counted from 1, as they are: none is copied.
-    pub(super) fn checked(values: Vec<f64>) -> Self {
+    pub(super) fn of(values: Vec<f64>) -> Self {
         let mut column = Self { values, ..Self::default() };
         let is_bad = |value: &f64| value.is_infinite() || value.abs() > LARGEST;
         if let Some(row) = column.values.iter().position(is_bad) {
@@ -316,29 +307,19 @@ impl Column {
         (largest > 0.0 && largest < SMALLEST).then_some(largest)
     }
 
-    /// How far apart doubles are where its numbers are, if that is much of what they differ by.
-    pub(super) fn coarse(&self) -> Option<Coarse> {
+    /// Its largest magnitude, how far apart doubles are there, and the range of its numbers, where an offset is
+    /// so large that doubles are too far apart for what the signal does.
+    pub(super) fn coarse(&self) -> Option<[f64; 3]> {
         let known = || self.values.iter().copied().filter(|value| value.is_finite());
         let (low, high) = known().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
         let largest = low.abs().max(high.abs());
         let apart = largest.next_up() - largest;
-        (low < high && apart > COARSE * (high - low)).then_some(Coarse {
-            largest,
-            apart,
-            range: high - low,
-        })
+        (low < high && apart > COARSE * (high - low)).then_some([largest, apart, high - low])
     }
 
     /// A column that holds texts.
     pub(super) fn text() -> Self {
         Self::not_numbers("text")
-    }
-
-    /// Adds the number of the next row, counted from 1.
-    #[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
-    pub(super) fn add(&mut self, value: f64) {
-        let row = self.values.len() as u64 + 1;
-        self.push(if value.is_infinite() { Err(BadCell::Infinite) } else { Ok(value) }, row);
     }
 
     /// Adds the cell of a row, as long as there was no bad one.
@@ -369,6 +350,47 @@ pub(super) enum BadCell {
     TooLarge(f64),
 }
 
+impl fmt::Display for BadCell {
+    /// What is wrong, and what to do about it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Kind(found) => write!(
+                f,
+                "it holds {found}, not numbers; choose another column, or write it as numbers"
+            ),
+            Self::Text(text) => {
+                let is_number = text.replace(',', ".").parse::<f64>().is_ok();
+                let remedy = if text.contains(',') && is_number {
+                    "write decimals with a point"
+                } else {
+                    "write a number, or none at all"
+                };
+                write!(f, "`{}` is not a number; {remedy}", shown(text))
+            }
+            Self::DecimalMark(text) => write!(
+                f,
+                "`{}` beside cells with the other decimal mark; write all decimals with a point, and \
+                 nothing between thousands",
+                shown(text)
+            ),
+            Self::Thousands(text) => write!(
+                f,
+                "`{}` may be a thousand and more, beside whole numbers without such a mark, or have three \
+                 decimals; write decimals with a point, and nothing between thousands",
+                shown(text)
+            ),
+            Self::Infinite => {
+                f.write_str("the value is infinite; remove the row or mend the value")
+            }
+            Self::TooLarge(value) => write!(
+                f,
+                "{value:e} is beyond what double precision can square; write it in a larger unit, or leave \
+                 the cell empty where it stands for nothing"
+            ),
+        }
+    }
+}
+
 /// The largest number of a log: products of squares of ten million of them are still numbers.
 pub(crate) const LARGEST: f64 = 1e75;
 
@@ -379,17 +401,6 @@ const SMALLEST: f64 = 1e-75;
 /// The part of the range of a signal from which it matters how far apart doubles are: that of a
 /// sensor of ten bits.
 const COARSE: f64 = 1e-3;
-
-/// A signal with an offset so large that doubles are too far apart for what it does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Coarse {
-    /// The largest magnitude in it.
-    pub(super) largest: f64,
-    /// The distance of doubles there.
-    pub(super) apart: f64,
-    /// Highest minus lowest number.
-    pub(super) range: f64,
-}
 
 /// Memory of a trial beside the bytes of its label: its run of rows and the text with what their
 /// allocations have to spare, once as they come, once in the table and once in the log; its label
@@ -403,19 +414,25 @@ const LABEL_COPIES: usize = 4;
 /// The labels of rows as they come, as runs.
 #[derive(Debug, Default)]
 pub(super) struct Labels {
-    runs: Vec<TrialRows>,
+    /// The runs of equal labels.
+    pub(super) runs: Vec<TrialRows>,
     seen: HashSet<String>,
     rows: usize,
 }
 
 impl Labels {
-    /// Adds the label of the next row of the log at `path`; a new trial is taken from `budget`.
-    pub(super) fn push(
-        &mut self,
-        label: &str,
-        row: u64,
-        (path, budget): (&Path, &Budget),
-    ) -> Result<(), ReadError> {
+    /// The labels of all rows, counted from 1.
+    pub(super) fn of(
+        labels: impl IntoIterator<Item = String>,
+        budget: &Budget,
+    ) -> Result<Self, ReadError> {
+        let mut all = Self::default();
+        labels.into_iter().zip(1..).try_for_each(|(label, row)| all.push(&label, row, budget))?;
+        Ok(all)
+    }
+
+    /// Adds the label of the next row; a new trial is taken from `budget`.
+    pub(super) fn push(&mut self, label: &str, row: u64, budget: &Budget) -> Result<(), ReadError> {
         let index = self.rows;
         self.rows += 1;
         let label = &*on_one_line(label);
@@ -423,20 +440,17 @@ impl Labels {
             run.end = self.rows;
             return Ok(());
         }
-        check_name(label, row, path)?;
-        let taken = budget.take_values(1, TRIAL_SIZE + LABEL_COPIES * label.len());
-        taken.map_err(|error| error.refuse(path))?;
+        check_name(label, row)?;
+        budget.take_values(1, TRIAL_SIZE + LABEL_COPIES * label.len())?;
         let label = label.to_owned();
         if !self.seen.insert(label.clone()) {
-            return Err(ReadError::TrialNotContiguous { path: path.to_owned(), row, trial: label });
+            let text = format!(
+                "trial `{label}` starts again here after another one; keep the rows of a trial together"
+            );
+            return Err(ReadError::new(ReadErrorKind::TrialNotContiguous, text).in_row(row));
         }
         self.runs.push(TrialRows { label, start: index, end: self.rows });
         Ok(())
-    }
-
-    /// The runs of equal labels.
-    pub(super) fn runs(&self) -> Vec<TrialRows> {
-        self.runs.clone()
     }
 }
 
@@ -445,12 +459,8 @@ mod tests {
     use super::*;
 
     #[test]
-    #[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
     fn values_end_before_one_that_is_infinite() {
-        let mut column = Column::default();
-        for value in [1.0, f64::NAN, f64::INFINITY, 2.0] {
-            column.add(value);
-        }
+        let column = Column::of(vec![1.0, f64::NAN, f64::INFINITY, 2.0]);
         assert_eq!(column.values.len(), 2);
         assert_eq!(column.error, Some((3, BadCell::Infinite)));
     }
@@ -464,7 +474,7 @@ mod tests {
             rows.push(row);
         }
         let mut table = Table {
-            source: Source { path: PathBuf::new(), bytes: 0, sha256: String::new() },
+            source: None,
             rows,
             columns: vec![column(&[1.0, 2.0, 3.0, 4.0])],
             trials: vec![trial("b", 0, 1), trial("a", 1, 4)],
@@ -480,15 +490,14 @@ mod tests {
     fn each_trial_is_taken_from_the_memory_and_a_row_of_it_is_not() {
         use crate::experiment::MemoryLimit;
 
-        let path = Path::new("log.csv");
         let budget = Budget::new(MemoryLimit::of_bytes(3 * (TRIAL_SIZE + LABEL_COPIES) as u64));
         let mut labels = Labels::default();
         for (row, label) in ["a", "b", "b", "b", "c"].into_iter().enumerate() {
-            labels.push(label, row as u64, (path, &budget)).unwrap();
+            labels.push(label, row as u64, &budget).unwrap();
         }
-        assert_eq!(labels.runs().len(), 3);
-        let refused = labels.push("d", 5, (path, &budget));
-        assert!(matches!(refused, Err(ReadError::TooLarge { .. })), "{refused:?}");
+        assert_eq!(labels.runs.len(), 3);
+        let refused = labels.push("d", 5, &budget);
+        assert!(matches!(refused.unwrap_err().kind, ReadErrorKind::TooLarge));
     }
 
     #[test]

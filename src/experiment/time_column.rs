@@ -1,6 +1,6 @@
 //! Which column holds the times of a log, and in what unit.
 
-use super::error::ReadError;
+use super::error::{ReadError, ReadErrorKind};
 use super::table::{Head, Header};
 use super::unit;
 use crate::units::SamplePeriod;
@@ -61,11 +61,11 @@ pub(super) fn times(
         let text = header.map_or("", |header| header.text.as_str());
         return Ok(TimeSource::Times(column, unit::time_within(text)));
     };
-    let unknown = || ReadError::TimeUnit {
-        path: head.path.clone(),
-        row: head.header_row,
-        column: name.to_owned(),
-        unit: unit.to_owned(),
+    let unknown = || {
+        let text = format!(
+            "time in [{unit}] is not known; expected [s], [ms], [us], [ns], [min] or no unit"
+        );
+        ReadError::new(ReadErrorKind::Header, text).in_row(head.header_row).in_column(name)
     };
     // `[hh:mm:ss]` is how a time is written, and no unit.
     if unit.to_lowercase().contains("mm:ss") {
@@ -183,14 +183,11 @@ pub(super) fn find_any(head: &Head, wanted: &[&str]) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::PathBuf;
-
     use super::*;
 
     fn note(names: &[&str]) -> Option<String> {
         let headers = names.iter().map(|name| Header::parse(name)).collect();
-        let head =
-            Head { path: PathBuf::from("log.csv"), headers, header_row: 1, unread: Vec::new() };
+        let head = Head { headers, header_row: 1, unread: Vec::new() };
         note_on_times(&head, find_time_column(&head)?, &[])
     }
 
@@ -236,8 +233,7 @@ mod tests {
             ("tv_sec", "tv_usec", 1e-6),
         ] {
             let headers = [whole, "u", rest].map(Header::parse).to_vec();
-            let path = PathBuf::from("log.csv");
-            let head = Head { path, headers, header_row: 1, unread: Vec::new() };
+            let head = Head { headers, header_row: 1, unread: Vec::new() };
             assert_eq!(rest_of_times(&head, 0), Some((2, unit_s)), "{whole}");
             assert_eq!(rest_of_times(&head, 1), None);
         }
@@ -248,7 +244,7 @@ mod tests {
     fn a_stamp_is_preferred_to_a_temperature() {
         for stamp in ["ts", "ts_ms", "unix_ms", "clock_ms", "log_time", "recorded_at"] {
             let headers = [stamp, "T", "u"].map(Header::parse).to_vec();
-            let head = Head { path: PathBuf::new(), headers, header_row: 1, unread: Vec::new() };
+            let head = Head { headers, header_row: 1, unread: Vec::new() };
             assert_eq!(find_time_column(&head), Some(0), "{stamp}");
         }
     }

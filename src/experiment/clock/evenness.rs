@@ -1,8 +1,7 @@
 //! How far stamps are from an even grid, and what that makes of the clock.
 
-use super::fault::Fault;
 use super::period::Typical;
-use super::run::{LOST_SHARE, Run};
+use super::run::{Fault, LOST_SHARE, Run};
 use crate::numerics::{median, quantile};
 
 /// Rows whose stamps lie within this part of a period of the even grid stay as they are; what

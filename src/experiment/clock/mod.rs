@@ -6,7 +6,6 @@
 //! a stamp that is only late is made good by the next ones.
 
 mod evenness;
-mod fault;
 mod period;
 mod rows;
 mod run;
@@ -16,14 +15,19 @@ use self::period::{least_squares_period, typical_period};
 use self::rows::{Found, between_restarts, count, is_even_once_sorted, parted, short_gaps};
 
 pub(super) use self::evenness::Evenness;
-pub(super) use self::fault::Fault;
-pub(super) use self::run::Run;
+pub(super) use self::run::{Fault, Run};
 
 /// A gap is filled up to so many periods: one row of Algorithm 1's Φ at its usual β.
 const FILLED_PERIODS: f64 = 5.0;
 
 /// A gap is filled up to so many seconds: short beside the dead times of hydraulic joints.
 const FILLED_S: f64 = 0.05;
+
+/// Whether samples may be so many seconds apart: from a nanosecond to three years, beyond which the
+/// times of a record leave what a clock counts.
+pub(crate) fn is_period(seconds: f64) -> bool {
+    (1e-9..=1e8).contains(&seconds)
+}
 
 /// The clock of a trial.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,6 @@
 //! The period of a clock: a first guess, and the least-squares period.
 
-use super::fault::Fault;
-use super::run::{JUMP, LOST_SHARE, Run};
+use super::run::{Fault, JUMP, LOST_SHARE, Run};
 use crate::numerics::median;
 
 /// Changes of stamps that are rounded to several periods, from which the period follows: two whole

@@ -1,8 +1,7 @@
 //! Which rows follow one another: in order, each once, and parted where the clock jumps.
 
-use super::fault::Fault;
 use super::period::Typical;
-use super::run::{JUMP, Run};
+use super::run::{Fault, JUMP, Run};
 use crate::numerics::median;
 
 /// Rows behind a jump that are asked whether it lasts.

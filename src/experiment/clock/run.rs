@@ -1,4 +1,28 @@
-//! Rows that follow one another, and what parts them.
+//! Rows that follow one another, what parts them, and why they cannot be put on a grid.
+
+/// Why rows cannot be put on a grid; `row` counts the rows of the trial from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::experiment) enum Fault {
+    /// One time is no later than the one before, or far from all its neighbours.
+    NotIncreasing { row: usize },
+    /// Rows are not equally far apart.
+    NotUniform { row: usize, step: f64, period: f64 },
+    /// There is one row only.
+    SingleRow,
+    /// The stamps are so few, `grain_s` apart, that no period follows from them.
+    FewStamps { stamps: usize, grain_s: f64 },
+    /// The stamps are coarser than the sampling, and not even.
+    Coarse { row: usize, grain_s: f64, period: f64 },
+    /// The grid would have more samples than can be handled.
+    TooMany { samples: f64, period: f64 },
+}
+
+impl Fault {
+    /// Whether a clock with this fault is put on a grid unasked.
+    pub(in crate::experiment) fn is_mended(self) -> bool {
+        matches!(self, Self::NotIncreasing { .. } | Self::NotUniform { .. })
+    }
+}
 
 /// A step of more periods than this may be a jump.
 pub(super) const JUMP: f64 = 1.5;
@@ -23,7 +47,10 @@ impl Run {
     }
 
     /// Place and stamp of each row.
-    pub(super) fn points<'a>(&'a self, times: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
+    pub(in crate::experiment) fn points<'a>(
+        &'a self,
+        times: &'a [f64],
+    ) -> impl Iterator<Item = (f64, f64)> + 'a {
         let stamps = self.rows.iter().filter_map(|&row| times.get(row).copied());
         self.places.iter().map(|&place| place as f64).zip(stamps)
     }

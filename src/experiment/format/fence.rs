@@ -9,21 +9,17 @@
 use std::any::Any;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 use std::sync::Once;
 
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::Budget;
 use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
 
 /// Opens a log by `open`, the reader of `format`, and fences what reads its rows, too.
 pub(super) fn open(
     format: &'static str,
-    path: &Path,
-    budget: Budget,
-    open: fn(&Path, Budget) -> Result<OpenTable, ReadError>,
+    open: impl FnOnce() -> Result<OpenTable, ReadError>,
 ) -> Result<OpenTable, ReadError> {
-    let OpenTable { head, rows } = fenced(format, path, || open(path, budget))?;
+    let OpenTable { head, rows } = fenced(format, open)?;
     Ok(OpenTable { head, rows: Box::new(Fenced { format, rows }) })
 }
 
@@ -36,7 +32,7 @@ struct Fenced {
 impl Rows for Fenced {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         let Self { format, rows } = *self;
-        fenced(format, wanted.path(), || rows.read(wanted))
+        fenced(format, || rows.read(wanted))
     }
 
     fn rows_of(&self, column: usize) -> Option<usize> {
@@ -45,22 +41,15 @@ impl Rows for Fenced {
 }
 
 /// Does `work`, of which nothing is left where it panics.
-fn fenced<T>(
-    format: &'static str,
-    path: &Path,
-    work: impl FnOnce() -> Result<T, ReadError>,
-) -> Result<T, ReadError> {
+fn fenced<T>(format: &str, work: impl FnOnce() -> Result<T, ReadError>) -> Result<T, ReadError> {
     keep_quiet();
     let before = IS_FENCED.replace(true);
     let done = catch_unwind(AssertUnwindSafe(work));
     IS_FENCED.set(before);
     done.unwrap_or_else(|panic| {
-        Err(ReadError::Format {
-            path: path.to_owned(),
-            format,
-            reason: format!("its reader broke off: {}", message(panic.as_ref())),
-            remedy: "write it again: it is damaged, or of a kind that is not read",
-        })
+        let reason = format!("its reader broke off: {}", message(panic.as_ref()));
+        let remedy = "write it again: it is damaged, or of a kind that is not read";
+        Err(ReadError::format(format, reason, remedy))
     })
 }
 
@@ -94,16 +83,15 @@ mod tests {
 
     #[test]
     fn a_reader_that_panics_refuses_its_file() {
-        let broken = fenced("Parquet", Path::new("log.parquet"), || -> Result<(), ReadError> {
-            panic!("no dictionary for {}", 3)
-        });
+        let broken =
+            fenced("Parquet", || -> Result<(), ReadError> { panic!("no dictionary for {}", 3) });
         let message = broken.unwrap_err().to_string();
         assert_eq!(
             message,
-            "log.parquet: cannot be read as Parquet: its reader broke off: no dictionary for 3; \
+            ": cannot be read as Parquet: its reader broke off: no dictionary for 3; \
              write it again: it is damaged, or of a kind that is not read"
         );
         assert!(!IS_FENCED.get());
-        assert!(fenced("Parquet", Path::new("log.parquet"), || Ok(1)).is_ok_and(|one| one == 1));
+        assert!(fenced("Parquet", || Ok(1)).is_ok_and(|one| one == 1));
     }
 }

@@ -35,9 +35,7 @@ pub(super) fn is_packed(start: &[u8]) -> bool {
 pub(super) fn start_of(path: &Path) -> Result<Vec<u8>, ReadError> {
     /// MATLAB 7.3 has a header of 512 bytes before its own mark.
     const LENGTH: u64 = 520;
-    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
     let mut start = Vec::new();
-    let file = File::open(path).map_err(io_error)?;
-    file.take(LENGTH).read_to_end(&mut start).map_err(io_error)?;
+    File::open(path)?.take(LENGTH).read_to_end(&mut start)?;
     Ok(start)
 }

@@ -4,6 +4,7 @@
 //! The types are those of Arrow, which writers note beside Parquet's own: durations, for which
 //! Parquet has no type, and times of 96 bits are among them.
 
+use std::fmt::Display;
 use std::fs::File;
 use std::path::Path;
 
@@ -20,11 +21,8 @@ use parquet::basic::Compression;
 use parquet::file::metadata::RowGroupMetaData;
 
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::Budget;
+use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
-
-/// Memory of a number: itself, and what its vector has to spare.
-const NUMBER_SIZE: usize = 2 * size_of::<f64>();
 
 /// Rows that are read at once, at most.
 const BATCH: u64 = 8192;
@@ -46,17 +44,16 @@ struct Unread {
 
 /// Opens the log and reads its schema.
 pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
-    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-    let file = File::open(path).map_err(io_error)?;
-    let size = file.metadata().map_err(io_error)?.len();
+    let file = File::open(path)?;
+    let size = file.metadata()?.len();
     // A schema of Arrow that doesn't fit the file, as of a tool that copies it along, is left aside.
     let load = |skip| {
         let options = ArrowReaderOptions::new().with_skip_arrow_metadata(skip);
         ArrowReaderMetadata::load(&file, options)
     };
-    let metadata = load(false).or_else(|_| load(true)).map_err(|error| damaged(path, &error))?;
+    let metadata = load(false).or_else(|_| load(true)).map_err(damaged)?;
     if !metadata.metadata().row_groups().iter().all(|group| lies_within(group, size)) {
-        return Err(damaged(path, &"a column lies outside of the file"));
+        return Err(damaged("a column lies outside of the file"));
     }
     let mut types = Vec::new();
     for field in metadata.schema().flattened_fields() {
@@ -67,8 +64,8 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
     let columns = metadata.parquet_schema().columns();
     let headers = columns.iter().zip(&types);
     let headers = headers.map(|(column, kind)| header(&column.path().string(), kind)).collect();
-    let head = Head { path: path.to_owned(), headers, header_row: 0, unread: Vec::new() };
-    Ok(OpenTable { head, rows: Box::new(Unread { file, metadata, types, budget }) })
+    let rows = Box::new(Unread { file, metadata, types, budget });
+    Ok(OpenTable { head: Head::without_lines(headers), rows })
 }
 
 /// Whether the columns of a group of rows lie in a file of `size` bytes, as they are said to.
@@ -81,12 +78,9 @@ fn lies_within(group: &RowGroupMetaData, size: u64) -> bool {
     })
 }
 
-fn refused(path: &Path, reason: String, remedy: &'static str) -> ReadError {
-    ReadError::Format { path: path.to_owned(), format: "Parquet", reason, remedy }
-}
-
-fn damaged(path: &Path, error: &impl ToString) -> ReadError {
-    refused(path, error.to_string(), "write it again: a file that is not complete cannot be read")
+fn damaged(error: impl Display) -> ReadError {
+    let remedy = "write it again: a file that is not complete cannot be read";
+    ReadError::format("Parquet", error, remedy)
 }
 
 /// A time or a duration is in the unit of its type, whatever its name says.
@@ -111,29 +105,27 @@ fn header(name: &str, kind: &DataType) -> Header {
 
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let path = wanted.path();
         let counts = self.groups().iter().map(|group| usize::try_from(group.num_rows()));
         let rows = counts.fold(0, |all: usize, count| all.saturating_add(count.unwrap_or(0)));
-        let taken = self.budget.take_values(rows, wanted.numeric.len() * NUMBER_SIZE);
-        taken.map_err(|error| error.refuse(path))?;
+        self.budget.take_values(rows, wanted.numeric.len() * NUMBER_SIZE)?;
         let mut columns = Vec::new();
         for index in wanted.numeric {
-            columns.push(self.numbers(*index, rows, path)?);
+            columns.push(self.numbers(*index, rows)?);
         }
         let mut labels = Labels::default();
         if let Some(index) = wanted.label {
             let mut row = 0;
-            self.each_batch(index, rows, path, &mut |batch, missing| {
-                let texts = texts(batch).map_err(|error| damaged(path, &error))?;
+            self.each_batch(index, rows, &mut |batch, missing| {
+                let texts = texts(batch).map_err(damaged)?;
                 for (text, missing) in texts.iter().zip(missing) {
                     row += 1;
                     let label = if *missing { "" } else { text };
-                    labels.push(label, row, (path, &self.budget))?;
+                    labels.push(label, row, &self.budget)?;
                 }
                 Ok(())
             })?;
         }
-        Table::counted(path, rows, columns, &labels)
+        Ok(Table::counted(rows, columns, labels))
     }
 }
 
@@ -143,49 +135,43 @@ impl Unread {
     }
 
     /// A column as numbers, or what it holds instead.
-    fn numbers(&self, index: usize, rows: usize, path: &Path) -> Result<Column, ReadError> {
+    fn numbers(&self, index: usize, rows: usize) -> Result<Column, ReadError> {
         let kind = self.types.get(index).unwrap_or(&DataType::Null);
         let lists = self.metadata.parquet_schema().column(index).max_rep_level() > 0;
         if let Some(found) = if lists { Some("lists".to_owned()) } else { not_numbers(kind) } {
             return Ok(Column::not_numbers(&found));
         }
         let are_of_day = matches!(kind, DataType::Time32(_) | DataType::Time64(_));
-        let mut column = Column { are_of_day, ..Column::default() };
-        self.each_batch(index, rows, path, &mut |batch, missing| {
-            let numbers = floats(batch).map_err(|error| damaged(path, &error))?;
-            for (number, missing) in numbers.as_primitive::<Float64Type>().iter().zip(missing) {
-                column.add(number.filter(|_| !missing).unwrap_or(f64::NAN));
-            }
+        let mut values = Vec::new();
+        self.each_batch(index, rows, &mut |batch, missing| {
+            let numbers = floats(batch).map_err(damaged)?;
+            let numbers = numbers.as_primitive::<Float64Type>().iter().zip(missing);
+            values.extend(
+                numbers.map(|(number, missing)| number.filter(|_| !missing).unwrap_or(f64::NAN)),
+            );
             Ok(())
         })?;
-        Ok(column)
+        Ok(Column { are_of_day, ..Column::of(values) })
     }
 
     /// Hands on the values of a column in order, some thousand at a time, and which of them are missing
     /// with the structure that they are in.
-    fn each_batch(
-        &self,
-        index: usize,
-        rows: usize,
-        path: &Path,
-        take: &mut Take<'_>,
-    ) -> Result<(), ReadError> {
-        let largest = self.check_pages(index, path)?;
+    fn each_batch(&self, index: usize, rows: usize, take: &mut Take<'_>) -> Result<(), ReadError> {
+        let largest = self.check_pages(index)?;
         // A long text that many rows share is repeated for each row of a batch.
         let most = self.budget.left() / COPIES / largest.max(1);
         let batch = most.clamp(1, BATCH);
-        let broken = |error: &dyn ToString| damaged(path, &error.to_string());
-        let file = self.file.try_clone().map_err(|error| broken(&error))?;
+        let file = self.file.try_clone().map_err(damaged)?;
         let only = ProjectionMask::leaves(self.metadata.parquet_schema(), [index]);
         let batches =
             ParquetRecordBatchReaderBuilder::new_with_metadata(file, self.metadata.clone())
                 .with_projection(only)
                 .with_batch_size(usize::try_from(batch).unwrap_or(1))
                 .build()
-                .map_err(|error| broken(&error))?;
+                .map_err(damaged)?;
         let mut left = rows;
         for batch in batches {
-            let batch = batch.map_err(|error| broken(&error))?;
+            let batch = batch.map_err(damaged)?;
             let mut column = batch.column(0).clone();
             // Where a structure is missing, each of its fields is.
             let mut missing = vec![false; column.len()];
@@ -195,19 +181,19 @@ impl Unread {
                 }
                 column = structure.column(0).clone();
             }
-            let more = || broken(&format!("a column has more than {rows} rows"));
+            let more = || damaged(format!("a column has more than {rows} rows"));
             left = left.checked_sub(column.len()).ok_or_else(more)?;
             take(&column, &missing)?;
         }
         if left > 0 {
-            return Err(broken(&format!("a column has fewer than {rows} rows")));
+            return Err(damaged(format!("a column has fewer than {rows} rows")));
         }
         Ok(())
     }
 
     /// The most bytes of a column in a group of rows, of which a page is unpacked whole. Refuses more
     /// than there is memory for, and codecs that are not built in.
-    fn check_pages(&self, index: usize, path: &Path) -> Result<u64, ReadError> {
+    fn check_pages(&self, index: usize) -> Result<u64, ReadError> {
         let mut largest = 0;
         for group in self.groups() {
             let column = group.column(index);
@@ -218,15 +204,14 @@ impl Unread {
             };
             if !codec.is_empty() {
                 let name = column.column_path().string();
-                return Err(refused(
-                    path,
-                    format!("column `{name}` is compressed by {codec}, which is not read"),
-                    "write it with zstd or snappy: `pandas.to_parquet(OUT, compression=\"zstd\")`",
-                ));
+                let reason = format!("column `{name}` is compressed by {codec}, which is not read");
+                let remedy =
+                    "write it with zstd or snappy: `pandas.to_parquet(OUT, compression=\"zstd\")`";
+                return Err(ReadError::format("Parquet", reason, remedy));
             }
             largest = largest.max(u64::try_from(column.uncompressed_size()).unwrap_or(0));
         }
-        self.budget.check(largest).map_err(|error| error.refuse(path))?;
+        self.budget.check(largest)?;
         Ok(largest)
     }
 }

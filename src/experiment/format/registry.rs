@@ -14,7 +14,7 @@ use super::parquet;
 use super::text;
 #[cfg(feature = "xlsx")]
 use super::xlsx;
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::Budget;
 use crate::experiment::table::OpenTable;
 
@@ -44,7 +44,7 @@ const FORMATS: [Format; 5] = [
         #[cfg(feature = "parquet")]
         open: parquet::open,
         #[cfg(not(feature = "parquet"))]
-        open: |path, _| left_out(path, "Parquet", "parquet"),
+        open: |_, _| Err(left_out("Parquet", "parquet")),
     },
     Format {
         name: "MATLAB",
@@ -54,7 +54,7 @@ const FORMATS: [Format; 5] = [
         #[cfg(feature = "mat")]
         open: mat::open,
         #[cfg(not(feature = "mat"))]
-        open: |path, _| left_out(path, "MATLAB", "mat"),
+        open: |_, _| Err(left_out("MATLAB", "mat")),
     },
     Format {
         name: "MCAP",
@@ -64,7 +64,7 @@ const FORMATS: [Format; 5] = [
         #[cfg(feature = "mcap")]
         open: mcap::open,
         #[cfg(not(feature = "mcap"))]
-        open: |path, _| left_out(path, "MCAP", "mcap"),
+        open: |_, _| Err(left_out("MCAP", "mcap")),
     },
     Format {
         name: "XLSX",
@@ -74,7 +74,7 @@ const FORMATS: [Format; 5] = [
         #[cfg(feature = "xlsx")]
         open: |path, budget| workbook(path, xlsx::open(path, &budget)),
         #[cfg(not(feature = "xlsx"))]
-        open: |path, _| workbook(path, left_out(path, "XLSX", "xlsx")),
+        open: |path, _| workbook(path, Err(left_out("XLSX", "xlsx"))),
     },
     Format {
         name: "CSV",
@@ -141,27 +141,20 @@ const FOREIGN: [Foreign; 8] = [
 fn workbook(path: &Path, opened: Result<OpenTable, ReadError>) -> Result<OpenTable, ReadError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let is_named = FORMATS.iter().any(|format| format.name == "XLSX" && format.ends(&name));
-    opened.map_err(|error| match error {
-        ReadError::Format { .. } | ReadError::FormatLeftOut { .. } if !is_named => {
+    opened.map_err(|error| match error.kind {
+        ReadErrorKind::Format if !is_named => {
             let remedy = "unpack it first, or call it .xlsx if it is a workbook";
-            unread(path, "a log", "it is a ZIP archive", remedy)
+            ReadError::format("a log", "it is a ZIP archive", remedy)
         }
-        error => error,
+        _ => error,
     })
 }
 
-/// A format that is known, and not read.
-fn unread(path: &Path, format: &'static str, reason: &str, remedy: &'static str) -> ReadError {
-    ReadError::Format { path: path.to_owned(), format, reason: reason.to_owned(), remedy }
-}
-
 #[cfg(not(all(feature = "mat", feature = "mcap", feature = "parquet", feature = "xlsx")))]
-fn left_out(
-    path: &Path,
-    format: &'static str,
-    feature: &'static str,
-) -> Result<OpenTable, ReadError> {
-    Err(ReadError::FormatLeftOut { path: path.to_owned(), format, feature })
+fn left_out(format: &str, feature: &str) -> ReadError {
+    let text =
+        format!("{format} is not in this build of tauscope; build it with `--features {feature}`");
+    ReadError::new(ReadErrorKind::Format, text)
 }
 
 /// Opens a log. Its first bytes identify the format, so that a name may be anything; but a name
@@ -169,7 +162,7 @@ fn left_out(
 pub(in crate::experiment) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     let rest = budget.rest();
     let table = open_any(path, budget)?;
-    rest.take_values(table.head.headers.len(), COLUMN_SIZE).map_err(|error| error.refuse(path))?;
+    rest.take_values(table.head.headers.len(), COLUMN_SIZE)?;
     Ok(table)
 }
 
@@ -180,19 +173,22 @@ fn open_any(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     }
     let start = start_of(path)?;
     if start.is_empty() {
-        return Err(ReadError::Empty { path: path.to_owned() });
+        return Err(ReadError::empty());
     }
     if let Some(foreign) = foreign(&start) {
-        return Err(unread(path, "a log", foreign.what, foreign.remedy));
+        return Err(ReadError::format("a log", foreign.what, foreign.remedy));
     }
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let named = FORMATS.iter().find(|format| format.ends(&name));
     match FORMATS.iter().find(|format| (format.starts)(&start)) {
         Some(found) => match named.filter(|named| !(named.starts)(&start)) {
-            Some(named) if found.is_text() => Err(named.refuse(path)),
+            Some(named) if found.is_text() => {
+                let reason = "its first bytes are not those of this format";
+                Err(ReadError::format(named.name, reason, named.remedy))
+            }
             // Text is read by code that does not panic: if it did, that would be a fault to see.
             _ if found.is_text() => (found.open)(path, budget),
-            _ => fence::open(found.name, path, budget, found.open),
+            _ => fence::open(found.name, || (found.open)(path, budget)),
         },
         None => csv::open(path, budget),
     }
@@ -222,16 +218,6 @@ impl Format {
 
     fn ends(&self, name: &str) -> bool {
         self.endings.iter().any(|ending| name.ends_with(ending))
-    }
-
-    /// The file is named like this format and does not start like it.
-    fn refuse(&self, path: &Path) -> ReadError {
-        ReadError::Format {
-            path: path.to_owned(),
-            format: self.name,
-            reason: "its first bytes are not those of this format".to_owned(),
-            remedy: self.remedy,
-        }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::fs::File;
 use std::io::{self, Cursor, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
@@ -12,7 +12,7 @@ use flate2::read::MultiGzDecoder;
 
 use super::first_bytes::is_gzip;
 use crate::experiment::error::ReadError;
-use crate::experiment::source::{Hashing, Source, source_of};
+use crate::experiment::source::{Hashing, Source};
 
 /// Bytes that are looked at to find out how a text is written.
 const SNIFFED_BYTES: usize = 64 * 1024;
@@ -22,8 +22,10 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// The bytes of a text, without a byte order mark, and where they come from.
 pub(super) struct Bytes {
     text: Box<dyn Read>,
-    /// The file, whose bytes are hashed as they are read; none of a text that was made of a workbook.
+    /// The file, whose bytes are hashed as they are read, as a pipe gives them once; none of a text that was
+    /// made of a workbook.
     file: Option<Rc<RefCell<Hashing<File>>>>,
+    path: PathBuf,
 }
 
 /// A file from which the layers above it read, and whose hash is asked for at the end.
@@ -38,39 +40,37 @@ impl Read for Shared {
 impl Bytes {
     /// Opens the file, and its first bytes as text with a line feed at the end of each line.
     pub(super) fn open(path: &Path) -> Result<(Self, Vec<u8>), ReadError> {
-        let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-        let file = Rc::new(RefCell::new(Hashing::new(File::open(path).map_err(io_error)?)));
-        let (mut start, mut text) = looked_at(Shared(Rc::clone(&file))).map_err(io_error)?;
+        let file = Rc::new(RefCell::new(Hashing::new(File::open(path)?)));
+        let (mut start, mut text) = looked_at(Shared(Rc::clone(&file)))?;
         if is_gzip(&start) {
             let unpacked = looked_at(MultiGzDecoder::new(text));
-            (start, text) = unpacked.map_err(|error| damaged(path, error.to_string()))?;
+            (start, text) = unpacked.map_err(|error| damaged(&error.to_string()))?;
             if encoding_of(&start).is_none() && start.contains(&0) {
-                return Err(damaged(path, "what is packed is no text".to_owned()));
+                return Err(damaged("what is packed is no text"));
             }
         }
         if let Some(encoding) = encoding_of(&start) {
             // Decoded piece by piece: bytes that never end are never held.
             let mut builder = DecodeReaderBytesBuilder::new();
             let decoded = builder.encoding(Some(encoding)).bom_override(true).build(text);
-            (start, text) = looked_at(decoded).map_err(io_error)?;
+            (start, text) = looked_at(decoded)?;
         }
-        Ok((Self { text, file: Some(file) }, with_line_feeds(start)))
+        Ok((Self { text, file: Some(file), path: path.to_owned() }, with_line_feeds(start)))
     }
 
     /// A text that was made of a file of another kind.
     #[cfg(feature = "xlsx")]
     pub(super) fn made(text: Vec<u8>) -> (Self, Vec<u8>) {
         let start = text.get(..SNIFFED_BYTES).unwrap_or(&text).to_vec();
-        (Self { text: Box::new(Cursor::new(text)), file: None }, start)
+        let bytes = Self { text: Box::new(Cursor::new(text)), file: None, path: PathBuf::new() };
+        (bytes, start)
     }
 
-    /// The file at `path` that was read, all of it.
-    pub(super) fn finish(self, path: &Path) -> Result<Source, ReadError> {
+    /// The file that was read, all of it.
+    pub(super) fn finish(self) -> Result<Option<Source>, ReadError> {
         drop(self.text);
-        match self.file.and_then(Rc::into_inner) {
-            Some(file) => file.into_inner().finish(path),
-            None => source_of(path),
-        }
+        let file = self.file.and_then(Rc::into_inner);
+        file.map(|file| file.into_inner().finish(&self.path)).transpose()
     }
 }
 
@@ -111,13 +111,9 @@ pub(super) fn line_end_of(start: &[u8]) -> &'static [u8] {
     }
 }
 
-fn damaged(path: &Path, reason: String) -> ReadError {
-    ReadError::Format {
-        path: path.to_owned(),
-        format: "CSV packed by gzip",
-        reason,
-        remedy: "pack it again, or unpack it if it is of another format",
-    }
+fn damaged(reason: &str) -> ReadError {
+    let remedy = "pack it again, or unpack it if it is of another format";
+    ReadError::format("CSV packed by gzip", reason, remedy)
 }
 
 /// A text as tables are read, whatever program wrote it; none of bytes that are no text.

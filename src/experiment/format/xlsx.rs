@@ -1,5 +1,6 @@
 //! Sheets of a spreadsheet program: the one that is most like a log, as text.
 
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{BufReader, Read as _};
 use std::path::Path;
@@ -33,25 +34,24 @@ type Workbook = Xlsx<BufReader<File>>;
 pub(super) fn open(path: &Path, budget: &Budget) -> Result<OpenTable, ReadError> {
     let mut parts = Parts::unpacked(path, budget)?;
     // They stay while cells are read that share them.
-    budget.take(parts.texts).map_err(|error| error.refuse(path))?;
-    let mut workbook: Workbook =
-        open_workbook(path).map_err(|error: XlsxError| damaged(path, &error))?;
+    budget.take(parts.texts)?;
+    let mut workbook: Workbook = open_workbook(path).map_err(|error: XlsxError| damaged(error))?;
     let names = sheets(&workbook);
     let count = names.len();
     if count > MOST_SHEETS {
-        return Err(damaged(path, &format!("{count} sheets; {MOST_SHEETS} are the most")));
+        return Err(damaged(format!("{count} sheets; {MOST_SHEETS} are the most")));
     }
     // Each sheet that shares the part of another would be unpacked again.
     if count > parts.sheets {
-        return Err(damaged(path, &SHARED));
+        return Err(damaged(SHARED));
     }
     let (mut numbers, mut rows) = (None, None);
     for name in names {
-        let range = parts.cells(&mut workbook, &name, path, budget)?;
+        let range = parts.cells(&mut workbook, &name, budget)?;
         if range.height() < 2 {
             continue;
         }
-        let found = of_sheet(&range, name, count, path, budget);
+        let found = of_sheet(&range, name, count, budget);
         if !range.rows().any(|row| row.iter().filter(|cell| is_value(cell)).count() > 1) {
             rows = rows.or(Some(found));
         } else if found.as_ref().is_ok_and(|table| find_time_column(&table.head).is_some()) {
@@ -60,15 +60,14 @@ pub(super) fn open(path: &Path, budget: &Budget) -> Result<OpenTable, ReadError>
             numbers = numbers.or(Some(found));
         }
     }
-    let nothing = || Err(damaged(path, &"no sheet has a header and a row"));
+    let nothing = || Err(damaged("no sheet has a header and a row"));
     numbers.or(rows).unwrap_or_else(nothing)
 }
 
 const SHARED: &str = "two of its sheets are one part of the file";
 
-fn damaged(path: &Path, reason: &impl ToString) -> ReadError {
-    let (reason, remedy) = (reason.to_string(), "save it again as .xlsx, or as CSV");
-    ReadError::Format { path: path.to_owned(), format: "XLSX", reason, remedy }
+fn damaged(reason: impl Display) -> ReadError {
+    ReadError::format("XLSX", reason, "save it again as .xlsx, or as CSV")
 }
 
 /// The names of the sheets with cells; what is hidden is read where nothing else is there.
@@ -93,13 +92,12 @@ fn of_sheet(
     range: &Range<Data>,
     name: String,
     count: usize,
-    path: &Path,
     budget: &Budget,
 ) -> Result<OpenTable, ReadError> {
-    let text = text_of(range).map_err(|error| damaged(path, &error))?;
-    budget.take(text.len() as u64).map_err(|error| error.refuse(path))?;
+    let text = text_of(range).map_err(damaged)?;
+    budget.take(text.len() as u64)?;
     let (bytes, start) = Bytes::made(text);
-    let OpenTable { head, rows } = table(path, bytes, &start, Some(b','), budget.rest())?;
+    let OpenTable { head, rows } = table(bytes, &start, Some(b','), budget.rest())?;
     Ok(OpenTable { head, rows: Box::new(OfSheet { name, count, rows }) })
 }
 
@@ -123,13 +121,12 @@ impl Rows for OfSheet {
         for column in &mut table.columns {
             let Some((row, BadCell::Text(text))) = &column.error else { continue };
             if *text == unknown {
-                let (row, found) = (*row, unknown_value(&name, *row));
-                column.error = Some((row, BadCell::Kind(found)));
+                // It is of the whole column.
+                column.error = Some((0, BadCell::Kind(unknown_value(&name, *row))));
             }
         }
         if count > 1 {
-            let path = wanted.path().display();
-            table.notes.push(format!("{path}: the sheet `{name}` of {count} is read"));
+            table.notes.push(format!("the sheet `{name}` of {count} is read"));
         }
         Ok(table)
     }
@@ -160,7 +157,6 @@ impl Parts {
     /// Unpacks each part once and asks for the memory that the crate calamine 0.38 takes for it. What a
     /// part says of its size is not trusted. Refuses what cannot be unpacked, or whose checksum is another.
     fn unpacked(path: &Path, budget: &Budget) -> Result<Self, ReadError> {
-        let check = |bytes: u64| budget.check(bytes).map_err(|error| error.refuse(path));
         let mut parts = Self { sheets: 0, bytes: 0, texts: 0 };
         let mut memory = 0;
         let open = || ZipArchive::new(File::open(path).ok()?).ok();
@@ -176,13 +172,13 @@ impl Parts {
             let (mut piece, mut kept) = (vec![0; 1 << 16], Vec::new());
             loop {
                 let read = part.read(&mut piece);
-                let bytes = read.map_err(|e| damaged(path, &format!("its part `{name}`: {e}")))?;
+                let bytes = read.map_err(|e| damaged(format!("its part `{name}`: {e}")))?;
                 if bytes == 0 {
                     break;
                 }
                 parts.bytes += bytes as u64;
                 memory += bytes as u64 * size;
-                check(memory)?;
+                budget.check(memory)?;
                 if is_styles || is_texts {
                     kept.extend_from_slice(piece.get(..bytes).unwrap_or_default());
                 }
@@ -191,10 +187,10 @@ impl Parts {
             if is_texts {
                 let count = stated_texts(&kept).max(count_of(&kept, b"<si"));
                 parts.texts = count.saturating_mul(TEXT_SIZE).saturating_add(kept.len() as u64);
-                check(parts.texts)?;
+                budget.check(parts.texts)?;
             }
             if is_styles {
-                check(size_of_styles(&kept))?;
+                budget.check(size_of_styles(&kept))?;
             }
         }
         Ok(parts)
@@ -206,17 +202,13 @@ impl Parts {
         &mut self,
         workbook: &mut Workbook,
         name: &str,
-        path: &Path,
         budget: &Budget,
     ) -> Result<Range<Data>, ReadError> {
-        let check = |bytes: u64| budget.check(bytes).map_err(|error| error.refuse(path));
-        let broken = |error: XlsxError| damaged(path, &error);
-        let mut reader = workbook.worksheet_cells_reader(name).map_err(broken)?;
+        let mut reader = workbook.worksheet_cells_reader(name).map_err(damaged)?;
         let (mut found, mut texts) = (Vec::new(), 0);
         let (mut first, mut last) = ((u32::MAX, u32::MAX), (0, 0));
-        while let Some(cell) = reader.next_cell_with_formula_metadata().map_err(broken)? {
-            self.bytes =
-                self.bytes.checked_sub(SMALLEST_CELL).ok_or_else(|| damaged(path, &SHARED))?;
+        while let Some(cell) = reader.next_cell_with_formula_metadata().map_err(damaged)? {
+            self.bytes = self.bytes.checked_sub(SMALLEST_CELL).ok_or_else(|| damaged(SHARED))?;
             let value = match Data::from(cell.value) {
                 Data::Empty if cell.formula.is_some() => Data::Error(UNKNOWN),
                 Data::Empty => continue,
@@ -230,11 +222,11 @@ impl Parts {
             first = (row.min(first.0), column.min(first.1));
             last = (row.max(last.0), column.max(last.1));
             found.push(Cell::new(cell.pos, value));
-            check(found.len() as u64 * CELL_SIZE + texts)?;
+            budget.check(found.len() as u64 * CELL_SIZE + texts)?;
         }
         let length = |first: u32, last: u32| u64::from(last.saturating_sub(first)) + 1;
         let all = length(first.0, last.0).saturating_mul(length(first.1, last.1));
-        check(all.saturating_mul(CELL_SIZE).saturating_add(texts))?;
+        budget.check(all.saturating_mul(CELL_SIZE).saturating_add(texts))?;
         Ok(Range::from_sparse(found))
     }
 }

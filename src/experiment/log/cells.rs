@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::grid::Repair;
-use crate::experiment::layout::Layout;
+use crate::experiment::layout::{JointLayout, Layout};
 use crate::experiment::memory::Budget;
-use crate::experiment::table::{BadCell, Column, Head, Table, TrialRows};
+use crate::experiment::table::{Column, Head, Table, TrialRows};
 use crate::units::SamplePeriod;
 
 /// A table that was read, with what is needed to mend it and to speak of its cells.
@@ -35,23 +35,6 @@ pub(in crate::experiment) enum Times {
     Rows(SamplePeriod),
 }
 
-/// The output of a joint among the columns.
-pub(in crate::experiment) struct Output {
-    pub(in crate::experiment) column: usize,
-    /// The column of the joint's input.
-    pub(in crate::experiment) input: usize,
-    pub(in crate::experiment) unit: Option<String>,
-    joint: String,
-    is_wanted: bool,
-}
-
-impl Output {
-    /// `text` of its joint, where that is among the results.
-    pub(in crate::experiment) fn note(&self, text: &str) -> Option<String> {
-        self.is_wanted.then(|| format!("joint `{}`: {text}", self.joint))
-    }
-}
-
 impl<'a> Log<'a> {
     /// The log with the columns `numeric` in `table`, as it stands; a file without labels is one trial, named
     /// `1` or by its `stem`.
@@ -68,19 +51,18 @@ impl<'a> Log<'a> {
         Self { head, layout, numeric, table, budget, options, times, trials, unwrapped, notes }
     }
 
-    /// The outputs of all joints, each column once.
-    pub(in crate::experiment) fn outputs(&self) -> impl Iterator<Item = Output> {
+    /// The joints, of those with the same output the first.
+    pub(in crate::experiment) fn with_own_outputs(&self) -> Vec<&'a JointLayout> {
         let mut seen = HashSet::new();
-        let wanted = self.layout.joints.iter().map(|joint| (joint, true));
-        let others = self.layout.others.iter().map(|joint| (joint, false));
-        let outputs = wanted.chain(others).map(|(joint, is_wanted)| Output {
-            column: joint.output.column,
-            input: joint.input.column,
-            unit: joint.output.signal.unit.clone(),
-            joint: joint.name.clone(),
-            is_wanted,
-        });
-        outputs.filter(move |output| seen.insert(output.column))
+        let joints = self.layout.joints.iter().chain(&self.layout.others);
+        joints.filter(|joint| seen.insert(joint.output.column)).collect()
+    }
+
+    /// Notes `text` of a joint, where that is among the results.
+    pub(in crate::experiment) fn note_on(&mut self, joint: &JointLayout, text: &str) {
+        if self.layout.joints.contains(joint) {
+            self.notes.push(joint.note(text));
+        }
     }
 
     /// The rows of each trial.
@@ -103,8 +85,7 @@ impl<'a> Log<'a> {
 
     /// Takes the memory of `count` values of `size` bytes each.
     pub(super) fn take(&self, count: usize, size: usize) -> Result<(), ReadError> {
-        let taken = self.budget.take_values(count, size);
-        taken.map_err(|error| error.refuse(&self.head.path))
+        self.budget.take_values(count, size)
     }
 
     pub(in crate::experiment) fn column(&self, index: usize) -> Option<&Column> {
@@ -131,23 +112,11 @@ impl<'a> Log<'a> {
         self.table.rows.number(index)
     }
 
-    /// `note` behind the name of the file.
-    pub(in crate::experiment) fn named(&self, note: &str) -> String {
-        format!("{}: {note}", self.head.path.display())
-    }
-
     /// The first bad cell of a column.
     pub(super) fn bad_cell(&self, column: usize) -> Option<ReadError> {
-        let (row, bad) = self.column(column)?.error.clone()?;
-        let (path, column) = (self.head.path.clone(), self.header(column));
-        Some(match bad {
-            BadCell::Kind(found) => ReadError::NotNumbers { path, column, found },
-            BadCell::Text(text) => ReadError::NotANumber { path, row, column, text },
-            BadCell::Thousands(text) => ReadError::Thousands { path, row, column, text },
-            BadCell::DecimalMark(text) => ReadError::DecimalMarks { path, row, column, text },
-            BadCell::Infinite => ReadError::Infinite { path, row, column },
-            BadCell::TooLarge(value) => ReadError::BeyondPrecision { path, row, column, value },
-        })
+        let (row, bad) = self.column(column)?.error.as_ref()?;
+        let error = ReadError::new(ReadErrorKind::Cell, bad.to_string());
+        Some(error.in_row(*row).in_column(self.header(column)))
     }
 }
 

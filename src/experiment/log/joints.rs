@@ -1,12 +1,12 @@
 //! The joints of a log: cells checked, trials cut and put on a uniform grid.
 
 use super::cells::Log;
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::gaps::{gap_with_all_steps_s, unlogged};
 use crate::experiment::grid::{Grid, Piece, Repair, Signals};
 use crate::experiment::joint::{Joint, Signal};
 use crate::experiment::layout::JointLayout;
-use crate::experiment::table::{Coarse, TrialRows};
+use crate::experiment::table::TrialRows;
 use crate::experiment::trial::Trial;
 use crate::numerics::to_digits_by;
 
@@ -44,7 +44,7 @@ impl Log<'_> {
         notes.extend(unread);
         let grids = own.as_deref().unwrap_or(grids);
         let (joint, split) = self.on_grids(layout, grids, longest_s)?;
-        notes.extend(shown(&joint.name, split));
+        notes.extend(shown(split));
         Ok((joint, notes))
     }
 
@@ -64,7 +64,7 @@ impl Log<'_> {
             self.take(grid.samples(), size)?;
             let pieces = grid.pieces(self.signals(layout, rows));
             if pieces.len() > 1 {
-                split.push(self.split_note(&layout.name, rows, &pieces, grid));
+                split.push(self.split_note(rows, &pieces, grid));
             }
             let labels = part_labels(&rows.label, pieces.len(), &self.trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
@@ -74,8 +74,8 @@ impl Log<'_> {
             }
         }
         if trials.is_empty() {
-            let (path, joint) = (self.head.path.clone(), layout.name.clone());
-            return Err(ReadError::NoSamples { path, joint });
+            let text = format!("joint `{}` has no usable sample", layout.name);
+            return Err(ReadError::new(ReadErrorKind::Empty, text));
         }
         let joint = Joint {
             name: layout.name.clone(),
@@ -113,10 +113,9 @@ impl Log<'_> {
         });
         joint.trials = marked.collect();
         notes.push(format!(
-            "joint `{}`: its input changes only in gaps (of up to {gap_s} s): they are filled, the \
+            "its input changes only in gaps (of up to {gap_s} s): they are filled, the \
              output interpolated and the input held, and delays count from their ends; a reaction within a \
-             gap is not seen, and what is accepted behind it then is none",
-            joint.name
+             gap is not seen, and what is accepted behind it then is none"
         ));
         Some((joint, notes))
     }
@@ -131,15 +130,16 @@ impl Log<'_> {
         let Signals { input, output, covariates } = piece.signals;
         let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
             .and_then(|trial| trial.with_covariates(covariates));
-        trial.map_err(|source| ReadError::Trial {
-            path: self.head.path.clone(),
-            joint: layout.name.clone(),
-            source,
+        trial.map_err(|source| {
+            ReadError::new(
+                ReadErrorKind::Trial(Box::new(source)),
+                format!("joint `{}`", layout.name),
+            )
         })
     }
 
     /// A line on a trial that was split in `pieces` at gaps, the longest of which it names.
-    fn split_note(&self, name: &str, trial: &TrialRows, pieces: &[Piece], grid: &Grid) -> String {
+    fn split_note(&self, trial: &TrialRows, pieces: &[Piece], grid: &Grid) -> String {
         let period = grid.period().seconds();
         let gap = |pair: &[Piece]| {
             let last_s = pair[0].start_s + (pair[0].signals.output.len() - 1) as f64 * period;
@@ -155,16 +155,16 @@ impl Log<'_> {
             }
             None => String::new(),
         };
-        format!("joint `{name}`: trial `{label}` is split in {count} at long gaps{gap}")
+        format!("trial `{label}` is split in {count} at long gaps{gap}")
     }
 
     /// The signals whose offset is so large that double precision does not hold their motion.
     fn coarse_notes(&self, layout: &JointLayout) -> Vec<String> {
         let note = |column: usize| {
-            let Coarse { largest, apart, range } = self.column(column)?.coarse()?;
-            let (name, column) = (&layout.name, self.header(column));
+            let [largest, apart, range] = self.column(column)?.coarse()?;
+            let column = self.header(column);
             Some(format!(
-                "joint `{name}`: numbers near {largest:.1e} as in `{column}` are {apart} apart, and \
+                "numbers near {largest:.1e} as in `{column}` are {apart} apart, and \
                  these differ by {range} at most: how the signal moves is beyond double precision; \
                  log it without the offset"
             ))
@@ -179,8 +179,8 @@ impl Log<'_> {
         let mut notes = Vec::new();
         readable.covariates.retain(|covariate| match self.bad_cell(covariate.column) {
             Some(error) => {
-                let (joint, signal) = (&layout.name, &covariate.signal.name);
-                notes.push(format!("joint `{joint}`: the signal `{signal}` is left out: {error}"));
+                let signal = &covariate.signal.name;
+                notes.push(format!("the signal `{signal}` is left out: {error}"));
                 false
             }
             None => true,
@@ -196,12 +196,18 @@ impl Log<'_> {
         }
         for index in needed {
             let Some(column) = self.column(index) else { continue };
-            let (path, name) = (self.head.path.clone(), self.header(index));
             if column.values.iter().all(|value| value.is_nan()) {
-                return Err(ReadError::NeverMeasured { path, column: name });
+                let text = "there is no number in it; choose another column";
+                return Err(
+                    ReadError::new(ReadErrorKind::Empty, text).in_column(self.header(index))
+                );
             }
             if let Some(largest) = column.too_small() {
-                return Err(ReadError::BelowPrecision { path, column: name, largest });
+                let text = format!(
+                    "its largest number, {largest:e}, is below what double precision can square; write \
+                     it in a smaller unit"
+                );
+                return Err(ReadError::new(ReadErrorKind::Cell, text).in_column(self.header(index)));
             }
         }
         Ok(())
@@ -227,11 +233,11 @@ impl Log<'_> {
 }
 
 /// The first few of notes of one kind.
-fn shown(joint: &str, mut split: Vec<String>) -> Vec<String> {
+fn shown(mut split: Vec<String>) -> Vec<String> {
     const SHOWN: usize = 3;
     if let Some(more) = split.len().checked_sub(SHOWN).filter(|more| *more > 0) {
         split.truncate(SHOWN);
-        split.push(format!("joint `{joint}`: {more} more trials are split at long gaps"));
+        split.push(format!("{more} more trials are split at long gaps"));
     }
     split
 }

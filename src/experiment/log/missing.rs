@@ -6,7 +6,7 @@
 //! one, or the sensor has a clock of its own. A grid fills them so. A further signal stays missing.
 
 use super::cells::{Log, Times};
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::grid::Repair;
 use crate::experiment::layout::JointLayout;
 use crate::numerics::median;
@@ -16,7 +16,7 @@ impl Log<'_> {
     /// and what is said of missing cells. Of other outputs the gaps are filled that are filled in a clock.
     ///
     /// # Errors
-    /// [`ReadError::Missing`] where nothing may be filled.
+    /// [`ReadErrorKind::Missing`] where nothing may be filled.
     pub(super) fn missing(
         &self,
         layout: &JointLayout,
@@ -39,11 +39,10 @@ impl Log<'_> {
         };
         let needed = [layout.input.column, layout.output.column];
         match needed.into_iter().filter_map(first_missing).min() {
-            Some((index, column)) => Err(ReadError::Missing {
-                path: self.head.path.clone(),
-                row: self.row(index),
-                column: self.header(column),
-            }),
+            Some((index, column)) => {
+                let error = ReadError::new(ReadErrorKind::Missing, "the cell is empty or NaN");
+                Err(error.in_row(self.row(index)).in_column(self.header(column)))
+            }
             None => Ok(()),
         }
     }
@@ -68,11 +67,10 @@ impl Log<'_> {
         let all = output.len();
         let usual_s = median(&apart).filter(|_| (all - count) as f64 > SPARSE * all as f64)?;
         let note = format!(
-            "joint `{}`: {count} of {all} rows have an output, which is interpolated between them, so that \
+            "{count} of {all} rows have an output, which is interpolated between them, so that \
              steps of the input keep their times; what follows from its noise, as intervals, takes all \
              samples for measured, and an onset model the lines between them for a lag; models are held \
-             against those that are measured",
-            layout.name,
+             against those that are measured"
         );
         Some((LONGEST * usual_s, note))
     }
@@ -91,10 +89,10 @@ impl Log<'_> {
             let values = &self.column(column)?.values;
             let missing = values.iter().filter(|value| value.is_nan()).count();
             let first = values.iter().position(|value| value.is_nan())?;
-            let (name, column, row) = (&layout.name, self.header(column), self.row(first));
+            let (column, row) = (self.header(column), self.row(first));
             let cells = if missing == 1 { "cell is" } else { "cells are" };
             Some(format!(
-                "joint `{name}`: {missing} {cells} empty or NaN in `{column}` (first at row \
+                "{missing} {cells} empty or NaN in `{column}` (first at row \
                  {row}): {what}"
             ))
         };

@@ -2,14 +2,14 @@
 
 use super::cells::{Log, Times};
 use super::unit_change::unit_change;
-use crate::experiment::clock::Fault;
-use crate::experiment::error::ReadError;
+use crate::experiment::clock::{Fault, is_period};
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::format::date_of_seconds;
 use crate::experiment::grid::{Grid, Repair};
 use crate::experiment::grids::grids;
+use crate::experiment::names::shown;
 use crate::experiment::origin::{Counting, origin_s};
-use crate::experiment::period::is_period;
-use crate::experiment::table::{Column, TrialRows};
+use crate::experiment::table::{BadCell, Column, TrialRows};
 use crate::experiment::time_column::TimeSource;
 use crate::numerics::median;
 
@@ -40,7 +40,7 @@ impl Log<'_> {
         let (grids, notes) = self.grids(self.options)?;
         self.check_periods(&grids)?;
         let notes = notes.into_iter().chain(self.origin_note()).chain(self.rate_note(&grids));
-        let notes: Vec<String> = notes.map(|note| self.named(&note)).collect();
+        let notes: Vec<String> = notes.collect();
         self.notes.extend(notes);
         Ok(grids)
     }
@@ -124,13 +124,21 @@ impl Log<'_> {
         };
         for (trial, grid) in self.trials.iter().zip(grids) {
             let period = grid.period().seconds();
-            let (path, column) = (self.head.path.clone(), self.header(column));
+            let column = self.header(column);
             if period > most {
-                return Err(ReadError::WrongTimeUnit { path, column, period });
+                let text = format!(
+                    "its times would be {period} s apart, so that their unit must be another; name it in \
+                     the header, as in `{column} [ms]`, `[us]` or `[ns]`"
+                );
+                return Err(ReadError::new(ReadErrorKind::Times, text).in_column(column));
             }
             if !is_period(period) {
-                let row = self.row(trial.start);
-                return Err(ReadError::NoPeriod { path, row, column, period });
+                let text = format!(
+                    "from here on samples come {period:e} s apart, and a sample period is one from 1e-9 \
+                     to 1e8 s; write the times in seconds, or in the unit that the header names"
+                );
+                let error = ReadError::new(ReadErrorKind::Times, text).in_column(column);
+                return Err(error.in_row(self.row(trial.start)));
             }
         }
         Ok(())
@@ -175,46 +183,50 @@ impl Log<'_> {
         };
         let differs = |column: &&usize| !self.column(**column).is_some_and(is_same);
         match self.layout.time_again.iter().find(differs) {
-            Some(column) => Err(ReadError::DuplicateColumn {
-                path: self.head.path.clone(),
-                row: self.head.header_row,
-                column: self.header(*column),
-            }),
+            Some(column) => Err(self.head.two_columns(&self.header(*column))),
             None => Ok(()),
         }
     }
 
     /// Refuses times whose unit changes: what is behind the change would be another experiment.
     fn check_one_unit(&self, column: usize, values: &[f64]) -> Result<(), ReadError> {
-        match unit_change(values) {
-            Some(index) => Err(ReadError::TimeUnitChanges {
-                path: self.head.path.clone(),
-                row: self.row(index),
-                column: self.header(column),
-                before: values.get(index - 1).copied().unwrap_or(f64::NAN),
-                time: values.get(index).copied().unwrap_or(f64::NAN),
-            }),
-            None => Ok(()),
-        }
+        let Some(index) = unit_change(values) else { return Ok(()) };
+        let [before, time] =
+            [index - 1, index].map(|at| values.get(at).copied().unwrap_or(f64::NAN));
+        let text = format!(
+            "from here on the times are in another unit: `{time}` behind `{before}`, and the steps \
+             between them are as many times as large; write all times in one unit"
+        );
+        Err(self.clock_error(text, index).in_column(self.header(column)))
     }
 
     /// Every row needs a time.
     fn check_times(&self, column: usize, times: &[f64]) -> Result<(), ReadError> {
-        match self.bad_cell(column) {
-            Some(ReadError::NotANumber { path, row, column, text }) => {
-                return Err(ReadError::NotATime { path, row, column, text });
-            }
-            Some(error) => return Err(error),
-            None => {}
+        let bad = self.column(column).and_then(|column| column.error.as_ref());
+        if let Some((row, BadCell::Text(text))) = bad {
+            let text = format!(
+                "`{}` is neither a number nor a date and time of ISO 8601, as in \
+                 2026-03-01T09:59:50.125; write the times so, or leave them out",
+                shown(text)
+            );
+            let error = ReadError::new(ReadErrorKind::NotATime, text);
+            return Err(error.in_row(*row).in_column(self.header(column)));
+        }
+        if let Some(error) = self.bad_cell(column) {
+            return Err(error);
         }
         match times.iter().position(|time| time.is_nan()) {
-            Some(index) => Err(ReadError::NoTimeInRow {
-                path: self.head.path.clone(),
-                row: self.row(index),
-                column: self.header(column),
-            }),
+            Some(index) => {
+                let text = "the time is missing; remove the row or write it";
+                Err(self.clock_error(text, index).in_column(self.header(column)))
+            }
             None => Ok(()),
         }
+    }
+
+    /// What is wrong with the clock at a row.
+    fn clock_error(&self, text: impl Into<String>, index: usize) -> ReadError {
+        ReadError::new(ReadErrorKind::Clock, text).in_row(self.row(index))
     }
 
     /// `fault` in the clock of a trial, whose rows have these `times` and this `number`.
@@ -225,30 +237,52 @@ impl Log<'_> {
         times: &[f64],
         number: &dyn Fn(usize) -> u64,
     ) -> ReadError {
-        let path = self.head.path.clone();
         let at = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
-        let trial = self.trials.get(trial).map_or("", |trial| &trial.label).to_owned();
-        match fault {
-            Fault::NotIncreasing { row } => ReadError::TimeNotIncreasing {
-                path,
-                row: number(row),
-                previous: row.checked_sub(1).map_or(f64::NAN, at),
-                time: at(row),
-            },
+        let trial = self.trials.get(trial).map_or("", |trial| &trial.label);
+        let (kind, row, text) = match fault {
+            Fault::NotIncreasing { row } => {
+                let (before, time) = (row.checked_sub(1).map_or(f64::NAN, at), at(row));
+                let text = format!(
+                    "time goes from {before} s to {time} s, but it must increase; remove the row if it \
+                     is there twice, or mark a new trial in a `trial` column"
+                );
+                (ReadErrorKind::Clock, number(row), text)
+            }
             Fault::NotUniform { row, step, period } => {
-                ReadError::NotUniform { path, row: number(row), step, period }
+                let text = format!(
+                    "this sample comes {step} s after the one before, but the period is {period} s (median)"
+                );
+                (ReadErrorKind::NotUniform { step, period }, number(row), text)
             }
             Fault::FewStamps { stamps, grain_s } => {
-                ReadError::FewTimes { path, row: number(0), rows: times.len(), stamps, grain_s }
+                let text = format!(
+                    "the {} rows of this trial have only {stamps} different times, {grain_s} s apart, \
+                     from which no sample period follows; write times as 64-bit numbers or with more digits",
+                    times.len()
+                );
+                (ReadErrorKind::Times, number(0), text)
             }
             Fault::Coarse { row, grain_s, period } => {
-                ReadError::CoarseTimes { path, row: number(row), grain_s, period }
+                let text = format!(
+                    "the times are rounded to {grain_s} s, in which some {:.0} samples come, but not \
+                     evenly: when each was measured is not known; write times with more digits",
+                    grain_s / period
+                );
+                (ReadErrorKind::Times, number(row), text)
             }
             Fault::TooMany { samples, period } => {
-                ReadError::TooManySamples { path, trial, samples, period }
+                let text = format!(
+                    "trial `{trial}` would have {samples:e} samples on a grid of {period} s; check the times"
+                );
+                (ReadErrorKind::TooManySamples, 0, text)
             }
-            Fault::SingleRow => ReadError::SingleRow { path, row: number(0), trial },
-        }
+            Fault::SingleRow => {
+                let text =
+                    format!("trial `{trial}` has one row only, but needs two for a sample period");
+                (ReadErrorKind::Clock, number(0), text)
+            }
+        };
+        ReadError::new(kind, text).in_row(row)
     }
 
     /// Refuses an output that has several series at each time, as in a table with a row for each joint: all
@@ -259,7 +293,7 @@ impl Log<'_> {
         /// of stamps that are rounded all of them follow one another.
         const ALIKE: f64 = 0.9;
         const APART: f64 = 10.0;
-        let (path, column) = (self.head.path.clone(), self.header(output));
+        let column = self.header(output);
         let times = self.layout.time.column().and_then(|column| self.column(column));
         let Some((times, output)) = times.zip(self.column(output)) else { return Ok(()) };
         let repeats = repeats(&times.values, &self.trials);
@@ -279,7 +313,11 @@ impl Log<'_> {
             median(&repeats.iter().filter_map(distance).collect::<Vec<_>>()).unwrap_or_default()
         };
         if usual(1) > APART * usual(size) {
-            return Err(ReadError::SeveralSeries { path, column, size });
+            let text = format!(
+                "each time stands in {size} rows, whose values in `{column}` lie far apart, as in a table \
+                 with a row for each joint; give each joint an input and an output column of its own"
+            );
+            return Err(ReadError::new(ReadErrorKind::Shape, text).about(column));
         }
         Ok(())
     }

@@ -1,7 +1,6 @@
 //! Rows that come in bursts, as packets over a network bring them: their stamps say when a packet came,
 //! and not when each row was measured.
 
-use super::repair::Repair;
 use crate::experiment::log::{Log, Times};
 use crate::numerics::median;
 
@@ -28,34 +27,23 @@ const SELDOM: usize = 100;
 /// Usual pauses beyond which one parts the record, and no packet came.
 const BREAK: f64 = 5.0;
 
-/// The rows of a trial that come in bursts, and their times once these are spread.
-pub(super) struct Bursts {
-    trial: usize,
-    times: Vec<f64>,
-}
-
-impl Repair for Bursts {
-    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
-        let trials = 0..log.trials.len();
-        let of = move |trial: usize| {
-            let times = log.times_of(trial)?;
-            let times = if is_even(times) { None } else { spread(times) };
-            Some(Self { trial, times: times? })
-        };
-        trials.filter_map(of)
+/// Spreads the rows of each trial that come in bursts.
+pub(super) fn spread_out(log: &mut Log<'_>) {
+    let spans = log.spans();
+    let Times::Stamps(times) = &mut log.times else { return };
+    let mut any = false;
+    for rows in spans {
+        let Some(times) = times.get_mut(rows).filter(|times| !is_even(times)) else { continue };
+        if let Some(even) = spread(times) {
+            times.copy_from_slice(&even);
+            any = true;
+        }
     }
-
-    fn apply(self, log: &mut Log<'_>) -> Option<String> {
-        let rows = log.trials.get(self.trial)?;
-        let Times::Stamps(times) = &mut log.times else { return None };
-        times.get_mut(rows.start..rows.end)?.copy_from_slice(&self.times);
-        let note = log.named(
-            "rows come in bursts, as packets bring them: those of each are spread evenly over the time \
-             since the one before",
-        );
-        // Once for all trials.
-        (!log.notes.contains(&note)).then_some(note)
-    }
+    log.notes.extend(any.then(|| {
+        "rows come in bursts, as packets bring them: those of each are spread evenly over the time since \
+         the one before"
+            .to_owned()
+    }));
 }
 
 /// Whether no step is a pause, as of most clocks.

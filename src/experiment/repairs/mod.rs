@@ -1,79 +1,151 @@
-//! What is mended in a log before its rows are put on a grid: one thing a file, in one order.
+//! What is mended in a log before its rows are put on a grid, in one order.
 //!
 //! What depends on the period of the clock, as rows that are lost or out of order, is seen where the
 //! stamps are read: in [`super::clock`].
 
 mod bursts;
-mod midnight;
-mod newest_first;
-mod repair;
 mod rezeroed;
 mod same_time;
-mod single_rows;
 mod slow_sensor;
-mod split_stamp;
 mod wrap;
 
 use super::error::ReadError;
-use super::grid::Repair as Options;
-use super::log::Log;
-use bursts::Bursts;
-use midnight::Midnight;
-use newest_first::NewestFirst;
-use repair::Repair;
-use rezeroed::Rezeroed;
-use same_time::SameTime;
-use single_rows::SingleRows;
-use slow_sensor::SlowSensor;
-use split_stamp::SplitStamp;
-use wrap::Wrapped;
+use super::log::{Log, Times};
+use super::table::TrialRows;
+use wrap::Wrap;
 
-/// When something is mended, and how.
-type Step = (fn(Options) -> bool, fn(&mut Log<'_>) -> Result<(), ReadError>);
-
-/// In this order: the rows before their times, the times before the signals.
-const IN_ORDER: [Step; 10] = [
-    (always, mend::<SplitStamp>),
-    (once_whole, mend::<NewestFirst>),
-    (always, |log| log.read_times()),
-    (always, mend::<Midnight>),
-    (always, mend::<SingleRows>),
-    (once_whole, mend::<SameTime>),
-    (once_whole, mend::<Bursts>),
-    (Options::is_free, mend::<SlowSensor>),
-    // A turn is a jump, too: what it leaves over may be a sensor whose zero was set anew.
-    (once_whole, mend::<Wrapped>),
-    (once_whole, mend::<Rezeroed>),
-];
-
-fn always(_: Options) -> bool {
-    true
-}
-
-/// What depends on rows that a growing log does not have yet is not mended in one.
-fn once_whole(options: Options) -> bool {
-    !options.as_it_stands
-}
-
-/// Mends everything in `log` that may be.
+/// Mends everything in `log` that may be: the rows before their times, the times before the signals. What
+/// depends on rows that a growing log does not have yet is not mended in one.
 ///
 /// # Errors
 /// [`ReadError`] where its times cannot be read.
 pub(super) fn mend_all(log: &mut Log<'_>) -> Result<(), ReadError> {
-    let options = log.options;
-    let mut steps = IN_ORDER.iter().filter(|(is_done, _)| is_done(options));
-    steps.try_for_each(|(_, step)| step(log))
-}
-
-#[expect(
-    clippy::unnecessary_wraps,
-    reason = "the times may not be read, and are a step like the others"
-)]
-fn mend<R: Repair>(log: &mut Log<'_>) -> Result<(), ReadError> {
-    let found: Vec<R> = R::detect(log).into_iter().collect();
-    for fault in found {
-        let note = fault.apply(log);
-        log.notes.extend(note);
+    let is_whole = !log.options.as_it_stands;
+    join_stamps(log);
+    if is_whole {
+        turn_newest_first(log);
+    }
+    log.read_times()?;
+    count_over_midnight(log);
+    leave_out_single_rows(log);
+    if is_whole {
+        same_time::join(log);
+        bursts::spread_out(log);
+    }
+    if log.options.is_free() {
+        slow_sensor::keep_first_readings(log);
+    }
+    if is_whole {
+        wrap::unwrap(log);
+        // A turn is a jump, too: what it leaves over may be a sensor whose zero was set anew.
+        rezeroed::put_back(log);
     }
     Ok(())
+}
+
+/// Stamps in two columns, whole seconds and what they leave over, as those of ROS are, become one. Where
+/// the second column holds more than parts of a second, each says the time by itself.
+fn join_stamps(log: &mut Log<'_>) {
+    let columns = log.layout.time.column().zip(log.layout.time_rest);
+    let Some((whole, (rest, unit_s))) = columns else { return };
+    let Some((seconds, parts)) = log.column(whole).zip(log.column(rest)) else { return };
+    let is_part = |part: &f64| part.is_nan() || (0.0..1.0).contains(&(unit_s * part));
+    let is_whole = |value: &f64| value.is_nan() || value.fract() == 0.0;
+    let are_two = parts.values.iter().all(is_part) && seconds.values.iter().all(is_whole);
+    let parts = parts.values.clone();
+    if let Some(seconds) = log.column_mut(whole).filter(|_| are_two) {
+        seconds.values.iter_mut().zip(parts).for_each(|(value, part)| *value += unit_s * part);
+    }
+    let (whole, rest) = (log.cell_of_header(whole), log.cell_of_header(rest));
+    let and = if are_two { format!(" and `{rest}`") } else { format!("; `{rest}` is not used") };
+    log.notes.push(format!("the times are those in `{whole}`{and}"));
+}
+
+/// Turns a table whose newest row is the first, as some data bases write them.
+fn turn_newest_first(log: &mut Log<'_>) {
+    let times = log.layout.time_column().and_then(|column| log.column(column));
+    if times.is_some_and(|times| falls(&times.values)) {
+        log.table.turn();
+        let note = "the newest row is first: the rows are read from the last to the first";
+        log.notes.push(note.to_owned());
+    }
+}
+
+/// Whether each of `times` but a few is smaller than the one before it.
+fn falls(times: &[f64]) -> bool {
+    /// Part of the rows that may be out of order, and how many show an order (chosen).
+    const OUT_OF_ORDER: f64 = 0.1;
+    const FEWEST: usize = 3;
+    let falling = times.windows(2).filter(|pair| pair[1] < pair[0]).count();
+    let rising = times.windows(2).filter(|pair| pair[1] > pair[0]).count();
+    falling >= FEWEST && rising as f64 <= OUT_OF_ORDER * falling as f64
+}
+
+/// Counts times of day on over midnight, at which they begin anew.
+fn count_over_midnight(log: &mut Log<'_>) {
+    let column = log.layout.time.column().and_then(|column| log.column(column));
+    let are_of_day = column.is_some_and(|column| column.are_dates || column.are_of_day);
+    if let Times::Stamps(times) = &mut log.times
+        && are_of_day
+    {
+        count_on(times);
+    }
+}
+
+fn count_on(times: &mut [f64]) {
+    if times.iter().all(|time| (0.0..Wrap::DAY_S).contains(time)) {
+        Wrap::OF_CLOCK.unwrap(times);
+    }
+}
+
+/// Leaves out trials of one row, from which no period follows, as where a counter of trials is late by a
+/// row. Where all are of one row, that is an error of the log.
+fn leave_out_single_rows(log: &mut Log<'_>) {
+    let is_long = |trial: &TrialRows| trial.end > trial.start + 1;
+    if !log.trials.iter().any(is_long) {
+        return;
+    }
+    let (long, alone): (_, Vec<_>) = std::mem::take(&mut log.trials).into_iter().partition(is_long);
+    log.trials = long;
+    let Some(TrialRows { label, .. }) = alone.first() else { return };
+    log.notes.push(match alone.len() {
+        1 => format!("trial `{label}` has one row only and is left out"),
+        count => {
+            format!("{count} trials have one row only and are left out, the first is `{label}`")
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_of_day_count_on_over_midnight() {
+        let mut times = [86_399.98, 86_399.99, 0.0, 0.01];
+        count_on(&mut times);
+        let in_ms = times.map(|time| (1e3 * time).round());
+        assert_eq!(
+            in_ms.map(|ms| format!("{ms}")),
+            ["86399980", "86399990", "86400000", "86400010"]
+        );
+        let mut unsorted = [86_399.98, 0.0, 86_399.99, 0.01];
+        count_on(&mut unsorted);
+        let in_ms = unsorted.map(|time| format!("{}", (1e3 * time).round()));
+        assert_eq!(in_ms, ["86399980", "86400000", "86399990", "86400010"]);
+        // A log that begins anew, and a time that has passed, of which hours are more than 24.
+        for times in [[50.0, 60.0, 40.0, 50.0], [86_399.0, 86_400.0, 0.0, 1.0]] {
+            let mut counted = times;
+            count_on(&mut counted);
+            assert_eq!(counted.map(f64::to_bits), times.map(f64::to_bits));
+        }
+    }
+
+    #[test]
+    fn times_that_fall_are_told_from_a_clock_that_restarts_or_stands_still() {
+        assert!(falls(&[3.0, 2.0, 1.0, 0.0]));
+        for times in [[0.0, 1.0, 0.0, 1.0], [0.0; 4], [0.0, 1.0, 2.0, 1.5]] {
+            assert!(!falls(&times), "{times:?}");
+        }
+    }
 }

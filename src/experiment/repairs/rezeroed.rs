@@ -3,55 +3,51 @@
 //! An incremental encoder that is homed again goes on from another value: from one row to the next the
 //! output jumps as it never moves. What follows is taken back by the jump.
 
-use super::repair::Repair;
-use crate::experiment::log::{Log, Output, Times};
+use crate::experiment::layout::JointLayout;
+use crate::experiment::log::{Log, Times};
+use crate::experiment::table::Column;
 use crate::numerics::{median, to_digits};
 
-/// An output that jumps.
-pub(super) struct Rezeroed {
-    output: Output,
-    shifts: Shifts,
-}
-
-impl Repair for Rezeroed {
-    /// Rows behind a gap lie as far apart as the joint moved there, and where the clock starts anew so
-    /// does the record. Of what wraps it is not known.
-    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
-        let of = move |output: Output| {
-            let (inputs, outputs) = (log.parts(output.input)?, log.parts(output.column)?);
-            let signals = inputs.into_iter().zip(&outputs).map(|(input, output)| [input, output]);
-            let shifts = Shifts::of(&signals.collect::<Vec<_>>())?;
-            let mut trials = log.trials.iter().zip(outputs);
-            let are_near = trials.all(|(rows, output)| are_near(log, rows.start, output, shifts));
-            are_near.then_some(Self { output, shifts })
-        };
-        let outputs = log.outputs().filter(|output| !log.unwrapped.contains(&output.column));
-        outputs.filter_map(of)
-    }
-
-    fn apply(self, log: &mut Log<'_>) -> Option<String> {
-        let Self { output, shifts } = self;
+/// Takes back what outputs jump by where their zero is set anew.
+pub(super) fn put_back(log: &mut Log<'_>) {
+    for joint in log.with_own_outputs() {
+        let Some(shifts) = shifts(log, joint) else { continue };
         let spans = log.spans();
-        let values = &mut log.column_mut(output.column)?.values;
+        let Some(Column { values, .. }) = log.column_mut(joint.output.column) else { continue };
         let mut jumps = Vec::new();
         for rows in spans {
             let Some(part) = values.get_mut(rows.clone()) else { continue };
             jumps.extend(shifts.put_back(part).into_iter().map(|(row, by)| (rows.start + row, by)));
         }
-        let (row, by) = jumps.first()?;
-        let unit = output.unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+        let Some((row, by)) = jumps.first() else { continue };
+        let unit =
+            joint.output.signal.unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
         let (row, by) = (log.row(*row), to_digits(*by, 3));
         let more = match jumps.len() {
             1 => String::new(),
             2 => ", and once more".to_owned(),
             count => format!(", and {} times more", count - 1),
         };
-        output.note(&format!(
+        let text = format!(
             "the output jumps by {by}{unit} at row {row}{more}, much farther than it moves \
              between any other rows: taken for a sensor that was re-zeroed, and later samples are shifted \
              back by as much"
-        ))
+        );
+        log.note_on(joint, &text);
     }
+}
+
+/// The jumps of the output of a joint. Rows behind a gap lie as far apart as the joint moved there, and where the clock
+/// starts anew so does the record. Of what wraps it is not known.
+fn shifts(log: &Log<'_>, joint: &JointLayout) -> Option<Shifts> {
+    if log.unwrapped.contains(&joint.output.column) {
+        return None;
+    }
+    let (inputs, outputs) = (log.parts(joint.input.column)?, log.parts(joint.output.column)?);
+    let signals = inputs.into_iter().zip(&outputs).map(|(input, output)| [input, output]);
+    let shifts = Shifts::of(&signals.collect::<Vec<_>>())?;
+    let mut trials = log.trials.iter().zip(outputs);
+    trials.all(|(rows, output)| are_near(log, rows.start, output, shifts)).then_some(shifts)
 }
 
 /// Whether the rows on both sides of each jump in `output`, from the row `start` on, follow one another.

@@ -1,66 +1,43 @@
 //! Rows of one time that say the same, or complete one another: those of a logger that is faster than its
 //! bus, and of a table that has a row for each sensor. They are one row.
 
-use super::repair::Repair;
 use crate::experiment::log::{Log, Times, repeats};
 
 /// Part of the rows that repeat a time, at least: of fewer the clock says what they are.
 const REPEATED: f64 = 0.1;
 
-/// Rows to be joined with the one before, and the columns once they are.
-pub(super) struct SameTime {
-    repeats: Vec<usize>,
-    columns: Vec<Vec<f64>>,
-    are_copies: bool,
-}
-
-impl Repair for SameTime {
-    /// None where any two rows of one time contradict each other.
-    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
-        let Times::Stamps(times) = &log.times else { return None };
-        let repeats = repeats(times, &log.trials);
-        if repeats.len() as f64 <= REPEATED * times.len() as f64 {
-            return None;
-        }
-        let mut is_repeat = vec![false; times.len()];
-        for row in &repeats {
-            is_repeat[*row] = true;
-        }
-        let mut are_copies = true;
-        let mut columns = Vec::new();
-        for column in &log.table.columns {
-            let (values, is_copy) = joined(&column.values, &is_repeat)?;
-            are_copies &= is_copy;
-            columns.push(values);
-        }
-        Some(Self { repeats, columns, are_copies })
+/// Joins rows with the one before that has their time, where no two of these contradict each other.
+pub(super) fn join(log: &mut Log<'_>) {
+    let Times::Stamps(times) = &mut log.times else { return };
+    let repeats = repeats(times, &log.trials);
+    if repeats.len() as f64 <= REPEATED * times.len() as f64 {
+        return;
     }
-
-    fn apply(self, log: &mut Log<'_>) -> Option<String> {
-        let Self { repeats, columns, are_copies } = self;
-        let is_kept = |row: &usize| repeats.binary_search(row).is_err();
-        let place = |row: usize| row - repeats.partition_point(|repeat| *repeat < row);
-        let kept: Vec<usize> = (0..log.table.rows.len()).filter(is_kept).collect();
-        if let Times::Stamps(times) = &mut log.times {
-            *times = kept.iter().filter_map(|row| times.get(*row).copied()).collect();
-        }
-        for trial in &mut log.trials {
-            (trial.start, trial.end) = (place(trial.start), place(trial.end));
-        }
-        let table = &mut log.table;
-        table.rows = table.rows.of_some(&kept);
-        for (column, values) in table.columns.iter_mut().zip(columns) {
-            column.values = values;
-        }
-        let count = repeats.len();
-        Some(log.named(&if are_copies {
-            format!("{count} rows are copies of the row before, and left out")
-        } else {
-            format!(
-                "{count} rows complete the row before, which has the same time: they are one row"
-            )
-        }))
+    let mut is_repeat = vec![false; times.len()];
+    for row in &repeats {
+        is_repeat[*row] = true;
     }
+    let table = &mut log.table;
+    let columns = table.columns.iter().map(|column| joined(&column.values, &is_repeat));
+    let Some(columns) = columns.collect::<Option<Vec<_>>>() else { return };
+    let are_copies = columns.iter().all(|(_, are_copies)| *are_copies);
+    let is_kept = |row: &usize| repeats.binary_search(row).is_err();
+    let place = |row: usize| row - repeats.partition_point(|repeat| *repeat < row);
+    let kept: Vec<usize> = (0..table.rows.len()).filter(is_kept).collect();
+    *times = kept.iter().filter_map(|row| times.get(*row).copied()).collect();
+    for trial in &mut log.trials {
+        (trial.start, trial.end) = (place(trial.start), place(trial.end));
+    }
+    table.rows = table.rows.of_some(&kept);
+    for (column, (values, _)) in table.columns.iter_mut().zip(columns) {
+        column.values = values;
+    }
+    let count = repeats.len();
+    log.notes.push(if are_copies {
+        format!("{count} rows are copies of the row before, and left out")
+    } else {
+        format!("{count} rows complete the row before, which has the same time: they are one row")
+    });
 }
 
 /// The numbers of a column with those that repeat a time joined with the one before, and whether these are

@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use super::repair::Repair;
-use crate::experiment::log::{Log, Output};
+use crate::experiment::log::Log;
 use crate::numerics::quantile;
 
 /// Rows that a reading stands in, at least.
@@ -12,28 +11,17 @@ const FEWEST_ROWS: usize = 3;
 /// Readings that show it.
 const FEWEST: usize = 20;
 
-/// An output whose sensor is slower than the log, and the rows that a reading stands in.
-pub(super) struct SlowSensor {
-    output: Output,
-    rows: usize,
-}
-
-impl Repair for SlowSensor {
-    fn detect(log: &Log<'_>) -> impl IntoIterator<Item = Self> {
-        let of = move |output: Output| {
-            let rows = rows_of_a_reading(&log.column(output.column)?.values, &log.spans())?;
-            Some(Self { output, rows })
-        };
-        log.outputs().filter_map(of)
-    }
-
-    fn apply(self, log: &mut Log<'_>) -> Option<String> {
-        let Self { output, rows } = self;
-        let spans = log.spans();
-        keep_first(&mut log.column_mut(output.column)?.values, &spans, rows);
-        output.note(&format!(
+/// Leaves of each reading of an output the first row alone, where a sensor is slower than the log.
+pub(super) fn keep_first_readings(log: &mut Log<'_>) {
+    let spans = log.spans();
+    for joint in log.with_own_outputs() {
+        let Some(column) = log.column_mut(joint.output.column) else { continue };
+        let Some(rows) = rows_of_a_reading(&column.values, &spans) else { continue };
+        keep_first(&mut column.values, &spans, rows);
+        let text = format!(
             "each reading of the output stands in {rows} rows, and counts in the first of them"
-        ))
+        );
+        log.note_on(joint, &text);
     }
 }
 

@@ -73,11 +73,13 @@ impl Survey {
     /// # Errors
     /// [`ReadError`] when it cannot be read at all.
     pub fn of(path: &Path, memory: MemoryLimit) -> Result<Self, ReadError> {
+        Self::read(path, memory).map_err(|error| error.in_file(path))
+    }
+
+    fn read(path: &Path, memory: MemoryLimit) -> Result<Self, ReadError> {
         let table = format::open(path, Budget::new(memory))?;
         let head = table.head.clone();
-        if head.is_of_numbers() {
-            return Err(ReadError::NoHeader { path: head.path, row: head.header_row });
-        }
+        head.check_is_header()?;
         let (time, trial) = (find_time_column(&head), find_trial(&head));
         // What is as long as the times are: gains and options stand beside them in a workspace.
         let rows = time.and_then(|time| table.rows.rows_of(time));
@@ -87,7 +89,8 @@ impl Survey {
         let clock = head.headers.first().map_or(0, |header| header.clock);
         let read = table.read(&numeric, trial, time, clock)?;
         let read = read.columns.iter().zip(numeric);
-        Ok(Self::of_columns(&head, read.map(|(column, index)| (index, column))))
+        let found = Self::of_columns(&head, read.map(|(column, index)| (index, column)));
+        Ok(Self { path: path.to_owned(), ..found })
     }
 
     /// Looks at columns with their indices in `head`.
@@ -125,7 +128,7 @@ impl Survey {
             ..ColumnMap::default()
         };
         Self {
-            path: head.path.clone(),
+            path: PathBuf::new(),
             columns: columns.surveyed([time, trial], &joints),
             is_sure: joints.iter().all(|joint| joint.is_sure),
             open,

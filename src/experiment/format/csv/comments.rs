@@ -1,6 +1,6 @@
 //! Lines that begin with `#`: comments, and rows that are taken for comments.
 
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::table::Wanted;
 
 /// Comments below the header that may be rows.
@@ -35,20 +35,23 @@ impl Comments {
         let Some((row, label)) = self.label.clone().filter(|_| wanted.label == Some(0)) else {
             return Ok(());
         };
-        Err(ReadError::LabelOrComment { path: wanted.path().to_owned(), row, label })
+        let text = format!(
+            "it begins with `{label}`, which may be a comment or the label of a trial; write labels \
+             without `#`, and a blank behind the mark of a comment"
+        );
+        Err(ReadError::new(ReadErrorKind::Shape, text).in_row(row))
     }
 
     /// Says how many of them are as wide as the rows.
-    pub(super) fn on_wide(&self, wanted: &Wanted<'_>) -> Option<String> {
-        let path = wanted.path().display();
+    pub(super) fn on_wide(&self) -> Option<String> {
         match self.wide {
             (0, _) => None,
             (1, row) => Some(format!(
-                "{path}: row {row} begins with `#` and is left out as a comment, although it has as many \
+                "row {row} begins with `#` and is left out as a comment, although it has as many \
                  cells as the others"
             )),
             (count, row) => Some(format!(
-                "{path}: {count} rows begin with `#` and are left out as comments, although they have as \
+                "{count} rows begin with `#` and are left out as comments, although they have as \
                  many cells as the others (first at row {row})"
             )),
         }

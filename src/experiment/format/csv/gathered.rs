@@ -4,8 +4,8 @@ use super::super::cell::{DecimalMarks, Time, parse_cell, parse_time};
 use super::super::spelling::{are_units, is_over_lines, is_remark};
 use super::lines::Place;
 use super::milliseconds::Milliseconds;
-use crate::experiment::error::ReadError;
-use crate::experiment::memory::Budget;
+use crate::experiment::error::{ReadError, ReadErrorKind};
+use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::names::shown;
 use crate::experiment::source::Source;
 use crate::experiment::table::{BadCell, Column, Header, Labels, RowNumbers, Table, Wanted};
@@ -17,9 +17,6 @@ const LONGEST_REMARK: usize = 1 << 16;
 /// The last column of a log of LabVIEW, which rows without a comment do not have.
 const COMMENT: &str = "Comment";
 
-/// Memory of a number: itself, and what its vector has to spare.
-const NUMBER_SIZE: usize = 2 * size_of::<f64>();
-
 /// Rows as they come.
 pub(super) struct Gathered<'w> {
     wanted: &'w Wanted<'w>,
@@ -28,8 +25,10 @@ pub(super) struct Gathered<'w> {
     /// Whether times are dates or times of day, as the first one shows.
     are_times_in_words: Option<bool>,
     milliseconds: Milliseconds,
-    pub(super) table: Table,
-    labels: Option<Labels>,
+    rows: RowNumbers,
+    columns: Vec<Column>,
+    labels: Labels,
+    pub(super) notes: Vec<String>,
     /// Rows of words and of zero bytes, which belong to the table if rows of numbers follow.
     held_back: Vec<(csv::ByteRecord, Place)>,
     /// Whether one among those of numbers says what the header or the rows of words below it say, where logs
@@ -44,22 +43,17 @@ pub(super) struct Gathered<'w> {
 
 impl<'w> Gathered<'w> {
     pub(super) fn new(wanted: &'w Wanted<'w>, delimiter: u8, budget: Budget) -> Self {
-        let path = wanted.path().to_owned();
-        let table = Table {
-            source: Source { path, sha256: String::new(), bytes: 0 },
-            rows: RowNumbers::default(),
-            columns: vec![Column::default(); wanted.numeric.len()],
-            trials: Vec::new(),
-            notes: Vec::new(),
-        };
+        let columns = vec![Column::default(); wanted.numeric.len()];
         Self {
             wanted,
             delimiter,
             marks: DecimalMarks::of(wanted.numeric.len(), delimiter),
             are_times_in_words: None,
             milliseconds: Milliseconds::new(),
-            table,
-            labels: wanted.label.map(|_| Labels::default()),
+            rows: RowNumbers::default(),
+            columns,
+            labels: Labels::default(),
+            notes: Vec::new(),
             held_back: Vec::new(),
             repeats_head: false,
             above: Vec::new(),
@@ -68,15 +62,11 @@ impl<'w> Gathered<'w> {
         }
     }
 
-    fn note(&mut self, note: &str) {
-        self.table.notes.push(format!("{}: {note}", self.wanted.path().display()));
-    }
-
     /// Says which rows below the header were left out that are no units.
     pub(super) fn note_above(&mut self, above: Vec<(csv::ByteRecord, Place)>) {
         for (record, Place { row, .. }) in above.iter().filter(|(record, _)| !are_units(record)) {
             let says = says(record);
-            self.note(&format!(
+            self.notes.push(format!(
                 "row {row}, below the header, is left out: it holds no number and no time (`{says}`)"
             ));
         }
@@ -88,7 +78,7 @@ impl<'w> Gathered<'w> {
     pub(super) fn add(&mut self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
         let is_odd = is_remark(record, self.delimiter) || has_zero_bytes(record);
         let is_held = record.as_slice().len() <= LONGEST_REMARK;
-        if is_odd && is_held && !self.table.rows.is_empty() && self.held_back.len() < MOST_REMARKS {
+        if is_odd && is_held && !self.rows.is_empty() && self.held_back.len() < MOST_REMARKS {
             self.held_back.push((record.clone(), place));
             return Ok(());
         }
@@ -97,13 +87,13 @@ impl<'w> Gathered<'w> {
                 self.take(&record, place)?;
             } else if !std::mem::replace(&mut self.repeats_head, true) {
                 let row = place.row;
-                self.note(&format!("row {row} repeats the header: such rows are left out"));
+                self.notes.push(format!("row {row} repeats the header: such rows are left out"));
             }
         }
         let taken = self.take(record, place);
         let is_short = record.len() < self.wanted.head.headers.len();
         if place.is_open && is_short && !is_over_lines(record) && taken.is_err() {
-            self.note(&format!("the last row, {}, is cut off and left out", place.row));
+            self.notes.push(format!("the last row, {}, is cut off and left out", place.row));
             return Ok(());
         }
         taken
@@ -127,10 +117,10 @@ impl<'w> Gathered<'w> {
         let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
         let label = wanted.label.map_or(&b""[..], cell);
         let size = (wanted.numeric.len() + 1) * NUMBER_SIZE + label.len();
-        self.budget.take_values(1, size).map_err(|error| error.refuse(wanted.path()))?;
-        let index = self.table.rows.len();
-        self.table.rows.push(row);
-        let columns = self.table.columns.iter_mut().zip(wanted.numeric).enumerate();
+        self.budget.take_values(1, size)?;
+        let index = self.rows.len();
+        self.rows.push(row);
+        let columns = self.columns.iter_mut().zip(wanted.numeric).enumerate();
         for (place, (column, wanted_at)) in columns {
             let cell = cell(*wanted_at);
             let parsed = if wanted.time == Some(*wanted_at) {
@@ -143,9 +133,8 @@ impl<'w> Gathered<'w> {
             };
             column.push(self.marks.agreed(cell, parsed, place, (row, index)), row);
         }
-        if let Some(labels) = &mut self.labels {
-            let memory = (wanted.path(), &self.budget);
-            labels.push(&String::from_utf8_lossy(label), row, memory)?;
+        if wanted.label.is_some() {
+            self.labels.push(&String::from_utf8_lossy(label), row, &self.budget)?;
         }
         Ok(())
     }
@@ -166,8 +155,11 @@ impl<'w> Gathered<'w> {
         if is_as_wide || lacks_comment {
             return Ok(());
         }
-        let (path, Place { row, lines, .. }) = (self.wanted.path().to_owned(), place);
-        Err(ReadError::UnequalRow { path, row, found, expected: width, lines })
+        let hint = if place.lines > 1 { "; is a quotation mark never closed?" } else { "" };
+        let text = format!(
+            "{found} cells, but the header has {width}; give every row a cell per column{hint}"
+        );
+        Err(ReadError::new(ReadErrorKind::Shape, text).in_row(place.row))
     }
 
     /// Refuses a row one cell of which holds further rows: a quotation mark in it is never closed, or far
@@ -184,27 +176,31 @@ impl<'w> Gathered<'w> {
         if !record.iter().any(holds_rows) {
             return Ok(());
         }
-        Err(ReadError::OpenQuotation { path: self.wanted.path().to_owned(), row, lines })
+        let text = format!(
+            "a cell that begins with a quotation mark goes over {lines} lines, which look like rows; \
+             close it, or remove the mark"
+        );
+        Err(ReadError::new(ReadErrorKind::Shape, text).in_row(row))
     }
 
     /// The table of all rows, which were read from this file. What was held back is no row of it.
-    pub(super) fn finish(mut self, source: Source) -> Table {
+    pub(super) fn finish(mut self, source: Option<Source>) -> Table {
         self.note_held_back();
-        for (place, column) in self.table.columns.iter_mut().enumerate() {
+        for (place, column) in self.columns.iter_mut().enumerate() {
             if let Some((row, index, cell)) = self.marks.doubtful(place) {
                 column.values.truncate(*index);
                 column.error = Some((*row, BadCell::Thousands(cell.clone())));
             }
         }
         let time = self.wanted.numeric.iter().position(|column| self.wanted.time == Some(*column));
-        let time = time.and_then(|time| self.table.columns.get_mut(time));
+        let time = time.and_then(|time| self.columns.get_mut(time));
         if time.is_some_and(|time| self.milliseconds.apply(&mut time.values)) {
-            self.note(
-                "the decimals of the times are milliseconds without leading zeros: `.10` is 10 ms",
-            );
+            let note =
+                "the decimals of the times are milliseconds without leading zeros: `.10` is 10 ms";
+            self.notes.push(note.to_owned());
         }
-        let trials = self.labels.as_ref().map_or_else(Vec::new, Labels::runs);
-        Table { source, trials, ..self.table }
+        let Self { rows, columns, labels, notes, .. } = self;
+        Table { source, rows, columns, trials: labels.runs, notes }
     }
 
     fn note_held_back(&mut self) {
@@ -216,7 +212,7 @@ impl<'w> Gathered<'w> {
             format!("no number and no time (`{}`)", says(first))
         };
         let row = place.row;
-        self.note(&match count {
+        self.notes.push(match count {
             1 => format!("the last row, {row}, is left out: it holds {what}"),
             _ => format!("the last {count} rows, from {row} on, are left out: they hold {what}"),
         });

@@ -1,33 +1,26 @@
 //! The header of a table of text, and its units.
 
-use std::path::Path;
-
 use super::super::spelling::{are_units, bare_unit, is_remark};
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{Head, Header};
 use crate::experiment::time_column::find_time_column;
 use crate::experiment::unit::{is_time, is_unit};
 
+/// What a text is expected to be.
+const A_TABLE: &str = "a table of text";
+
 /// Refuses a header of more cells than a log has columns, which a row of commas is, too.
-pub(super) fn check_header_size(
-    path: &Path,
-    cells: usize,
-    budget: &Budget,
-) -> Result<(), ReadError> {
+pub(super) fn check_header_size(cells: usize, budget: &Budget) -> Result<(), ReadError> {
     /// Ten times as many as a large plant has signals (chosen).
     const MOST: usize = 1_000_000;
     /// Memory of a name, and of what is looked for in its column (measured: 180 to 250 bytes).
     const HEADER_SIZE: usize = 256;
     if cells > MOST {
-        return Err(ReadError::Format {
-            path: path.to_owned(),
-            format: "a table of text",
-            reason: format!("its header has {cells} cells, and {MOST} are the most"),
-            remedy: "leave out columns",
-        });
+        let reason = format!("its header has {cells} cells, and {MOST} are the most");
+        return Err(ReadError::format(A_TABLE, reason, "leave out columns"));
     }
-    budget.take_values(cells, HEADER_SIZE).map_err(|error| error.refuse(path))
+    budget.take_values(cells, HEADER_SIZE)
 }
 
 /// Refuses a table whose cells are parted by blanks, which would be one column.
@@ -38,15 +31,12 @@ pub(super) fn check_parted(head: &Head, first: &csv::ByteRecord) -> Result<(), R
     if first.len() > 1 || names < 2 || values < 2 {
         return Ok(());
     }
-    Err(ReadError::Format {
-        path: head.path.clone(),
-        format: "a table of text",
-        reason: format!(
-            "its cells are parted by blanks, {names} words in row {} and {values} in the row below it",
-            head.header_row
-        ),
-        remedy: "part them by commas, semicolons or tabs, or write each name as one word",
-    })
+    let reason = format!(
+        "its cells are parted by blanks, {names} words in row {} and {values} in the row below it",
+        head.header_row
+    );
+    let remedy = "part them by commas, semicolons or tabs, or write each name as one word";
+    Err(ReadError::format(A_TABLE, reason, remedy))
 }
 
 /// A name without the quotation marks that a blank before them makes part of the cell, or single ones.
@@ -69,14 +59,10 @@ pub(super) fn check_last_name(
         return Ok(());
     }
     let header = head.header_row;
-    Err(ReadError::Format {
-        path: head.path.clone(),
-        format: "a table of text",
-        reason: format!(
-            "row {header} has {names} names and a mark behind the last, and row {row} has {cells} cells"
-        ),
-        remedy: "name each column",
-    })
+    let reason = format!(
+        "row {header} has {names} names and a mark behind the last, and row {row} has {cells} cells"
+    );
+    Err(ReadError::format(A_TABLE, reason, "name each column"))
 }
 
 /// Rows of words that may stand between the header and the first row of numbers.
@@ -109,15 +95,16 @@ pub(super) fn describes(
 }
 
 /// What the header says, which stands on the line `header_row`.
-pub(super) fn head(
-    path: &Path,
-    record: &csv::ByteRecord,
-    header_row: u64,
-) -> Result<Head, ReadError> {
-    let text = |(cell, column): (&[u8], usize)| {
-        let not_utf8 = |_| ReadError::NotUtf8 { path: path.to_owned(), row: header_row, column };
-        std::str::from_utf8(cell).map(unquoted).map(Header::parse).map_err(not_utf8)
+pub(super) fn head(record: &csv::ByteRecord, header_row: u64) -> Result<Head, ReadError> {
+    let header = |(cell, column): (&[u8], usize)| {
+        let text = std::str::from_utf8(cell).ok().map(unquoted).map(Header::parse);
+        text.ok_or_else(|| {
+            let text = format!(
+                "the name of column {column} is not UTF-8 text; choose UTF-8 when saving it"
+            );
+            ReadError::new(ReadErrorKind::Header, text).in_row(header_row)
+        })
     };
-    let headers = record.iter().zip(1..).map(text).collect::<Result<_, _>>()?;
-    Ok(Head { path: path.to_owned(), headers, header_row, unread: Vec::new() })
+    let headers = record.iter().zip(1..).map(header).collect::<Result<_, _>>()?;
+    Ok(Head { headers, header_row, unread: Vec::new() })
 }

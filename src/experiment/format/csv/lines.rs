@@ -1,7 +1,6 @@
 //! Records of a text, and the lines of the file that they stand on.
 
 use std::io::{self, BufRead as _, BufReader, Read};
-use std::path::Path;
 
 use super::super::blanks::tabbed;
 use super::super::cell::is_missing;
@@ -52,10 +51,9 @@ impl Records {
     }
 
     /// Reads the next record; where it is, or `None` at the end.
-    pub(super) fn next(&mut self, path: &Path) -> Result<Option<Place>, ReadError> {
+    pub(super) fn next(&mut self) -> Result<Option<Place>, ReadError> {
         self.reader.get_mut().begin_record();
-        let more = self.reader.read_byte_record(&mut self.record);
-        let more = more.map_err(|source| ReadError::Csv { path: path.to_owned(), source })?;
+        let more = self.reader.read_byte_record(&mut self.record)?;
         let Lines { count, first, ref line, .. } = *self.reader.get_ref();
         let is_open = !line.last().is_some_and(|byte| b"\r\n".contains(byte));
         Ok(more.then_some(Place { row: first, lines: count + 1 - first, is_open }))

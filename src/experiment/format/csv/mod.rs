@@ -32,32 +32,30 @@ struct Unread {
 /// Opens the log and reads its header.
 pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     let (bytes, start) = Bytes::open(path)?;
-    table(path, bytes, &start, None, budget)
+    table(bytes, &start, None, budget)
 }
 
 /// Reads the header of a text that begins with `start`, whose cells are parted by `delimiter` where that
 /// is known.
 pub(super) fn table(
-    path: &Path,
     mut bytes: Bytes,
     start: &[u8],
     delimiter: Option<u8>,
     budget: Budget,
 ) -> Result<OpenTable, ReadError> {
-    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
     let (spelling, is_text) = (Spelling::of(start, delimiter), delimiter.is_none());
     let (before, _) = spelling.preamble;
-    io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink()).map_err(io_error)?;
+    io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink())?;
     let delimiter = spelling.mark();
     let mut records = Records::of(bytes, spelling, &budget);
-    let Some(place) = records.next(path)? else {
-        return Err(ReadError::Empty { path: path.to_owned() });
+    let Some(place) = records.next()? else {
+        return Err(ReadError::empty());
     };
-    check_header_size(path, records.record.len(), &budget)?;
-    let mut head = head(path, &records.record, place.row)?;
+    check_header_size(records.record.len(), &budget)?;
+    let mut head = head(&records.record, place.row)?;
     records.comments().width = head.headers.len();
     let mut above = Vec::new();
-    let mut first = records.next(path)?;
+    let mut first = records.next()?;
     if first.is_some() {
         check_parted(&head, &records.record)?;
     }
@@ -70,7 +68,7 @@ pub(super) fn table(
             break;
         }
         above.push((records.record.clone(), place));
-        first = records.next(path)?;
+        first = records.next()?;
     }
     Ok(OpenTable { head, rows: Box::new(Unread { records, delimiter, above, first, budget }) })
 }
@@ -83,11 +81,11 @@ impl Rows for Unread {
         let mut next = first;
         while let Some(place) = next {
             gathered.add(&records.record, place)?;
-            next = records.next(wanted.path())?;
+            next = records.next()?;
         }
         records.comments().check_labels(wanted)?;
-        gathered.table.notes.extend(records.comments().on_wide(wanted));
-        Ok(gathered.finish(records.into_bytes().finish(wanted.path())?))
+        gathered.notes.extend(records.comments().on_wide());
+        Ok(gathered.finish(records.into_bytes().finish()?))
     }
 }
 

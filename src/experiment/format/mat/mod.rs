@@ -9,63 +9,130 @@
 //! What is no column of numbers or of text keeps its name, so that messages can say what it
 //! is. Numbers alone (1 × 1) are parameters, and no columns.
 
-mod columns;
 mod v5;
 mod v73;
 mod variable;
-mod watched;
 
 use std::path::Path;
 
-pub(super) use columns::open;
+use self::variable::{Content, Variable};
+use super::first_bytes::{is_matlab_73, start_of};
+use crate::experiment::error::{ReadError, ReadErrorKind};
+use crate::experiment::memory::Budget;
+use crate::experiment::table::{Column, Head, Labels, OpenTable, Rows, Table, Wanted};
 
-use crate::experiment::error::ReadError;
-use crate::experiment::memory::TooLarge;
-
-/// Why a file is refused.
-#[derive(Debug)]
-enum Fault {
-    /// What is wrong with it.
-    Damaged(String),
-    TooLarge(TooLarge),
+/// The variables with the place of each header: its variable, and the column of that.
+struct Unread {
+    variables: Vec<Variable>,
+    places: Vec<(usize, usize)>,
+    /// Bytes of the file.
+    size: u64,
+    budget: Budget,
 }
 
-impl Fault {
-    fn refuse(self, path: &Path) -> ReadError {
-        match self {
-            Self::Damaged(reason) => ReadError::Format {
-                path: path.to_owned(),
-                format: "MATLAB",
-                reason,
-                remedy: "save it again, with `save -v7` if it is of another version",
-            },
-            Self::TooLarge(error) => error.refuse(path),
+/// Opens the log and lists its variables.
+pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
+    let start = start_of(path)?;
+    let variables = if is_matlab_73(&start) { v73::variables } else { v5::variables };
+    let variables = variables(path, &budget)?;
+    let (mut headers, mut places) = (Vec::new(), Vec::new());
+    for (index, variable) in variables.iter().enumerate() {
+        let (_, columns) = variable.shape();
+        for column in 0..columns {
+            headers.push(variable.header(column, columns));
+            places.push((index, column));
         }
     }
+    if variables.iter().all(|variable| variable.shape().0 == 0) {
+        check_kinds(&variables)?;
+    }
+    let rows = Box::new(Unread { variables, places, size: path.metadata()?.len(), budget });
+    Ok(OpenTable { head: Head::without_lines(headers), rows })
+}
 
-    /// Says in what part of the file it is.
-    fn within(self, place: &str) -> Self {
-        match self {
-            Self::Damaged(reason) => Self::Damaged(format!("{place}: {reason}")),
-            Self::TooLarge(_) => self,
+/// Refuses a file in which nothing has rows, and says of the first variable what it is.
+fn check_kinds(variables: &[Variable]) -> Result<(), ReadError> {
+    for variable in variables {
+        if let Content::Other(kind) = &variable.content {
+            let reason = format!("it has no column of numbers: `{}` is {kind}", variable.name);
+            let remedy = "save each signal as a vector, with `save -v7`";
+            return Err(ReadError::format("MATLAB", reason, remedy));
         }
     }
+    Ok(())
 }
 
-impl From<std::io::Error> for Fault {
-    fn from(error: std::io::Error) -> Self {
-        Self::Damaged(error.to_string())
+impl Rows for Unread {
+    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+        let rows = self.rows(wanted)?;
+        let columns = wanted.numeric.iter().map(|index| self.column(*index));
+        let columns = columns.collect::<Result<_, _>>()?;
+        let labels = wanted.label.map_or_else(|| Ok(Vec::new()), |index| self.labels(index))?;
+        Ok(Table::counted(rows, columns, Labels::of(labels, &self.budget)?))
+    }
+
+    fn rows_of(&self, column: usize) -> Option<usize> {
+        self.place(column).map(|(variable, _)| variable.shape().0).filter(|rows| *rows > 0)
     }
 }
 
-impl From<hdf5_pure::Error> for Fault {
-    fn from(error: hdf5_pure::Error) -> Self {
-        Self::Damaged(error.to_string())
+impl Unread {
+    /// The rows of the columns that are wanted, which must be as many in each. What is no column spoils
+    /// its own joint.
+    fn rows(&self, wanted: &Wanted<'_>) -> Result<usize, ReadError> {
+        let name = |index: usize| {
+            wanted.head.headers.get(index).map(|header| header.name.clone()).unwrap_or_default()
+        };
+        let mut first = None;
+        for index in wanted.numeric.iter().chain(&wanted.label).copied() {
+            let Some(found) = self.rows_of(index) else { continue };
+            let (other, expected) = *first.get_or_insert((index, found));
+            if found != expected {
+                let (found, other) = ((name(index), found), (name(other), expected));
+                return Err(ReadError::unequal_columns(found, other));
+            }
+        }
+        Ok(first.map_or(0, |(_, rows)| rows))
     }
-}
 
-impl From<TooLarge> for Fault {
-    fn from(error: TooLarge) -> Self {
-        Self::TooLarge(error)
+    fn place(&self, header: usize) -> Option<(&Variable, usize)> {
+        let (variable, column) = *self.places.get(header)?;
+        Some((self.variables.get(variable)?, column))
+    }
+
+    /// The numbers of a column, or what is there instead.
+    fn column(&self, header: usize) -> Result<Column, ReadError> {
+        let Some((variable, column)) = self.place(header) else { return Ok(Column::default()) };
+        if let Some(kind) = variable.is_no_column() {
+            return Ok(Column::not_numbers(kind));
+        }
+        Ok(match &variable.content {
+            Content::Numbers(values) => {
+                let (rows, _) = variable.shape();
+                let values = values.iter().skip(column * rows).take(rows);
+                Column::of(values.copied().collect())
+            }
+            Content::Stored(dataset) => {
+                Column::of(v73::column(dataset, column, self.size, &self.budget)?)
+            }
+            Content::Texts(_) | Content::Other(_) => Column::not_numbers("text"),
+        })
+    }
+
+    /// The label of each row.
+    fn labels(&self, header: usize) -> Result<Vec<String>, ReadError> {
+        let Some((variable, _)) = self.place(header) else { return Ok(Vec::new()) };
+        if let Some(found) = variable.is_no_column() {
+            let text = format!(
+                "it holds {found}, not a label per row; save it as numbers or as a cell array of texts, \
+                 or read all as one trial with `--trial none`"
+            );
+            let error = ReadError::new(ReadErrorKind::Cell, text);
+            return Err(error.in_column(&variable.name));
+        }
+        match &variable.content {
+            Content::Texts(texts) => Ok(texts.clone()),
+            _ => Ok(self.column(header)?.values.iter().map(f64::to_string).collect()),
+        }
     }
 }

@@ -9,10 +9,9 @@ use std::path::Path;
 
 use flate2::read::ZlibDecoder;
 
-use super::Fault;
-use super::variable::{Content, Variable, object};
+use super::variable::{Content, Variable, damaged, object};
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::Budget;
+use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::table::LONGEST_NAME;
 
 /// Structures may lie in structures, but not without end.
@@ -31,9 +30,6 @@ const OPAQUE: u32 = 17;
 /// The flag of an array whose numbers have an imaginary part.
 const COMPLEX: u32 = 0x800;
 
-/// Memory of a number: itself, and its copy as a column.
-const NUMBER_SIZE: usize = 2 * size_of::<f64>();
-
 /// Memory of a variable beside its values and its name: itself twice, as a list that grows is copied to one
 /// of twice its size, and what the allocator adds.
 const VARIABLE_SIZE: usize = 2 * size_of::<Variable>() + 2 * 48;
@@ -43,14 +39,12 @@ const TEXT_SIZE: usize = size_of::<String>() + 32;
 
 /// The variables of a file, their numbers read.
 pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
-    let file =
-        File::open(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
-    read(BufReader::new(file), budget).map_err(|fault| fault.refuse(path))
+    read(BufReader::new(File::open(path)?), budget)
 }
 
-fn read(mut file: impl Read, budget: &Budget) -> Result<Vec<Variable>, Fault> {
+fn read(mut file: impl Read, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
     let mut head = [0; 128];
-    file.read_exact(&mut head)?;
+    file.read_exact(&mut head).map_err(damaged)?;
     let bytes = Bytes { data: &[], big: head.ends_with(b"MI"), budget };
     let (mut found, mut number) = (Vec::new(), 1);
     while next(&mut file, bytes, &mut found)
@@ -62,16 +56,20 @@ fn read(mut file: impl Read, budget: &Budget) -> Result<Vec<Variable>, Fault> {
 }
 
 /// Reads the next variable, where there is one, its numbers as `like` has them.
-fn next(file: &mut impl Read, like: Bytes<'_>, found: &mut Vec<Variable>) -> Result<bool, Fault> {
+fn next(
+    file: &mut impl Read,
+    like: Bytes<'_>,
+    found: &mut Vec<Variable>,
+) -> Result<bool, ReadError> {
     let budget = like.budget;
     let (mut tag, mut data) = (Vec::new(), Vec::new());
-    file.take(8).read_to_end(&mut tag)?;
+    file.take(8).read_to_end(&mut tag).map_err(damaged)?;
     if tag.is_empty() {
         return Ok(false);
     }
     let mut tag = Bytes { data: &tag, ..like };
     let (mut kind, size) = (tag.u32()?, u64::from(tag.u32()?));
-    file.take(size).read_to_end(&mut data)?;
+    file.take(size).read_to_end(&mut data).map_err(damaged)?;
     if (data.len() as u64) < size {
         return fault("it is cut off by the end of the file");
     }
@@ -93,18 +91,18 @@ fn next(file: &mut impl Read, like: Bytes<'_>, found: &mut Vec<Variable>) -> Res
 }
 
 /// The bytes that are packed, as they are found to be: what they say is not asked.
-fn unpacked(packed: &[u8], budget: &Budget) -> Result<Vec<u8>, Fault> {
+fn unpacked(packed: &[u8], budget: &Budget) -> Result<Vec<u8>, ReadError> {
     // A vector that grows is copied to one of twice its size.
     const COPIES: u64 = 3;
     let mut inside = Vec::new();
     let most = budget.left() / COPIES + 1;
-    ZlibDecoder::new(packed).take(most).read_to_end(&mut inside)?;
+    ZlibDecoder::new(packed).take(most).read_to_end(&mut inside).map_err(damaged)?;
     budget.check(COPIES * inside.len() as u64)?;
     Ok(inside)
 }
 
-fn fault<T>(text: &str) -> Result<T, Fault> {
-    Err(Fault::Damaged(text.to_owned()))
+fn fault<T>(text: &str) -> Result<T, ReadError> {
+    Err(damaged(text))
 }
 
 /// Bytes that are read from the front.
@@ -116,7 +114,7 @@ struct Bytes<'a> {
 }
 
 impl Bytes<'_> {
-    fn take(&mut self, count: usize) -> Result<Self, Fault> {
+    fn take(&mut self, count: usize) -> Result<Self, ReadError> {
         let Some((taken, rest)) = self.data.split_at_checked(count) else {
             return fault("it is shorter than it says");
         };
@@ -124,13 +122,13 @@ impl Bytes<'_> {
         Ok(Self { data: taken, ..*self })
     }
 
-    fn u32(&mut self) -> Result<u32, Fault> {
+    fn u32(&mut self) -> Result<u32, ReadError> {
         let bytes = self.take(4)?.data.try_into().unwrap_or_default();
         Ok(if self.big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
     }
 
     /// The next data element: its type and its data. Small ones are packed into the tag.
-    fn element(&mut self) -> Result<(u32, Self), Fault> {
+    fn element(&mut self) -> Result<(u32, Self), ReadError> {
         let kind = self.u32()?;
         if kind >> 16 != 0 {
             let data = self.take(4)?.take((kind >> 16) as usize)?;
@@ -144,7 +142,7 @@ impl Bytes<'_> {
     }
 
     /// The numbers of the next element.
-    fn numbers(&mut self) -> Result<Vec<f64>, Fault> {
+    fn numbers(&mut self) -> Result<Vec<f64>, ReadError> {
         let (kind, data) = self.element()?;
         match kind {
             1 => data.each(|[byte]| f64::from(byte.cast_signed())),
@@ -162,7 +160,7 @@ impl Bytes<'_> {
     }
 
     /// The next element as whole numbers that are not negative.
-    fn counts(&mut self) -> Result<Vec<usize>, Fault> {
+    fn counts(&mut self) -> Result<Vec<usize>, ReadError> {
         let numbers = self.numbers()?;
         if numbers.iter().any(|number| *number < 0.0) {
             return fault("an array has a negative length");
@@ -172,7 +170,7 @@ impl Bytes<'_> {
     }
 
     /// Each value of `N` bytes, the lowest byte first.
-    fn each<const N: usize, T>(self, value: impl Fn([u8; N]) -> T) -> Result<Vec<T>, Fault> {
+    fn each<const N: usize, T>(self, value: impl Fn([u8; N]) -> T) -> Result<Vec<T>, ReadError> {
         let (values, _) = self.data.as_chunks::<N>();
         self.budget.take_values(values.len(), NUMBER_SIZE)?;
         let lowest_first = |mut bytes: [u8; N]| {
@@ -185,7 +183,7 @@ impl Bytes<'_> {
     }
 
     /// The next element as text.
-    fn text(&mut self) -> Result<String, Fault> {
+    fn text(&mut self) -> Result<String, ReadError> {
         let (kind, data) = self.element()?;
         self.budget.take_values(data.data.len(), 4)?;
         Ok(match kind {
@@ -200,7 +198,7 @@ impl Bytes<'_> {
         name: String,
         depth: usize,
         found: &mut Vec<Variable>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), ReadError> {
         match self.element()? {
             (MATRIX, data) => array(data, Some(name), depth + 1, found),
             _ => fault("an array is missing"),
@@ -214,7 +212,7 @@ fn array(
     name: Option<String>,
     depth: usize,
     found: &mut Vec<Variable>,
-) -> Result<(), Fault> {
+) -> Result<(), ReadError> {
     if depth > DEEPEST {
         return fault("structures lie too deep in one another");
     }
@@ -255,7 +253,7 @@ fn content(
     name: &str,
     depth: usize,
     found: &mut Vec<Variable>,
-) -> Result<Option<Content>, Fault> {
+) -> Result<Option<Content>, ReadError> {
     let size = dims.iter().try_fold(1_usize, |size, length| size.checked_mul(*length));
     let Some(size) = size else { return fault("it is larger than any memory") };
     Ok(Some(match flags & 0xff {
@@ -306,7 +304,7 @@ fn structures(
     name: &str,
     depth: usize,
     found: &mut Vec<Variable>,
-) -> Result<(), Fault> {
+) -> Result<(), ReadError> {
     let length = data.counts()?.first().copied().unwrap_or_default().max(1);
     let (_, names) = data.element()?;
     let field = |bytes: &[u8]| {
@@ -356,12 +354,12 @@ mod tests {
     }
     use crate::experiment::MemoryLimit;
 
-    fn of(file: &[u8]) -> Result<Vec<Variable>, Fault> {
+    fn of(file: &[u8]) -> Result<Vec<Variable>, ReadError> {
         read(file, &Budget::new(MemoryLimit::default()))
     }
 
-    fn reason(fault: Fault) -> String {
-        fault.refuse(Path::new("log.mat")).to_string()
+    fn reason(fault: ReadError) -> String {
+        fault.in_file(Path::new("log.mat")).to_string()
     }
 
     /// A data element of the type `kind`.

@@ -1,15 +1,20 @@
 //! MATLAB 7.3 (`save -v7.3`): HDF5, with a class on every object.
 //!
 //! The crate hdf5-pure 0.47 follows hard links in circles and takes memory for what a dataset
-//! says of its size, so both are checked before it is asked; [`open`] bounds what it reads for one object.
+//! says of its size, so both are checked before it is asked. It follows the parts of an object's header that
+//! name further parts, to a depth of 32 and without an end to their number: where each names the next one
+//! twice, a few kilobytes are billions of parts. So much is read for one object, and no more.
 
+use std::fs;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use hdf5_pure::{AttrValue, Chunk, DType, Dataset, Group};
+use hdf5_pure::{
+    AttrValue, Chunk, DType, Dataset, Error, File, FormatError, Group, ReadSeekSource, Source,
+};
 
-use super::Fault;
-use super::variable::{Content, Variable, object};
-use super::watched::{Reads, open};
+use super::variable::{Content, Variable, damaged, object};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::table::LONGEST_NAME;
@@ -32,8 +37,8 @@ const FEW_OBJECTS: u64 = 256;
 /// of one.
 const LARGEST_RATIO: u64 = 1100;
 
-fn fault<T>(text: String) -> Result<T, Fault> {
-    Err(Fault::Damaged(text))
+fn fault<T>(text: String) -> Result<T, ReadError> {
+    Err(damaged(text))
 }
 
 /// A file whose variables are being listed.
@@ -50,10 +55,6 @@ struct Listing<'a> {
 
 /// The variables of a file, their numbers still stored.
 pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
-    listed(path, budget).map_err(|fault| fault.refuse(path))
-}
-
-fn listed(path: &Path, budget: &Budget) -> Result<Vec<Variable>, Fault> {
     let (file, reads) = open(path)?;
     let size = file.file_size();
     let objects = size / OBJECT_SIZE + FEW_OBJECTS;
@@ -64,19 +65,13 @@ fn listed(path: &Path, budget: &Budget) -> Result<Vec<Variable>, Fault> {
     Ok(listing.found)
 }
 
-/// The numbers of a column of a matrix that is stored, as it lies in the file.
+/// The numbers of a column of a matrix that is stored, as it lies in the file of `size` bytes.
 pub(super) fn column(
     dataset: &Dataset,
     column: usize,
-    path: &Path,
+    size: u64,
     budget: &Budget,
 ) -> Result<Vec<f64>, ReadError> {
-    let size = path.metadata();
-    let size = size.map_err(|source| ReadError::Io { path: path.to_owned(), source })?.len();
-    stored(dataset, column, size, budget).map_err(|fault| fault.refuse(path))
-}
-
-fn stored(dataset: &Dataset, column: usize, size: u64, budget: &Budget) -> Result<Vec<f64>, Fault> {
     // Memory is taken for each chunk before it is read.
     let ends = |chunk: &Chunk| chunk.address.checked_add(chunk.storage_size);
     let lies_within = |chunk: &Chunk| ends(chunk).is_some_and(|end| end <= size);
@@ -104,7 +99,7 @@ fn product(first: u64, others: &[u64]) -> Option<u64> {
 
 impl Listing<'_> {
     /// Adds what lies in a group, which is a structure; by name, so that the order is certain.
-    fn group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), Fault> {
+    fn group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), ReadError> {
         let mut datasets = group.datasets()?;
         datasets.sort();
         let count = datasets.len();
@@ -139,7 +134,7 @@ impl Listing<'_> {
         Ok(())
     }
 
-    fn variable(&self, name: String, dataset: Dataset) -> Result<Variable, Fault> {
+    fn variable(&self, name: String, dataset: Dataset) -> Result<Variable, ReadError> {
         let shape = dataset.shape()?;
         let chunk = dataset.chunk_shape()?.unwrap_or_default();
         let (element, most) = (dataset.element_size()?, self.size.saturating_mul(LARGEST_RATIO));
@@ -181,4 +176,59 @@ fn content(class: &str, dataset: Dataset) -> Content {
         (_, class) => return object(class),
     };
     Content::Other(kind.to_owned())
+}
+
+/// Reads for one object of a file of any size.
+const FEW_READS: u64 = 20_000;
+
+/// Bytes of a file for each read for one object, at the least: a group has an entry, a name and a
+/// header for each object in it, which are some ten reads of half a kilobyte.
+const READ_SIZE: u64 = 16;
+
+/// Reads that are still allowed.
+#[derive(Clone, Debug)]
+struct Reads {
+    left: Arc<AtomicU64>,
+    of_an_object: u64,
+}
+
+impl Reads {
+    /// The next object is begun.
+    fn begin(&self) {
+        self.left.store(self.of_an_object, Ordering::Relaxed);
+    }
+
+    /// All objects are known: their numbers lie where they were said to.
+    fn end(&self) {
+        self.left.store(u64::MAX, Ordering::Relaxed);
+    }
+}
+
+struct Watched {
+    file: ReadSeekSource<fs::File>,
+    reads: Reads,
+}
+
+impl Source for Watched {
+    fn len(&self) -> u64 {
+        self.file.len()
+    }
+
+    fn read_at(&self, offset: u64, buf: &mut [u8]) -> Result<(), FormatError> {
+        let one_less = |left: u64| left.checked_sub(1);
+        let taken = self.reads.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_less);
+        if taken.is_err() {
+            let why = "the header of an object names its own parts without end";
+            return Err(FormatError::Source(why.to_owned()));
+        }
+        self.file.read_at(offset, buf)
+    }
+}
+
+/// Opens a file, whose reads are counted.
+fn open(path: &Path) -> Result<(File, Reads), Error> {
+    let file = ReadSeekSource::new(fs::File::open(path).map_err(Error::Io)?)?;
+    let of_an_object = FEW_READS + file.len() / READ_SIZE;
+    let reads = Reads { left: Arc::new(AtomicU64::new(of_an_object)), of_an_object };
+    Ok((File::from_source(Watched { file, reads: reads.clone() })?, reads))
 }

@@ -1,6 +1,21 @@
-//! The variables of a file, and their shape as columns.
+//! The variables of a file, their shape as columns, and why a file is refused.
 
+use std::fmt::Display;
+
+use crate::experiment::error::ReadError;
 use crate::experiment::table::Header;
+
+/// Why a file is refused.
+pub(super) fn damaged(reason: impl Display) -> ReadError {
+    let remedy = "save it again, with `save -v7` if it is of another version";
+    ReadError::format("MATLAB", reason, remedy)
+}
+
+impl From<hdf5_pure::Error> for ReadError {
+    fn from(error: hdf5_pure::Error) -> Self {
+        damaged(error)
+    }
+}
 
 /// A variable, or a field of one.
 pub(super) struct Variable {

@@ -2,14 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use super::fault::Fault;
 use super::notes;
 use super::runs::in_runs;
 use super::series::{NUMBER_SIZE, Series, interval};
-use super::topics::{Clock, Topics};
+use super::stream::refused;
+use super::topics::Topics;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::Budget;
 use crate::experiment::names::listed;
-use crate::experiment::table::Column;
+use crate::experiment::table::Wanted;
 
 /// Time in nanoseconds by which a step may come late, and by which rows are apart then.
 const LATE: i64 = 10_000_000;
@@ -20,23 +21,13 @@ const MOST_ROWS: i64 = 10;
 /// Usual intervals beyond which nothing is known between two messages, as in tables.
 const LONGEST: f64 = 3.0;
 
-/// What is aligned, and how.
-pub(super) struct Alignment<'a> {
-    pub(super) topics: &'a Topics,
-    /// The topic that gives the rows.
-    pub(super) topic: usize,
-    /// The header of labels, which are held between two messages, as numbers are not.
-    pub(super) label: Option<usize>,
-    pub(super) budget: &'a Budget,
-}
-
 /// Columns with a value for each row.
 #[derive(Default)]
 pub(super) struct Aligned {
     /// Nanoseconds.
-    times: Vec<i64>,
+    pub(super) times: Vec<i64>,
     /// By the header of each.
-    columns: BTreeMap<usize, Vec<f64>>,
+    pub(super) columns: BTreeMap<usize, Vec<f64>>,
     /// What was held, and what is missing from it.
     pub(super) notes: Vec<String>,
 }
@@ -51,23 +42,28 @@ struct Row {
     is_own: bool,
 }
 
-impl Alignment<'_> {
+impl Topics {
     /// All series at the messages of the topic, and at times between these where it is slow: each is held
     /// from its latest message.
     /// What comes before the first message of all others is left out; what begins later is NaN up to
     /// there, so that a joint whose command comes late takes no rows from those beside it.
-    pub(super) fn align(&self, series: Vec<Series>) -> Result<Aligned, Fault> {
+    pub(super) fn align(
+        &self,
+        series: Vec<Series>,
+        wanted: &Wanted<'_>,
+        budget: &Budget,
+    ) -> Result<Aligned, ReadError> {
         let (mut aligned, mut failed) = (Aligned::default(), Vec::new());
-        for run in in_runs(series, self.topic) {
-            match self.align_run(run) {
+        for run in in_runs(series, wanted.clock) {
+            match self.align_run(run, wanted, budget) {
                 Ok(run) => aligned.append(run),
-                Err(fault @ Fault::Damaged { .. }) => failed.push(fault),
-                Err(fault) => return Err(fault),
+                Err(error) if matches!(error.kind, ReadErrorKind::Format) => failed.push(error),
+                Err(error) => return Err(error),
             }
         }
         let left_out = failed.len();
         match failed.into_iter().next() {
-            Some(fault) if aligned.times.is_empty() => return Err(fault),
+            Some(error) if aligned.times.is_empty() => return Err(error),
             Some(_) => aligned.notes.push(format!(
                 "its clock starts anew, and {left_out} runs without a message of each topic are left out"
             )),
@@ -77,9 +73,14 @@ impl Alignment<'_> {
     }
 
     /// [`Self::align`] of a run in which the clock does not start anew.
-    fn align_run(&self, mut series: Vec<Series>) -> Result<Aligned, Fault> {
+    fn align_run(
+        &self,
+        mut series: Vec<Series>,
+        wanted: &Wanted<'_>,
+        budget: &Budget,
+    ) -> Result<Aligned, ReadError> {
         series.iter_mut().for_each(Series::sort);
-        let Some(place) = series.iter().position(|series| series.topic == self.topic) else {
+        let Some(place) = series.iter().position(|series| series.topic == wanted.clock) else {
             return Ok(Aligned::default());
         };
         let clock = series.swap_remove(place);
@@ -88,7 +89,7 @@ impl Alignment<'_> {
         let columns = held.iter().chain([&clock]).map(|series| series.columns.len()).sum();
         // A topic of one message is held at as many rows as there are.
         let most = clock.times.len().saturating_mul(usize::try_from(parts).unwrap_or(1));
-        self.budget.take_values(most.saturating_mul(columns), NUMBER_SIZE)?;
+        budget.take_values(most.saturating_mul(columns), NUMBER_SIZE)?;
         let rows = rows(&clock, parts);
         let mut columns = BTreeMap::new();
         let mut start = if held.is_empty() { 0 } else { rows.len() };
@@ -101,11 +102,11 @@ impl Alignment<'_> {
             }
         }
         if start == rows.len() && start > 0 {
-            return Err(self.never_together(&held));
+            return Err(self.never_together(&clock, &held));
         }
         let notes = self.notes(&clock, &held, start);
         for column in clock.columns {
-            let at_rows = if self.label == Some(column.header) { labels } else { own };
+            let at_rows = if wanted.label == Some(column.header) { labels } else { own };
             columns.insert(column.header, at_rows(&column.values, &rows));
         }
         for values in columns.values_mut() {
@@ -115,11 +116,11 @@ impl Alignment<'_> {
         Ok(Aligned { times, columns, notes })
     }
 
-    fn never_together(&self, held: &[Series]) -> Fault {
-        let topic = self.topics.name(self.topic);
-        let others = listed(held.iter().map(|series| self.topics.name(series.topic)));
+    fn never_together(&self, clock: &Series, held: &[Series]) -> ReadError {
+        let topic = self.name(clock.topic);
+        let others = listed(held.iter().map(|series| self.name(series.topic)));
         let reason = format!("no message of {topic} comes after the first ones of {others}");
-        Fault::new(
+        refused(
             reason,
             "choose topics that were recorded together, and `--time log_time` where their stamps are of \
              several clocks",
@@ -128,8 +129,8 @@ impl Alignment<'_> {
 
     /// What was held, where the first rows up to `start` are left out, and what is missing.
     fn notes(&self, clock: &Series, held: &[Series], start: usize) -> Vec<String> {
-        let topic = self.topics.name(self.topic);
-        let others: Vec<&str> = held.iter().map(|held| self.topics.name(held.topic)).collect();
+        let topic = self.name(clock.topic);
+        let others: Vec<&str> = held.iter().map(|held| self.name(held.topic)).collect();
         let mut notes: Vec<String> = notes::held(topic, &others, start).into_iter().collect();
         notes.extend(notes::without_values(clock, topic));
         let end = clock.times.last().copied().unwrap_or_default();
@@ -227,26 +228,6 @@ impl Aligned {
                 self.notes.push(note);
             }
         }
-    }
-
-    pub(super) fn rows(&self) -> usize {
-        self.times.len()
-    }
-
-    /// The values of a header.
-    pub(super) fn values(&self, header: usize) -> &[f64] {
-        self.columns.get(&header).map_or(&[], Vec::as_slice)
-    }
-
-    /// The column of a header, handed over.
-    pub(super) fn column(&mut self, header: usize) -> Column {
-        Column::of(self.columns.remove(&header).unwrap_or_default())
-    }
-
-    /// Seconds from `zero` on, by the clock that the messages were collected by.
-    pub(super) fn times(&self, wanted: Clock, clock: Clock, zero: i64) -> Column {
-        let times = self.times.iter().filter(|_| wanted == clock);
-        Column::of(times.map(|time| time.saturating_sub(zero) as f64 / 1e9))
     }
 }
 

@@ -4,14 +4,15 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::message::{Fields, Value};
+use crate::experiment::error::ReadError;
 
 /// Hands each number in those fields of a message that are `wanted` to `visit` with its name, until that
 /// fails.
-pub(super) fn each_number<E>(
+pub(super) fn each_number(
     message: &Value<'_>,
     wanted: impl Fn(&str) -> bool,
-    mut visit: impl FnMut(&str, f64) -> Result<(), E>,
-) -> Result<(), E> {
+    mut visit: impl FnMut(&str, f64) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
     let Value::Message(fields) = message else { return Ok(()) };
     let mut outer = vec![fields];
     for (field, value) in fields.iter().filter(|(field, _)| wanted(field)) {
@@ -26,12 +27,12 @@ pub(super) fn first_field(name: &str) -> &str {
 }
 
 /// [`each_number`] of a value of this `name` that lies in the messages `outer`.
-fn walk<'m, E>(
+fn walk<'m>(
     value: &'m Value<'m>,
     outer: &mut Vec<&'m Fields<'m>>,
     name: &mut String,
-    visit: &mut impl FnMut(&str, f64) -> Result<(), E>,
-) -> Result<(), E> {
+    visit: &mut impl FnMut(&str, f64) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
     let length = name.len();
     match value {
         Value::Number(number) => visit(name, *number)?,
@@ -107,7 +108,7 @@ mod tests {
 
     fn numbers(message: &Value<'_>) -> Vec<(String, f64)> {
         let mut found = Vec::new();
-        each_number::<()>(
+        each_number(
             message,
             |_| true,
             |name, number| {

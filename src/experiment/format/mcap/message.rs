@@ -284,7 +284,7 @@ mod tests {
         let decoder = Decoder::new("demo/msg/Twins", DEFINITION.as_bytes()).unwrap();
         let bytes = message();
         let mut found = Vec::new();
-        each_number::<()>(
+        each_number(
             &decoder.decode(&bytes).unwrap(),
             |_| true,
             |name, value| {

@@ -11,7 +11,6 @@
 //! is kept.
 
 mod align;
-mod fault;
 mod fields;
 mod message;
 mod notes;
@@ -22,22 +21,21 @@ mod topics;
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufReader, Read};
-use std::path::Path;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
 
 use mcap::records::{MessageHeader, Record};
 
-use self::align::{Aligned, Alignment};
-use self::fault::Fault;
 use self::series::Series;
+use self::stream::refused;
 use self::topics::{Clock, Place, Topics};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
-use crate::experiment::source::Hashing;
-use crate::experiment::table::{Head, Labels, OpenTable, RowNumbers, Rows, Table, Wanted};
+use crate::experiment::table::{Column, Head, Labels, OpenTable, Rows, Table, Wanted};
 
 /// A file whose topics are known.
 struct Unread {
+    path: PathBuf,
     topics: Topics,
     places: Vec<Place>,
     budget: Budget,
@@ -47,58 +45,46 @@ struct Unread {
 pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     let (file, size) = opened(path)?;
     let mut topics = Topics::default();
-    stream::each_record(BufReader::new(file), size, &budget, |record| {
-        topics.look_at(record, &budget)
-    })
-    .and_then(|()| topics.check())
-    .map_err(|fault| fault.refuse(path))?;
+    stream::each_record(file, size, &budget, |record| topics.look_at(record, &budget))
+        .and_then(|()| topics.check())?;
     let places = topics.places();
     let headers = places.iter().map(|place| topics.header(place)).collect();
     let unread = std::mem::take(&mut topics.left);
-    let rows = Box::new(Unread { topics, places, budget });
-    let head = Head { path: path.to_owned(), headers, header_row: 0, unread };
-    Ok(OpenTable { head, rows })
+    let rows = Box::new(Unread { path: path.to_owned(), topics, places, budget });
+    Ok(OpenTable { head: Head { headers, header_row: 0, unread }, rows })
 }
 
 /// The file, and its length in bytes.
-fn opened(path: &Path) -> Result<(File, u64), ReadError> {
-    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-    let file = File::open(path).map_err(io_error)?;
-    let size = file.metadata().map_err(io_error)?.len();
-    Ok((file, size))
+fn opened(path: &Path) -> Result<(BufReader<File>, u64), ReadError> {
+    let file = File::open(path)?;
+    let size = file.metadata()?.len();
+    Ok((BufReader::new(file), size))
 }
 
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let path = wanted.path();
-        let (file, size) = opened(path)?;
-        let mut file = Hashing::new(BufReader::new(file));
         let clock = self.clock(wanted);
-        let series = self
-            .collect(&mut file, size, clock, self.series(wanted))
-            .map_err(|fault| fault.refuse(path))?;
-        let source = file.finish(path)?;
+        let series = self.collect(clock, self.series(wanted))?;
         let name = |topic| self.topics.name(topic);
         let of_several = notes::clocks_differ(&series, name, clock.name());
-        let alignment = Alignment {
-            topics: &self.topics,
-            topic: wanted.clock,
-            label: wanted.label,
-            budget: &self.budget,
-        };
-        let mut aligned = alignment.align(series).map_err(|fault| fault.refuse(path))?;
-        let zero = self.topics.zero(clock).unwrap_or_default();
+        let mut aligned = self.topics.align(series, wanted, &self.budget)?;
+        let zero = self.topics.zero.get(&clock).copied().unwrap_or_default();
         let times = format!("times are {} from {:.9} s on", clock.name(), zero as f64 * 1e-9);
         let notes = [times].into_iter().chain(std::mem::take(&mut aligned.notes)).chain(of_several);
-        let notes = notes.map(|note| format!("{}: {note}", path.display())).collect();
-        let trials = self.labels(wanted, &aligned)?.runs();
-        let rows = RowNumbers::counted(aligned.rows());
+        let notes = notes.collect();
+        let labels = wanted.label.and_then(|label| aligned.columns.get(&label));
+        let labels = labels.into_iter().flatten().map(f64::to_string);
+        let labels = Labels::of(labels, &self.budget)?;
         let column = |index: &usize| match self.places.get(*index) {
-            Some(Place::Time(other)) => aligned.times(*other, clock, zero),
-            _ => aligned.column(*index),
+            Some(Place::Time(other)) => {
+                let times = aligned.times.iter().filter(|_| *other == clock);
+                times.map(|time| time.saturating_sub(zero) as f64 / 1e9).collect()
+            }
+            _ => aligned.columns.remove(index).unwrap_or_default(),
         };
-        let columns = wanted.numeric.iter().map(column).collect();
-        Ok(Table { source, rows, columns, trials, notes })
+        let columns = wanted.numeric.iter().map(column).map(Column::of).collect();
+        let rows = aligned.times.len();
+        Ok(Table { notes, ..Table::counted(rows, columns, labels) })
     }
 }
 
@@ -123,14 +109,13 @@ impl Unread {
         series
     }
 
-    /// Collects what is wanted of the messages of a file of `size` bytes.
+    /// Collects what is wanted of the messages.
     fn collect(
         &self,
-        file: impl Read,
-        size: u64,
         clock: Clock,
         mut series: BTreeMap<usize, Series>,
-    ) -> Result<Vec<Series>, Fault> {
+    ) -> Result<Vec<Series>, ReadError> {
+        let (file, size) = opened(&self.path)?;
         let mut place = 0_u32;
         stream::each_record(file, size, &self.budget, |record| {
             if let Record::Message { header, data } = record {
@@ -149,13 +134,13 @@ impl Unread {
         data: &[u8],
         clock: Clock,
         series: &mut BTreeMap<usize, Series>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), ReadError> {
         let Some(channel) = self.topics.channels.get(&header.channel_id) else { return Ok(()) };
         let Some(series) = series.get_mut(&channel.topic) else { return Ok(()) };
         let name = self.topics.name(channel.topic);
         let value = channel.decoder.decode(data).map_err(|reason| {
             let (number, time) = (header.sequence, header.log_time);
-            Fault::new(
+            refused(
                 format!(
                     "the message of `{name}` with the sequence number {number}, logged at {time} ns: {reason}"
                 ),
@@ -163,23 +148,13 @@ impl Unread {
             )
         })?;
         let Some(time) = clock.time(header, &value) else {
-            return Err(Fault::new(
+            return Err(refused(
                 format!("the messages of `{name}` have no {}", clock.name()),
                 "choose another time column; `log_time` is the time of recording",
             ));
         };
         let lag = Clock::Log.time(header, &value).map(|recorded| recorded.saturating_sub(time));
         series.least_lag = [series.least_lag, lag].into_iter().flatten().min();
-        Ok(series.push((time, place), &value, &self.budget)?)
-    }
-
-    /// The labels of the rows.
-    fn labels(&self, wanted: &Wanted<'_>, aligned: &Aligned) -> Result<Labels, ReadError> {
-        let mut labels = Labels::default();
-        let values = wanted.label.map_or(&[][..], |label| aligned.values(label));
-        for (value, row) in values.iter().zip(1..) {
-            labels.push(&value.to_string(), row, (wanted.path(), &self.budget))?;
-        }
-        Ok(labels)
+        series.push((time, place), &value, &self.budget)
     }
 }

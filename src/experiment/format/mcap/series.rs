@@ -4,7 +4,8 @@ use std::collections::{HashMap, HashSet};
 
 use super::fields::{each_number, first_field};
 use super::message::Value;
-use crate::experiment::memory::{Budget, TooLarge};
+use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
 use crate::numerics::median;
 
 /// Memory of a number: itself, a copy, and what its vector has to spare.
@@ -58,7 +59,7 @@ impl Series {
         (time, place): (i64, u32),
         message: &Value<'_>,
         budget: &Budget,
-    ) -> Result<(), TooLarge> {
+    ) -> Result<(), ReadError> {
         let mut numbers = vec![None; self.columns.len()];
         each_number(
             message,

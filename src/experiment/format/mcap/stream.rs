@@ -6,13 +6,14 @@
 //! # References
 //! MCAP format specification, <https://mcap.dev/spec>, records 0x03 to 0x06.
 
+use std::fmt::Display;
 use std::io::Read;
 
 use mcap::McapError;
 use mcap::records::{ChunkHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use super::fault::Fault;
+use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 
 /// A record larger than this is a sign of damage: memory is not asked for it.
@@ -21,6 +22,23 @@ const LARGEST_RECORD: u64 = 1 << 30;
 /// Bytes before a record: what it is, and its length.
 const RECORD_HEAD: usize = 9;
 
+/// Why a file is refused.
+pub(super) fn refused(reason: impl Display, remedy: &str) -> ReadError {
+    ReadError::format("MCAP", reason, remedy)
+}
+
+impl From<McapError> for ReadError {
+    fn from(error: McapError) -> Self {
+        let remedy = match error {
+            McapError::UnsupportedCompression(_) => {
+                "write it with the compression zstd, lz4 or none: `mcap compress FILE`"
+            }
+            _ => "`mcap recover FILE` saves what is whole",
+        };
+        refused(error, remedy)
+    }
+}
+
 /// Hands the schemas, channels and messages of a file of `size` bytes to `visit`, those in chunks
 /// too, with memory for one chunk. Checksums of chunks and of all data are compared where the
 /// file has them.
@@ -28,8 +46,8 @@ pub(super) fn each_record(
     mut file: impl Read,
     size: u64,
     budget: &Budget,
-    mut visit: impl FnMut(Record<'_>) -> Result<(), Fault>,
-) -> Result<(), Fault> {
+    mut visit: impl FnMut(Record<'_>) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
     // No record is larger than its file: memory is not asked for one that says so.
     let largest = usize::try_from(size.min(LARGEST_RECORD)).unwrap_or(usize::MAX);
     let options = LinearReaderOptions::default()
@@ -59,8 +77,8 @@ pub(super) fn each_record(
 /// Hands on the records of a chunk.
 fn each_in_chunk(
     mut rest: &[u8],
-    visit: &mut impl FnMut(Record<'_>) -> Result<(), Fault>,
-) -> Result<(), Fault> {
+    visit: &mut impl FnMut(Record<'_>) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
     while !rest.is_empty() {
         let head = rest.split_first_chunk::<RECORD_HEAD>();
         let ([opcode, length @ ..], data) = head.ok_or(McapError::UnexpectedEoc)?;
@@ -75,7 +93,7 @@ fn each_in_chunk(
 }
 
 /// What a chunk holds.
-fn unpacked(header: &ChunkHeader, data: &[u8], budget: &Budget) -> Result<Vec<u8>, Fault> {
+fn unpacked(header: &ChunkHeader, data: &[u8], budget: &Budget) -> Result<Vec<u8>, ReadError> {
     let inside: Box<dyn Read + '_> = match header.compression.as_str() {
         "" => Box::new(data),
         "zstd" => {

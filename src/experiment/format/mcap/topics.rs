@@ -1,14 +1,15 @@
 //! What is known of a file before its values are read: topics, their fields, times.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use mcap::records::{Channel, MessageHeader, Record};
 
-use super::fault::Fault;
 use super::fields::each_number;
 use super::message::{Decoder, Value};
-use crate::experiment::memory::{Budget, TooLarge};
+use super::stream::refused;
+use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
 use crate::experiment::names::listed;
 use crate::experiment::table::Header;
 
@@ -24,7 +25,7 @@ const DECODER_SIZE: usize = 20;
 const FIELD_SIZE: usize = 40;
 
 /// The times that a message bears.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Clock {
     /// When it was recorded.
     Log,
@@ -35,8 +36,6 @@ pub(super) enum Clock {
 }
 
 impl Clock {
-    const ALL: [Self; 3] = [Self::Log, Self::Publish, Self::Stamp];
-
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Log => "log_time",
@@ -73,7 +72,7 @@ struct Topic {
 
 impl Topic {
     /// Learns the numbers of a message.
-    fn learn(&mut self, message: &Value<'_>, budget: &Budget) -> Result<(), TooLarge> {
+    fn learn(&mut self, message: &Value<'_>, budget: &Budget) -> Result<(), ReadError> {
         each_number(
             message,
             |_| true,
@@ -114,13 +113,13 @@ pub(super) struct Topics {
     pub(super) channels: HashMap<u16, Readable>,
     /// Topics that cannot be read, and why.
     pub(super) left: Vec<String>,
-    /// The earliest time by each clock.
-    zero: [Option<i64>; 3],
+    /// The earliest time by each clock that messages have, in nanoseconds.
+    pub(super) zero: BTreeMap<Clock, i64>,
 }
 
 impl Topics {
     /// Learns from a record.
-    pub(super) fn look_at(&mut self, record: Record<'_>, budget: &Budget) -> Result<(), Fault> {
+    pub(super) fn look_at(&mut self, record: Record<'_>, budget: &Budget) -> Result<(), ReadError> {
         match record {
             Record::Schema { header, data } => {
                 // It may be repeated; a file that was appended to may use its number anew.
@@ -140,18 +139,16 @@ impl Topics {
     }
 
     /// Keeps a channel; of one that cannot be read its topic, as another may be all that is asked for.
-    fn register(&mut self, channel: Channel, budget: &Budget) -> Result<(), Fault> {
+    fn register(&mut self, channel: Channel, budget: &Budget) -> Result<(), ReadError> {
         if self.channels.contains_key(&channel.id) {
             return Ok(());
         }
         let decoder = match self.schemas.get(&channel.schema_id).map(|schema| &schema.decoder) {
             Some(Ok(decoder)) if channel.message_encoding == "cdr" => Arc::clone(decoder),
-            Some(Err(reason)) => {
+            other => {
+                let refused = other.and_then(|decoder| decoder.as_ref().err());
+                let reason = refused.unwrap_or(&channel.message_encoding);
                 leave(&mut self.left, format!("{} ({reason})", channel.topic));
-                return Ok(());
-            }
-            _ => {
-                leave(&mut self.left, format!("{} ({})", channel.topic, channel.message_encoding));
                 return Ok(());
             }
         };
@@ -167,9 +164,19 @@ impl Topics {
     }
 
     /// Learns the fields and the times of a message.
-    fn learn(&mut self, header: &MessageHeader, data: &[u8], budget: &Budget) -> Result<(), Fault> {
-        let [start, ..] = &mut self.zero;
-        *start = [*start, i64::try_from(header.log_time).ok()].into_iter().flatten().min();
+    fn learn(
+        &mut self,
+        header: &MessageHeader,
+        data: &[u8],
+        budget: &Budget,
+    ) -> Result<(), ReadError> {
+        let zero = &mut self.zero;
+        let mut note = |clock, time: Option<i64>| {
+            if let Some(time) = time {
+                zero.entry(clock).and_modify(|zero| *zero = time.min(*zero)).or_insert(time);
+            }
+        };
+        note(Clock::Log, i64::try_from(header.log_time).ok());
         let Some(channel) = self.channels.get_mut(&header.channel_id) else { return Ok(()) };
         let Some(topic) = self.list.get_mut(channel.topic) else { return Ok(()) };
         channel.seen += 1;
@@ -184,15 +191,14 @@ impl Topics {
                 return Ok(());
             }
         };
-        for (clock, zero) in Clock::ALL.into_iter().zip(&mut self.zero) {
-            let time = clock.time(header, &value);
-            *zero = [*zero, time].into_iter().flatten().min();
+        for clock in [Clock::Log, Clock::Publish, Clock::Stamp] {
+            note(clock, clock.time(header, &value));
         }
-        Ok(topic.learn(&value, budget)?)
+        topic.learn(&value, budget)
     }
 
     /// Refuses a file in which no message can be read.
-    pub(super) fn check(&self) -> Result<(), Fault> {
+    pub(super) fn check(&self) -> Result<(), ReadError> {
         if self.list.iter().any(|topic| !topic.fields.is_empty()) {
             return Ok(());
         }
@@ -203,13 +209,12 @@ impl Topics {
                 listed(left.iter().map(String::as_str))
             ),
         };
-        Err(Fault::new(reason, "record topics of ROS 2 with `ros2 bag record -s mcap`"))
+        Err(refused(reason, "record topics of ROS 2 with `ros2 bag record -s mcap`"))
     }
 
     /// The times, and the fields of all topics.
     pub(super) fn places(&self) -> Vec<Place> {
-        let clocks = Clock::ALL.into_iter().filter(|clock| self.zero(*clock).is_some());
-        let mut places: Vec<Place> = clocks.map(Place::Time).collect();
+        let mut places: Vec<Place> = self.zero.keys().copied().map(Place::Time).collect();
         for (number, topic) in self.list.iter().enumerate() {
             places.extend(topic.fields.iter().map(|field| Place::Field(number, field.clone())));
         }
@@ -231,16 +236,6 @@ impl Topics {
 
     pub(super) fn name(&self, topic: usize) -> &str {
         self.list.get(topic).map_or("", |topic| &topic.name)
-    }
-
-    /// The earliest time by a clock, in nanoseconds, where messages have it.
-    pub(super) fn zero(&self, clock: Clock) -> Option<i64> {
-        let [log, publish, stamp] = self.zero;
-        match clock {
-            Clock::Log => log,
-            Clock::Publish => publish,
-            Clock::Stamp => stamp,
-        }
     }
 }
 
