@@ -88,7 +88,7 @@ fn shown(path: &Path) -> String {
 }
 
 /// The language of a file, and what it is called without its ending.
-fn language(path: &Path) -> anyhow::Result<(&'static dyn Language, &str)> {
+fn language(path: &Path) -> anyhow::Result<(Language, &str)> {
     let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default();
     let known = endings().iter().map(|ending| format!(".{ending}")).collect::<Vec<_>>().join(", ");
     let language = by_ending(ending)
@@ -97,7 +97,7 @@ fn language(path: &Path) -> anyhow::Result<(&'static dyn Language, &str)> {
 }
 
 /// The files that will be written: a C header and its source go together.
-fn planned(language: &dyn Language, path: &Path) -> Vec<PathBuf> {
+fn planned(language: Language, path: &Path) -> Vec<PathBuf> {
     language.endings().iter().map(|ending| path.with_extension(ending)).collect()
 }
 
