@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::ExportError;
+use super::error::ExportError;
 use crate::effect::expression::Program;
 use crate::effect::{Dimension, Stage};
 use crate::experiment::is_control;

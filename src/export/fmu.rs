@@ -19,8 +19,8 @@ use sha2::{Digest as _, Sha256};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-use super::ExportError;
-use super::language::filled;
+use super::error::ExportError;
+use super::template::filled;
 
 /// A file in the archive: its path and its bytes.
 type Entry = (String, Vec<u8>);

@@ -21,6 +21,7 @@ mod error;
 mod fmu;
 mod language;
 mod notation;
+mod template;
 
 pub use description::{Export, Units};
 pub use error::ExportError;

@@ -30,6 +30,6 @@ pub use models::{
 };
 pub(crate) use protocol::Watch;
 pub use protocol::{Mode, Protocol, Watched};
-pub use review::{Review, ReviewError, ReviewNote, Why};
+pub use review::{Review, ReviewError};
 pub(crate) use sweep::sweep_each;
 pub use sweep::{SweptJoint, sweep_joints};

@@ -146,6 +146,11 @@ impl DataArgs {
         self.reading.options()
     }
 
+    /// How logs are read, also of the joints that are not asked for.
+    pub(crate) fn options_with_others(&self) -> anyhow::Result<ReadOptions> {
+        Ok(ReadOptions { others: true, ..self.options()? })
+    }
+
     /// Whether no joint is named, so that all of the logs are used.
     pub(crate) fn has_all_joints(&self) -> bool {
         self.reading.joint.is_empty()

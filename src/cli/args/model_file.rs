@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 
 use crate::cli::console::{Host, Verbosity, message};
-use crate::cli::output::{target_of, write_file};
+use crate::cli::output::{target_of, write_bytes};
 use crate::experiment::{Joint, has_word, nearest_name, read_text};
 
 /// The name of a model file where none is given.
@@ -74,13 +74,8 @@ impl ModelFileArgs {
         if is_in_place && read.text() == revised.text() {
             return Ok(());
         }
-        write_file(target, |file| {
-            use std::io::Write as _;
-            Ok(file.write_all(revised.text().as_bytes())?)
-        })?;
-        if verbosity == Verbosity::Normal {
-            message("model", &target.display().to_string());
-        }
+        write_bytes(target, revised.text())?;
+        verbosity.say("model", target.display().to_string());
         Ok(())
     }
 }

@@ -2,16 +2,15 @@
 
 use std::borrow::Cow;
 use std::ffi::OsStr;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::read_model;
-use crate::cli::console::message;
+use crate::cli::console::{Verbosity, message};
 use crate::cli::exit::Completion;
-use crate::cli::output::{check_outputs, write_file};
+use crate::cli::output::{Outputs, write_bytes};
 use crate::experiment::{did_you_mean, nearest_name};
 use crate::export::{Export, File, Language, Units, by_ending, endings};
 use crate::model::{Component, Fitted, JointModel, ModelFile};
@@ -67,15 +66,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let paths = |file: &File| target.with_extension(file.ending);
     let planned: Vec<PathBuf> = planned(language, target);
     let planned: Vec<&Path> = planned.iter().map(PathBuf::as_path).collect();
-    check_outputs(&planned, std::slice::from_ref(&args.model))?;
+    let outputs = Outputs { files: planned, ..Outputs::default() };
+    outputs.check(std::slice::from_ref(&args.model))?;
     let export = exported(args, &model, joint)?;
     let files = language.files(&export, name).with_context(|| shown(target))?;
     for file in &files {
         let path = paths(file);
-        write_file(&path, |output| Ok(output.write_all(&file.content)?))?;
-        if !args.quiet {
-            message("model", &shown(&path));
-        }
+        write_bytes(&path, &file.content)?;
+        Verbosity::from(args.quiet).say("model", shown(&path));
         if let Some(note) = &file.note {
             message("note", &format!("{}: {note}", shown(&path)));
         }

@@ -8,9 +8,9 @@ use crate::synthetic::{PlantSpec, Synthetic, simulate, write_log, write_truth};
 use anyhow::{Context as _, bail};
 use clap::{Args as ClapArgs, ValueEnum};
 
-use crate::cli::console::{Bar, Verbosity, message};
+use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
-use crate::cli::output::{OutputFile, check_places, filled_file};
+use crate::cli::output::{OutputFile, Outputs, filled_file};
 use crate::experiment::read_text;
 
 /// Make a log of joints whose truth is known
@@ -103,25 +103,22 @@ const SEED: u64 = 1;
 const NOISE: f64 = 0.05;
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let verbosity = Verbosity::from(args.quiet);
     let spec = {
-        let _bar = Bar::spinner(Verbosity::from(args.quiet), "sizing effects");
+        let _bar = Bar::spinner(verbosity, "sizing effects");
         spec(args)?
     };
-    let outputs = std::iter::once(&args.output).chain(&args.truth);
-    let inputs = args.plant.iter().filter_map(|path| path.canonicalize().ok());
-    // What it writes is a log, which may be made anew.
-    check_places(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), &inputs.collect::<Vec<_>>())?;
-    let bar = Bar::spinner(Verbosity::from(args.quiet), "simulating");
+    let logs = std::iter::once(&args.output).chain(&args.truth).map(PathBuf::as_path).collect();
+    Outputs { logs, ..Outputs::default() }.check(args.plant.as_slice())?;
+    let bar = Bar::spinner(verbosity, "simulating");
     let made = match &args.plant {
         Some(path) => simulate(&spec).with_context(|| path.display().to_string())?,
         None => simulate(&spec)?,
     };
     write(args, &spec, &made)?;
     drop(bar);
-    if !args.quiet {
-        let (joints, steps) = (made.joints.len(), made.truth.len());
-        message("log", &format!("{}: {joints} joints, {steps} steps", args.output.display()));
-    }
+    let (joints, steps) = (made.joints.len(), made.truth.len());
+    verbosity.say("log", format!("{}: {joints} joints, {steps} steps", args.output.display()));
     Ok(Completion::Whole)
 }
 

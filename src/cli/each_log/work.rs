@@ -16,7 +16,7 @@ use super::each::Each;
 use super::store::{Kept, check_own_file, is_foreign, name_of, text_of};
 use super::typed::Typed;
 use super::with_parent;
-use crate::cli::console::{Bar, Verbosity, message};
+use crate::cli::console::{Bar, Verbosity};
 
 /// What is to be done, and where results are kept.
 pub(crate) struct Work<'a> {
@@ -50,17 +50,15 @@ impl Work<'_> {
         };
         let open: Vec<usize> = (0..logs.len()).filter(is_open).collect();
         let (left, all) = (open.len(), logs.len());
-        if left < all && self.each.run.verbosity() == Verbosity::Normal {
-            message("note", &format!("{} of {all} logs are done already", all - left));
+        if left < all {
+            let done = all - left;
+            self.verbosity().say("note", format!("{done} of {all} logs are done already"));
         }
-        if self.each.run.verbosity() == Verbosity::Normal {
-            self.note_replaced(open.iter().filter_map(|index| {
-                let (key, known) =
-                    (keys.get(*index)?.as_ref().ok()?, earlier.get(*index)?.as_ref()?);
-                (known.key != *key).then_some((*logs.get(*index)?, known))
-            }));
-        }
-        let bar = Bar::new(self.each.run.verbosity(), "working", "logs", open.len() as u64);
+        self.note_replaced(open.iter().filter_map(|index| {
+            let (key, known) = (keys.get(*index)?.as_ref().ok()?, earlier.get(*index)?.as_ref()?);
+            (known.key != *key).then_some((*logs.get(*index)?, known))
+        }));
+        let bar = Bar::new(self.verbosity(), "working", "logs", open.len() as u64);
         let failures = Mutex::new(Vec::new());
         let next = AtomicUsize::new(0);
         let processors = std::thread::available_parallelism().map_or(1, usize::from);
@@ -108,14 +106,18 @@ impl Work<'_> {
         let Some(first) = replaced.first() else { return };
         let (first, count) = (first.display(), replaced.len());
         let results = if count == 1 { "result is" } else { "results are" };
-        message(
+        self.verbosity().say(
             "note",
-            &format!(
+            format!(
                 "{count} {results} replaced: {first}, or a file that is given beside it, has changed \
                  since; results are known by the paths of their logs as typed, so that logs of one name in \
                  two folders need the folders in their paths"
             ),
         );
+    }
+
+    fn verbosity(&self) -> Verbosity {
+        self.each.run.verbosity()
     }
 
     /// Refuses a folder with results of another command, which would be replaced.

@@ -4,6 +4,7 @@ use std::path::Path;
 #[cfg(feature = "rrd")]
 use std::path::PathBuf;
 
+#[cfg(feature = "rrd")]
 use anyhow::bail;
 
 use crate::delay::Settings;
@@ -13,10 +14,12 @@ use crate::report::{ComparedJoint, DesignedJoint, EstimatedJoint, ImprovedJoint,
 
 use crate::study::OtherResult;
 
+#[cfg(feature = "rrd")]
+use super::file::filled_file;
 use super::file::{OutputFile, is_file, write_file};
 #[cfg(feature = "rrd")]
-use super::file::{check_outputs, filled_file};
-use crate::cli::console::{Bar, Verbosity, message};
+use super::outputs::Outputs;
+use crate::cli::console::{Bar, Verbosity};
 
 /// How many candidates are recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -78,13 +81,11 @@ impl Contents<'_> {
             let _bar = Bar::spinner(verbosity, "recording");
             self.write_parts(path)?
         };
-        if verbosity == Verbosity::Normal {
-            let path = path.display();
-            let (first, last) = (parts.first(), parts.last());
-            let ends = first.zip(last).map(|(first, last)| format!("{first} … {last}"));
-            let said = ends.unwrap_or_default();
-            message("recording", &format!("{path}; look at it with: rerun {path}; joints: {said}"));
-        }
+        let path = path.display();
+        let ends = parts.first().zip(parts.last());
+        let said = ends.map(|(first, last)| format!("{first} … {last}")).unwrap_or_default();
+        verbosity
+            .say("recording", format!("{path}; look at it with: rerun {path}; joints: {said}"));
         Ok(())
     }
 
@@ -98,7 +99,7 @@ impl Contents<'_> {
         let paths: Vec<PathBuf> = (1..=groups.len()).map(|number| part(path, number)).collect();
         let inputs: Vec<PathBuf> = self.sources.iter().map(|source| source.path.clone()).collect();
         let outputs: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
-        check_outputs(&outputs, &inputs)?;
+        Outputs { files: outputs.clone(), ..Outputs::default() }.check(&inputs)?;
         check_own(path, &outputs)?;
         let mut files = Vec::new();
         for (joints, path) in groups.iter().zip(&paths) {
@@ -167,26 +168,6 @@ impl Contents<'_> {
     fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
         Err(left_out())
     }
-}
-
-/// Refuses `others` that have the name of one of the files to which a recording of many joints at
-/// `path` goes.
-pub(crate) fn check_beside_parts(path: &Path, others: &[&Path]) -> anyhow::Result<()> {
-    let (stem, ending) = (path.file_stem(), path.extension());
-    let is_part = |other: &&&Path| {
-        let number = other.file_stem().and_then(|name| {
-            name.to_str()?.strip_prefix(stem?.to_str()?)?.strip_prefix('_')?.parse::<usize>().ok()
-        });
-        number.is_some() && other.extension() == ending && other.parent() == path.parent()
-    };
-    if let Some(other) = others.iter().find(is_part) {
-        bail!(
-            "{}: a recording of many joints has files of this name beside {}; give it another",
-            other.display(),
-            path.display()
-        );
-    }
-    Ok(())
 }
 
 /// Refuses to replace a file that lies where a part of the recording at `path` goes, and cannot be
@@ -287,10 +268,8 @@ fn record(
         let _bar = Bar::spinner(verbosity, "recording");
         write_file(path, write)?;
     }
-    if verbosity == Verbosity::Normal {
-        let path = path.display();
-        message("recording", &format!("{path}; look at it with: rerun {path}"));
-    }
+    let path = path.display();
+    verbosity.say("recording", format!("{path}; look at it with: rerun {path}"));
     Ok(())
 }
 

@@ -55,8 +55,9 @@ fn other(
         );
     }
     let experiment = data.read_other(path)?;
-    let estimates =
-        session.in_threads(|| session.estimates_of(&experiment.joints, (settings, automatic)))?;
+    let settings_of_one = std::slice::from_ref(settings);
+    let work = || session.estimates_of(&experiment.joints, settings_of_one, automatic).pop();
+    let estimates = session.in_threads(work)?.unwrap_or_default();
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(OtherResult::of(name, settings_in_short(settings), &experiment.joints, &estimates))
 }

@@ -24,11 +24,6 @@ pub(crate) fn estimated<'a>(
     estimated.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect()
 }
 
-/// The delays of the joint at `index`, where it has any.
-pub(crate) fn estimate_at(results: &Estimates, index: usize) -> Option<&JointEstimate> {
-    results.get(index)?.as_ref().ok()
-}
-
 /// A message on each file, joint and trial that failed.
 pub(crate) fn failures(experiment: &Experiment, results: &Estimates) -> Vec<String> {
     // With several files a trial's name says which one it is from.

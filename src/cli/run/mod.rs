@@ -11,10 +11,10 @@ mod study;
 
 pub(crate) use add_command::add_arguments;
 pub(crate) use against::{compared, left_over, others};
-pub(crate) use estimates::{Estimates, estimate_at, estimated, failures, notes};
+pub(crate) use estimates::{Estimates, estimated, failures, notes};
 pub(crate) use outcomes::outcomes;
 pub(crate) use revisions::{
-    Progress, entry, improved, log_hashes, models, revised, revision_names, with_fit,
+    Progress, Start, as_it_is, log_hashes, models, revised, revision_names,
 };
 pub(crate) use session::Session;
-pub(crate) use study::{Study, StudyContext};
+pub(crate) use study::Study;

@@ -43,14 +43,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     checks.extend(viewer::check());
     checks.extend(surroundings::all());
     let complete = checks.iter().all(|check| check.state != State::Missing);
-    match args.format {
-        Format::Text => console::print(&text(&checks))?,
-        Format::Json => console::print_json(&DoctorJson {
-            header: Header::of("tauscope/doctor/1"),
-            complete,
-            checks: &checks,
-        })?,
-    }
+    let header = Header::of("tauscope/doctor/1");
+    let json = DoctorJson { header, complete, checks: &checks };
+    args.format.print(|| text(&checks), || json)?;
     Ok(if complete { Completion::Whole } else { Completion::Partial })
 }
 

@@ -1,6 +1,5 @@
 //! The files that `tauscope estimate` writes.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
@@ -12,8 +11,8 @@ use super::args::OutputArgs;
 use super::estimated::Estimated;
 use crate::cli::console::Verbosity;
 use crate::cli::output::{
-    Contents, CsvText, FileKind, check_beside_parts, check_recorded, check_tables, write_csv,
-    write_file, write_parquet, write_table,
+    Contents, CsvText, FileKind, Outputs, write_bytes, write_csv, write_file, write_parquet,
+    write_table,
 };
 use crate::cli::viewer::Stream;
 use crate::study::{Review, ReviewError};
@@ -31,17 +30,15 @@ impl<'a> Files<'a> {
         inputs: &[PathBuf],
         text: CsvText,
     ) -> anyhow::Result<Self> {
-        let tables = [&args.decisions, &args.delays, &args.table, &args.review_sheet];
-        let others = [&args.export].into_iter().chain(tables);
-        let others: Vec<&Path> = others.flatten().map(PathBuf::as_path).collect();
-        check_recorded(args.recording.as_deref(), &others, inputs)?;
+        let given = |path: &'a Option<PathBuf>| path.as_deref();
+        let tables = [&args.decisions, &args.delays, &args.table].into_iter().filter_map(given);
+        let files = [&args.export, &args.review_sheet].into_iter().filter_map(given);
+        let (tables, files) = (tables.collect(), files.collect());
+        let recording = args.recording.as_deref();
+        Outputs { recording, tables, files, ..Outputs::default() }.check(inputs)?;
         if let Some(sheet) = &args.review_sheet {
             check_sheet(sheet)?;
         }
-        if let Some(recording) = &args.recording {
-            check_beside_parts(recording, &others)?;
-        }
-        check_tables(args.decisions.iter().chain(&args.delays).chain(&args.table))?;
         args.export.as_deref().map(named_lookup).transpose()?;
         Ok(Self { args, text })
     }
@@ -87,7 +84,7 @@ impl<'a> Files<'a> {
         if let Some(path) = self.args.export.as_ref().filter(|_| !lookup(result).is_empty()) {
             let (language, name) = named_lookup(path)?;
             let source = language.source(&lookup(result), name)?;
-            write_file(path, |file| Ok(file.write_all(source.as_bytes())?))?;
+            write_bytes(path, source)?;
         }
         let contents = Contents {
             command: "estimate",

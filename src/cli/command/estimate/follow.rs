@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use super::args::{Args, FollowArgs};
 use crate::cli::args::{Format, OwnSettings};
-use crate::cli::console::{self, Interrupt, Verbosity, message};
+use crate::cli::console::{self, Interrupt, message};
 use crate::cli::failure::said;
 use crate::cli::output::Contents;
 use crate::cli::viewer::Stream;
@@ -292,9 +292,9 @@ impl Reported {
     fn say_failures(&mut self, args: &Args, experiment: &Experiment, log: &Followed) {
         let failures = experiment.failures.iter();
         let failures: Vec<_> = failures.map(|f| log.named(&said(&f.error))).collect();
-        if args.output.run.verbosity() == Verbosity::Normal && failures != self.failures {
+        if failures != self.failures {
             for failure in &failures {
-                message("waiting", failure);
+                args.output.run.verbosity().say("waiting", failure);
             }
         }
         self.failures = failures;

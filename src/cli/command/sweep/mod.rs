@@ -19,7 +19,7 @@ use crate::cli::args::{ConditionArgs, DataArgs, Passband, RunArgs, ids_with, num
 use crate::cli::console::Bar;
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures, said};
-use crate::cli::output::{SweepContents, check_recorded};
+use crate::cli::output::{Outputs, SweepContents};
 use crate::cli::run::Session;
 use crate::cli::viewer::StreamArgs;
 use values::{Values, lengths, methods, passbands};
@@ -85,9 +85,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let verbosity = args.output.run.verbosity();
     let grid = args.grid()?;
     let recording = args.output.recording.as_deref();
-    check_recorded(recording, &[], &args.data.files())?;
+    Outputs { recording, ..Outputs::default() }.check(&args.data.files())?;
     let stream = args.output.stream.open(verbosity)?;
-    let session = Session::begin("sweep", &args.data, &args.output.run, stream)?;
+    let session =
+        Session::begin("sweep", &args.data, &args.data.options()?, (&args.output.run, stream))?;
     let experiment = &session.experiment;
     let joints = &experiment.joints;
     if recording.is_some() && joints.len() > MOST_RECORDED {
