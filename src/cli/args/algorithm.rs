@@ -1,7 +1,8 @@
 //! How delays are found: the options of `estimate` and `report`.
 
-use clap::{Args as ClapArgs, ValueEnum};
+use clap::Args as ClapArgs;
 
+use super::choice::{Choices, one_of};
 use super::conditions::{ConditionArgs, Passband, method, passband};
 use super::number::length;
 use crate::delay::{Automatic, Interpolation, Method, Settings};
@@ -31,8 +32,8 @@ pub(crate) struct AlgorithmArgs {
     conditions: ConditionArgs,
 
     /// The delay between two steps
-    #[arg(long, value_enum, default_value_t = Between::Hold)]
-    interpolate: Between,
+    #[arg(long, default_value = "hold", value_parser = one_of(BETWEEN))]
+    interpolate: Interpolation,
 }
 
 fn passband_help() -> String {
@@ -65,13 +66,11 @@ fn given<T>(value: Option<OrAuto<T>>) -> Option<T> {
     }
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Between {
-    /// Keep the delay until the next step
-    Hold,
-    /// Go in a line to the next accepted delay
-    Linear,
-}
+/// The delay between two steps.
+const BETWEEN: Choices<Interpolation> = &[
+    ("hold", "Keep the delay until the next step", Interpolation::Hold),
+    ("linear", "Go in a line to the next accepted delay", Interpolation::Linear),
+];
 
 impl AlgorithmArgs {
     /// The settings of each method that was asked for, each once.
@@ -114,12 +113,8 @@ impl AlgorithmArgs {
             Some(passband) => passband.low_pass(self.conditions.filter_order),
             None => base.low_pass,
         };
-        let interpolation = match self.interpolate {
-            Between::Hold => Interpolation::Hold,
-            Between::Linear => Interpolation::Linear,
-        };
         let low_pass_required = given(self.passband).is_some();
-        let settings = Settings { low_pass, low_pass_required, interpolation, ..base };
+        let settings = Settings { low_pass, low_pass_required, interpolation: self.interpolate, ..base };
         settings.with_alpha(alpha).with_beta(beta)
     }
 

@@ -1,11 +1,12 @@
 //! The settings that every command takes whose delays are asked for.
 
+use super::choice::{Choices, one_of};
 use super::number::{at_least_one, length, length_or_none, probability, threshold};
 use crate::delay::{FirstLast, InputKind, Method, MethodSpec, Settings};
 use crate::numerics::LowPass;
 use crate::units::Length;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 /// The settings that are no part of how a breakpoint is searched.
 #[derive(Args, Debug)]
@@ -43,8 +44,8 @@ pub(crate) struct ConditionArgs {
     max_sse: Option<f64>,
 
     /// Whether the first and the last step of a trial are judged
-    #[arg(long, value_enum, default_value_t = EndSteps::Auto)]
-    first_last: EndSteps,
+    #[arg(long, default_value = "auto", value_parser = one_of(FIRST_LAST))]
+    first_last: FirstLast,
 
     /// Judge the first and the last step of a trial, as `--first-last keep` does
     #[arg(long, conflicts_with = "first_last")]
@@ -67,27 +68,23 @@ pub(crate) struct ConditionArgs {
 
     /// Take the input as steps, each of which has a delay, or as moving all the time, with one
     /// dead time over the record; `auto` decides it for each joint from the record
-    #[arg(long, value_name = "KIND", value_enum, default_value_t = Input::Auto)]
-    input: Input,
+    #[arg(long, value_name = "KIND", default_value = "auto", value_parser = one_of(INPUT))]
+    input: InputKind,
 }
 
 /// How inputs are taken.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Input {
-    Auto,
-    Steps,
-    Continuous,
-}
+pub(super) const INPUT: Choices<InputKind> = &[
+    ("auto", "", InputKind::Auto),
+    ("steps", "", InputKind::Steps),
+    ("continuous", "", InputKind::Continuous),
+];
 
-impl From<Input> for InputKind {
-    fn from(input: Input) -> Self {
-        match input {
-            Input::Auto => Self::Auto,
-            Input::Steps => Self::Steps,
-            Input::Continuous => Self::Continuous,
-        }
-    }
-}
+/// Whether the first and the last step of a trial are judged.
+pub(super) const FIRST_LAST: Choices<FirstLast> = &[
+    ("auto", "In trials of three steps or fewer", FirstLast::Auto),
+    ("reject", "Never, as in the paper", FirstLast::Reject),
+    ("keep", "Always", FirstLast::Keep),
+];
 
 /// The methods that say so of themselves.
 pub(crate) fn ids_with(says: impl Fn(&MethodSpec) -> bool) -> String {
@@ -108,16 +105,6 @@ pub(crate) fn method() -> impl TypedValueParser<Value = Method> {
     let known = |method: Method| PossibleValue::new(method.id()).help(method.spec().summary);
     let ids = PossibleValuesParser::new(Method::all().map(known));
     ids.try_map(|id| Method::find(&id).ok_or("no method has this name"))
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum EndSteps {
-    /// In trials of three steps or fewer
-    Auto,
-    /// Never, as in the paper
-    Reject,
-    /// Always
-    Keep,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -183,9 +170,7 @@ impl ConditionArgs {
         match self.first_last {
             _ if self.paper => FirstLast::Reject,
             _ if self.keep_first_last => FirstLast::Keep,
-            EndSteps::Auto => FirstLast::Auto,
-            EndSteps::Reject => FirstLast::Reject,
-            EndSteps::Keep => FirstLast::Keep,
+            given => given,
         }
     }
 
@@ -203,7 +188,7 @@ impl ConditionArgs {
             paper: self.paper,
             accept_anyway: self.accept_anyway,
             min_step: self.min_step,
-            input: if self.paper { InputKind::Steps } else { self.input.into() },
+            input: if self.paper { InputKind::Steps } else { self.input },
             confidence,
             interval: self.interval,
             ..usual

@@ -2,6 +2,7 @@
 
 mod against;
 mod algorithm;
+mod choice;
 mod conditions;
 mod data;
 mod effects;
@@ -14,6 +15,7 @@ mod review;
 
 pub(crate) use against::AgainstArgs;
 pub(crate) use algorithm::AlgorithmArgs;
+pub(crate) use choice::{Choices, one_of};
 pub(crate) use conditions::{ConditionArgs, Passband, ids_with, passband};
 pub(crate) use data::{DataArgs, MemoryArgs, ReadingArgs};
 pub(crate) use effects::{EffectArgs, find};

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use anyhow::anyhow;
 
-use super::conditions::{confidence, limits, passband};
+use super::choice::chosen;
+use super::conditions::{FIRST_LAST, INPUT, confidence, limits, passband};
 use super::number::{length, length_or_none, probability, threshold};
-use crate::delay::{Automatic, FirstLast, InputKind, Settings};
+use crate::delay::{Automatic, Settings};
 use crate::experiment::{Experiment, Joint, ReadOptions};
 
 /// What is asked for: settings, of which some are chosen from the record.
@@ -48,9 +49,9 @@ const SETTINGS: [(&str, Set); 13] = [
         with(asked, |it| Ok(Settings { interval: probability(text)?, ..it }))
     }),
     ("first_last", |text, asked| {
-        with(asked, |it| Ok(Settings { first_last: first_last(text)?, ..it }))
+        with(asked, |it| Ok(Settings { first_last: chosen(FIRST_LAST, text)?, ..it }))
     }),
-    ("input", |text, asked| with(asked, |it| Ok(Settings { input: input_kind(text)?, ..it }))),
+    ("input", |text, asked| with(asked, |it| Ok(Settings { input: chosen(INPUT, text)?, ..it }))),
 ];
 
 fn with(
@@ -58,24 +59,6 @@ fn with(
     set: impl FnOnce(Settings) -> Result<Settings, String>,
 ) -> Result<Asked, String> {
     Ok((set(settings)?, automatic))
-}
-
-fn first_last(text: &str) -> Result<FirstLast, String> {
-    match text {
-        "auto" => Ok(FirstLast::Auto),
-        "reject" => Ok(FirstLast::Reject),
-        "keep" => Ok(FirstLast::Keep),
-        _ => Err("expected auto, reject or keep".to_owned()),
-    }
-}
-
-fn input_kind(text: &str) -> Result<InputKind, String> {
-    match text {
-        "auto" => Ok(InputKind::Auto),
-        "steps" => Ok(InputKind::Steps),
-        "continuous" => Ok(InputKind::Continuous),
-        _ => Err("expected auto, steps or continuous".to_owned()),
-    }
 }
 
 /// The settings that single joints have of their own; they stand above the options, which are

@@ -3,11 +3,12 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use crate::synthetic::scenario::{self, Noise, Scenario};
+use crate::synthetic::scenario::{self, Noise, Scenario, Strength};
 use crate::synthetic::{PlantSpec, Synthetic, simulate, write_log, write_truth};
 use anyhow::{Context as _, bail};
-use clap::{Args as ClapArgs, ValueEnum};
+use clap::Args as ClapArgs;
 
+use crate::cli::args::{Choices, one_of};
 use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
 use crate::cli::output::{OutputFile, Outputs, filled_file};
@@ -35,7 +36,7 @@ pub(crate) struct Args {
 
     /// How clearly an effect without numbers shows: the nearest plain integrator is wrong by
     /// some 3 times the noise, or 12 times [default: clear]
-    #[arg(long, value_enum, conflicts_with = "plant")]
+    #[arg(long, value_parser = one_of(STRENGTH), conflicts_with = "plant")]
     strength: Option<Strength>,
 
     /// Where the log goes
@@ -68,13 +69,11 @@ pub(crate) struct Args {
     quiet: bool,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Strength {
-    /// Some 3 times the noise
-    Weak,
-    /// Some 12 times the noise
-    Clear,
-}
+/// How clearly an effect shows.
+const STRENGTH: Choices<Strength> = &[
+    ("weak", "Some 3 times the noise", Strength::Weak),
+    ("clear", "Some 12 times the noise", Strength::Clear),
+];
 
 /// An effect, and its numbers where they are given.
 #[derive(Clone, Debug)]
@@ -187,10 +186,7 @@ fn calibrated(args: &Args) -> anyhow::Result<PlantSpec> {
         bail!("--duration: an effect without numbers is sized for 120 s; give it numbers");
     }
     let names: Vec<&str> = args.effect.iter().map(|hidden| hidden.name.as_str()).collect();
-    let strength = match args.strength {
-        Some(Strength::Weak) => scenario::Strength::Weak,
-        Some(Strength::Clear) | None => scenario::Strength::Clear,
-    };
+    let strength = args.strength.unwrap_or(Strength::Clear);
     let deviation = args.noise.unwrap_or(NOISE);
     if !(deviation.is_finite() && deviation > 0.0) {
         bail!("--noise {deviation}: an effect without numbers is sized by the noise, above zero");

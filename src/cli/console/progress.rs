@@ -60,7 +60,7 @@ impl Bar {
 
     fn tell(&self) {
         if let Some(host) = &self.host {
-            host.progress(self.what, self.drawn.position(), self.drawn.length().unwrap_or(0));
+            host.tell_progress(self.what, self.drawn.position(), self.drawn.length().unwrap_or(0));
         }
     }
 }
