@@ -60,8 +60,7 @@ pub(super) fn arranged(command: Command) -> Command {
     };
     let place = |arg: Arg| {
         let long = arg.get_long().unwrap_or_default().to_owned();
-        let place_in =
-            |options: &str| options.split_whitespace().position(|option| option == long);
+        let place_in = |options: &str| options.split_whitespace().position(|option| option == long);
         let of_questions = QUESTIONS.iter().find(|(_, options)| place_in(options).is_some());
         match (place_in(first), of_questions) {
             (Some(place), _) => arg.help_heading(None).display_order(place),

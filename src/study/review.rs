@@ -1,51 +1,14 @@
 //! What persons say of decisions: a file of their verdicts, and what becomes of it.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Deserialize;
 
 use super::estimate::JointEstimate;
+use super::sheet::{FileError, table_reader};
 use crate::delay::{Decision, EstimateError, ReviewerVerdict};
 use crate::experiment::{Joint, Trial, read_sheet};
-
-/// Why a review cannot be read.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ReviewError {
-    /// The file cannot be read as a table.
-    #[error("{path}: the review cannot be read")]
-    Table {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: csv::Error,
-    },
-    /// A column is missing.
-    #[error("{path}: a review needs a column `{column}`; found {found}")]
-    Column {
-        /// The file.
-        path: PathBuf,
-        /// What is missing.
-        column: &'static str,
-        /// The columns that are there.
-        found: String,
-    },
-    /// A cell cannot be understood.
-    #[error("{path}, line {line}, column `{column}`: `{got}`, expected {expected}")]
-    Cell {
-        /// The file.
-        path: PathBuf,
-        /// Row of the table, from 1 with the header.
-        line: u64,
-        /// The column.
-        column: &'static str,
-        /// What is there.
-        got: String,
-        /// What is expected.
-        expected: &'static str,
-    },
-}
 
 /// Verdicts on decisions, in the order of their file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -75,6 +38,9 @@ struct Shown {
     delay_s: Option<f64>,
 }
 
+/// What is said of a file that is no table.
+const UNREADABLE: &str = "the review cannot be read";
+
 /// The columns of a review that must be there.
 const COLUMNS: [&str; 7] = ["joint", "trial", "i", "verdict", "delay_s", "note", "reviewer"];
 
@@ -103,32 +69,27 @@ impl Review {
     /// verdict nor a delay say nothing yet.
     ///
     /// # Errors
-    /// [`ReviewError::Table`] for a file that is none or cannot be opened,
-    /// [`ReviewError::Column`] and [`ReviewError::Cell`] for what is missing or makes no sense.
-    pub fn read(path: &Path) -> Result<Self, ReviewError> {
-        let table = |source| ReviewError::Table { path: path.to_owned(), source };
-        let text = read_sheet(path).map_err(|error| table(error.into()))?;
+    /// [`FileError::Unreadable`] for a file that is no table or cannot be opened,
+    /// [`FileError::Wrong`] for what is missing or makes no sense.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        let table = FileError::unreadable(path, UNREADABLE);
+        let text = read_sheet(path).map_err(|error| table(csv::Error::from(error)))?;
         Self::parse(text.trim_start_matches('\u{feff}'), path)
     }
 
-    fn parse(text: &str, path: &Path) -> Result<Self, ReviewError> {
-        let table = |source| ReviewError::Table { path: path.to_owned(), source };
-        let header = text.lines().next().unwrap_or_default();
-        let delimiter = [b',', b';', b'\t']
-            .into_iter()
-            .max_by_key(|delimiter| header.bytes().filter(|byte| byte == delimiter).count());
-        let mut builder = csv::ReaderBuilder::new();
-        builder.delimiter(delimiter.unwrap_or(b',')).trim(csv::Trim::All);
-        let mut reader = builder.from_reader(text.as_bytes());
-        let found = reader.headers().map_err(table)?.clone();
+    fn parse(text: &str, path: &Path) -> Result<Self, FileError> {
+        let table = || FileError::unreadable(path, UNREADABLE);
+        let mut reader = table_reader(text, None);
+        let found = reader.headers().map_err(table())?.clone();
         if let Some(column) = COLUMNS.into_iter().find(|name| found.iter().all(|it| it != *name)) {
             let found = found.iter().collect::<Vec<_>>().join(", ");
-            return Err(ReviewError::Column { path: path.to_owned(), column, found });
+            let problem = format!("a review needs a column `{column}`; found {found}");
+            return Err(FileError::wrong(path, String::new(), problem));
         }
         let mut rows = Vec::new();
         for (record, line) in reader.records().zip(2..) {
-            let record = record.map_err(table)?;
-            let row: Row = record.deserialize(Some(&found)).map_err(table)?;
+            let record = record.map_err(table())?;
+            let row: Row = record.deserialize(Some(&found)).map_err(table())?;
             rows.extend(row.parsed(path, line)?);
         }
         Ok(Self { rows })
@@ -174,13 +135,10 @@ impl Review {
 const LONGEST_S: f64 = 86_400.0;
 
 impl Row {
-    fn parsed(self, path: &Path, line: u64) -> Result<Option<Reviewed>, ReviewError> {
-        let wrong = |column, got: &str, expected| ReviewError::Cell {
-            path: path.to_owned(),
-            line,
-            column,
-            got: got.to_owned(),
-            expected,
+    fn parsed(self, path: &Path, line: u64) -> Result<Option<Reviewed>, FileError> {
+        let wrong = |column: &str, got: &str, expected: &str| {
+            let place = format!(", line {line}, column `{column}`");
+            FileError::wrong(path, place, format!("`{got}`, expected {expected}"))
         };
         let number = |column, text: &str| match text {
             "" => Ok(None),
@@ -303,7 +261,7 @@ mod tests {
 
     const HEADER: &str = "joint,trial,i,verdict,delay_s,note,reviewer";
 
-    fn parse(text: &str) -> Result<Review, ReviewError> {
+    fn parse(text: &str) -> Result<Review, FileError> {
         Review::parse(text, Path::new("review.csv"))
     }
 
@@ -397,16 +355,16 @@ mod tests {
     #[test]
     fn what_is_wrong_names_its_place() {
         let cell = |row: &str| match parse(&format!("{HEADER}\n{row}")) {
-            Err(ReviewError::Cell { line, column, .. }) => (line, column),
+            Err(FileError::Wrong { place, .. }) => place,
             other => panic!("{other:?}"),
         };
-        assert_eq!(cell("boom,1,x,accepted,,,"), (2, "i"));
-        assert_eq!(cell("boom,1,1,perhaps,,,"), (2, "verdict"));
-        assert_eq!(cell("boom,1,1,accepted,soon,,"), (2, "delay_s"));
+        assert_eq!(cell("boom,1,x,accepted,,,"), ", line 2, column `i`");
+        assert_eq!(cell("boom,1,1,perhaps,,,"), ", line 2, column `verdict`");
+        assert_eq!(cell("boom,1,1,accepted,soon,,"), ", line 2, column `delay_s`");
         let missing = parse("joint,trial,i,verdict,delay_s,note\n");
-        assert!(matches!(missing, Err(ReviewError::Column { column: "reviewer", .. })));
+        assert!(missing.is_err_and(|error| error.to_string().contains("a column `reviewer`")));
         let ragged = parse(&format!("{HEADER}\nboom,1\n"));
-        assert!(matches!(ragged, Err(ReviewError::Table { .. })));
+        assert!(matches!(ragged, Err(FileError::Unreadable { .. })));
         let empty = parse(&format!("{}\nboom;1;1;;;;\n", HEADER.replace(',', ";"))).unwrap();
         assert!(empty.is_empty(), "a row without a verdict says nothing");
     }

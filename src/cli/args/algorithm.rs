@@ -114,7 +114,8 @@ impl AlgorithmArgs {
             None => base.low_pass,
         };
         let low_pass_required = given(self.passband).is_some();
-        let settings = Settings { low_pass, low_pass_required, interpolation: self.interpolate, ..base };
+        let settings =
+            Settings { low_pass, low_pass_required, interpolation: self.interpolate, ..base };
         settings.with_alpha(alpha).with_beta(beta)
     }
 

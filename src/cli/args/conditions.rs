@@ -5,8 +5,8 @@ use super::number::{at_least_one, length, length_or_none, probability, threshold
 use crate::delay::{FirstLast, InputKind, Method, MethodSpec, Settings};
 use crate::numerics::LowPass;
 use crate::units::Length;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 /// The settings that are no part of how a breakpoint is searched.
 #[derive(Args, Debug)]

@@ -143,12 +143,10 @@ fn notes_on_models(joints: &[Joint]) -> Vec<String> {
     let note = |joint: &Joint| {
         let spikes = spikes_of(joint).map(|spikes| format!("{spikes}, which no error counts"));
         let noise = joint.trials.property::<Mended>().has_noisy_input.then(|| {
-            format!(
-                "joint `{}`: the input has noise or glitches: models take the levels that it holds",
-                joint.name
-            )
+            "the input has noise or glitches: models take the levels that it holds".to_owned()
         });
-        spikes.into_iter().chain(noise)
+        let said = spikes.into_iter().chain(noise);
+        said.map(|note| format!("joint `{}`: {note}", joint.name)).collect::<Vec<_>>()
     };
     joints.iter().flat_map(note).collect()
 }

@@ -15,7 +15,7 @@ use crate::cli::output::{
     write_table,
 };
 use crate::cli::viewer::Stream;
-use crate::study::{Review, ReviewError};
+use crate::study::{FileError, Review};
 
 /// The files that were asked for, found to be writable before the work starts.
 pub(crate) struct Files<'a> {
@@ -136,7 +136,7 @@ fn check_sheet(sheet: &Path) -> anyhow::Result<()> {
         && match Review::read(sheet) {
             Ok(review) => !review.is_empty(),
             // One that was misspelt was written by a person, too; another table is no sheet.
-            Err(error) => matches!(error, ReviewError::Cell { .. }),
+            Err(error) => matches!(error, FileError::Wrong { place, .. } if !place.is_empty()),
         };
     if is_filled_in {
         let sheet = sheet.display();
