@@ -11,5 +11,7 @@ pub(crate) use limit::meet_file_limits;
 pub(crate) use outputs::Outputs;
 #[cfg(not(feature = "rrd"))]
 pub(crate) use recording::left_out;
-pub(crate) use recording::{Contents, Detail, PreviewContents, SweepContents, check_recordings};
+pub(crate) use recording::{
+    Contents, Detail, PreviewContents, Recorded, SweepContents, check_recordings,
+};
 pub(crate) use table::{CsvText, FileKind, write_csv, write_parquet, write_table};

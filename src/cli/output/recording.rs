@@ -75,7 +75,7 @@ impl Contents<'_> {
     /// to them.
     pub(crate) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
         if self.joints.len() <= Self::TOGETHER || !is_file(path) {
-            return record(path, verbosity, |file| self.write(file));
+            return Recorded::Decisions(self).record(path, verbosity);
         }
         let parts = {
             let _bar = Bar::spinner(verbosity, "recording");
@@ -109,7 +109,7 @@ impl Contents<'_> {
             let ends: Vec<&str> = ends.collect();
             let command = format!("{} of {}", self.command, ends.join(" … "));
             let some = Contents { joints, command: &command, ..*self };
-            files.push(filled_file(path, |file| some.write(file))?);
+            files.push(filled_file(path, |file| Recorded::Decisions(&some).write(file))?);
         }
         let volume = |(path, joints): (&PathBuf, &&[EstimatedJoint<'_>])| Volume {
             file: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -128,11 +128,6 @@ impl Contents<'_> {
     #[expect(clippy::unused_self, reason = "with recordings it is used")]
     fn write_parts(&self, _: &Path) -> anyhow::Result<Vec<String>> {
         Err(left_out())
-    }
-
-    #[cfg(feature = "rrd")]
-    fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
-        self.with_recording(|recording| Ok(crate::recording::write_recording(recording, file)?))
     }
 
     /// Does `work` with the recording.
@@ -161,12 +156,6 @@ impl Contents<'_> {
             also,
             revisions,
         })
-    }
-
-    #[cfg(not(feature = "rrd"))]
-    #[expect(clippy::unused_self, reason = "with recordings it is used")]
-    fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
-        Err(left_out())
     }
 }
 
@@ -204,27 +193,11 @@ pub(crate) struct SweepContents<'a> {
     pub(crate) reading: &'a ReadOptions,
 }
 
+#[cfg(feature = "rrd")]
 impl SweepContents<'_> {
-    /// Writes the recording to `path` and says how to look at it.
-    pub(crate) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
-        record(path, verbosity, |file| self.write(file))
-    }
-
-    #[cfg(feature = "rrd")]
-    fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
-        Ok(crate::recording::write_sweep(&self.recording(), file)?)
-    }
-
-    #[cfg(feature = "rrd")]
     pub(crate) fn recording(&self) -> crate::recording::SweepRecording<'_> {
         let Self { joints, grid, tolerance, sources, reading } = *self;
         crate::recording::SweepRecording { joints, grid, tolerance, sources, reading }
-    }
-
-    #[cfg(not(feature = "rrd"))]
-    #[expect(clippy::unused_self, reason = "with recordings it is used")]
-    fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
-        Err(left_out())
     }
 }
 
@@ -238,39 +211,47 @@ pub(crate) struct PreviewContents<'a> {
     pub(crate) model: Option<&'a Path>,
 }
 
-impl PreviewContents<'_> {
+/// What goes into one file.
+#[derive(Clone, Copy)]
+#[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
+pub(crate) enum Recorded<'a> {
+    Decisions(&'a Contents<'a>),
+    Sweep(&'a SweepContents<'a>),
+    Preview(PreviewContents<'a>),
+}
+
+impl Recorded<'_> {
     /// Writes the recording to `path` and says how to look at it.
-    pub(crate) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
-        record(path, verbosity, |file| self.write(file))
+    pub(crate) fn record(self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
+        {
+            let _bar = Bar::spinner(verbosity, "recording");
+            write_file(path, |file| self.write(file))?;
+        }
+        let path = path.display();
+        verbosity.say("recording", format!("{path}; look at it with: rerun {path}"));
+        Ok(())
     }
 
     #[cfg(feature = "rrd")]
-    fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
-        let Self { joints, sources, reading, model } = *self;
-        let preview = crate::recording::PreviewRecording { joints, sources, reading, model };
-        Ok(crate::recording::write_preview(&preview, file)?)
+    fn write(self, file: &mut OutputFile) -> anyhow::Result<()> {
+        use crate::recording::{PreviewRecording, write_preview, write_recording, write_sweep};
+
+        Ok(match self {
+            Self::Decisions(contents) => {
+                contents.with_recording(|recording| write_recording(recording, file))?
+            }
+            Self::Sweep(contents) => write_sweep(&contents.recording(), file)?,
+            Self::Preview(PreviewContents { joints, sources, reading, model }) => {
+                write_preview(&PreviewRecording { joints, sources, reading, model }, file)?
+            }
+        })
     }
 
     #[cfg(not(feature = "rrd"))]
     #[expect(clippy::unused_self, reason = "with recordings it is used")]
-    fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
+    fn write(self, _: &mut OutputFile) -> anyhow::Result<()> {
         Err(left_out())
     }
-}
-
-/// Writes a recording to `path` and says how to look at it.
-fn record(
-    path: &Path,
-    verbosity: Verbosity,
-    write: impl FnOnce(&mut OutputFile) -> anyhow::Result<()>,
-) -> anyhow::Result<()> {
-    {
-        let _bar = Bar::spinner(verbosity, "recording");
-        write_file(path, write)?;
-    }
-    let path = path.display();
-    verbosity.say("recording", format!("{path}; look at it with: rerun {path}"));
-    Ok(())
 }
 
 /// Says before the work is done whether its recording can be written.

@@ -16,7 +16,7 @@ use crate::report::{DesignJson, DesignedJoint, design_text, write_input, write_p
 use crate::cli::console::{Bar, warn};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, read_failures, said};
-use crate::cli::output::{Outputs, PreviewContents, check_recordings, write_file};
+use crate::cli::output::{Outputs, PreviewContents, Recorded, check_recordings, write_file};
 
 use known::Known;
 
@@ -33,7 +33,7 @@ impl Args {
             reading: read.map_or(&usual, |experiment| &experiment.options),
             model: self.model.as_deref(),
         };
-        contents.record(path, self.run.verbosity())
+        Recorded::Preview(contents).record(path, self.run.verbosity())
     }
 }
 

@@ -14,34 +14,30 @@ pub(super) enum State {
     Missing,
 }
 
-/// What was found of one thing.
+/// What was found of one thing, and what to do where it is not as it should be.
 #[derive(Debug, Serialize)]
-pub(super) struct Check {
-    pub(super) name: &'static str,
+pub(super) struct Found {
     pub(super) state: State,
     pub(super) found: String,
-    /// What to do, where it is not as it should be.
     pub(super) remedy: Option<String>,
 }
 
-impl Check {
-    pub(super) fn ok(name: &'static str, found: impl Into<String>) -> Self {
-        Self { name, state: State::Ok, found: found.into(), remedy: None }
-    }
+/// What was found, by the name of the thing.
+#[derive(Debug, Serialize)]
+pub(super) struct Check {
+    pub(super) name: &'static str,
+    #[serde(flatten)]
+    pub(super) found: Found,
+}
 
-    pub(super) fn note(
-        name: &'static str,
-        found: impl Into<String>,
-        remedy: impl Into<String>,
-    ) -> Self {
-        Self { name, state: State::Note, found: found.into(), remedy: Some(remedy.into()) }
-    }
+pub(super) fn ok(found: impl Into<String>) -> Found {
+    Found { state: State::Ok, found: found.into(), remedy: None }
+}
 
-    pub(super) fn missing(
-        name: &'static str,
-        found: impl Into<String>,
-        remedy: impl Into<String>,
-    ) -> Self {
-        Self { name, state: State::Missing, found: found.into(), remedy: Some(remedy.into()) }
-    }
+pub(super) fn note(found: impl Into<String>, remedy: impl Into<String>) -> Found {
+    Found { state: State::Note, ..missing(found, remedy) }
+}
+
+pub(super) fn missing(found: impl Into<String>, remedy: impl Into<String>) -> Found {
+    Found { state: State::Missing, found: found.into(), remedy: Some(remedy.into()) }
 }

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use clap::Args as ClapArgs;
 use serde::Serialize;
 
-use check::{Check, State};
+use check::{Check, Found, State};
 
 use crate::cli::args::Format;
 use crate::cli::console::{self, Tone};
@@ -39,10 +39,10 @@ struct DoctorJson<'a> {
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
-    let mut checks = vec![surroundings::program()];
+    let mut checks = vec![Check { name: "program", found: surroundings::program() }];
     checks.extend(viewer::check());
     checks.extend(surroundings::all());
-    let complete = checks.iter().all(|check| check.state != State::Missing);
+    let complete = checks.iter().all(|check| check.found.state != State::Missing);
     let header = Header::of("tauscope/doctor/1");
     let json = DoctorJson { header, complete, checks: &checks };
     args.format.print(|| text(&checks), || json)?;
@@ -52,7 +52,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
 fn text(checks: &[Check]) -> String {
     let mut text = String::new();
     let width = checks.iter().map(|check| check.name.len()).max().unwrap_or(0);
-    for Check { name, state, found, remedy } in checks {
+    for Check { name, found: Found { state, found, remedy } } in checks {
         let (word, tone) = match state {
             State::Ok => ("ok", Tone::Good),
             State::Note => ("note", Tone::Notice),
@@ -73,7 +73,8 @@ mod tests {
 
     #[test]
     fn each_thing_has_a_line_and_what_is_missing_a_remedy() {
-        let checks = [Check::ok("threads", "2"), Check::missing("viewer", "none", "install it")];
+        let found = [("threads", check::ok("2")), ("viewer", check::missing("none", "install it"))];
+        let checks = found.map(|(name, found)| Check { name, found });
         let text = anstream::adapter::strip_str(&text(&checks)).to_string();
         let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
         assert_eq!(

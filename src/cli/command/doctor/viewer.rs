@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use super::check::Check;
+use super::check::{Check, Found, missing, note, ok};
 use crate::cli::viewer::{NEWEST, PORT, VERSION, installed, is_listening, on_path};
 
 /// Longest time that a program may take to report its version.
@@ -18,29 +18,28 @@ fn remedy() -> String {
 
 /// The viewer, whether one is running, and whether it opens logs.
 pub(crate) fn check() -> Vec<Check> {
-    vec![viewer(), running(), importer()]
+    let all = [("viewer", viewer()), ("running", running()), ("importer", importer())];
+    all.map(|(name, found)| Check { name, found }).into()
 }
 
-fn importer() -> Check {
-    const NAME: &str = "importer";
+fn importer() -> Found {
     if let Some(place) = installed() {
-        return Check::ok(NAME, format!("{}: `rerun LOG.csv` opens a log", place.display()));
+        return ok(format!("{}: `rerun LOG.csv` opens a log", place.display()));
     }
     let found = "`rerun LOG.csv` does not open logs";
-    Check::note(NAME, found, "`tauscope importer --install` lets it")
+    note(found, "`tauscope importer --install` lets it")
 }
 
-fn viewer() -> Check {
-    const NAME: &str = "viewer";
+fn viewer() -> Found {
     if let Some(path) = on_path("rerun", std::env::var_os("PATH").as_deref()) {
         let place = path.display();
         let answer = output(Command::new(&path).arg("--version").env("RERUN_ANALYTICS", "0"));
         return match answer.as_deref().and_then(version_in) {
             None => {
                 let found = format!("{place} does not report its version");
-                Check::missing(NAME, found, remedy())
+                missing(found, remedy())
             }
-            Some(version) => judged(NAME, version, &format!("rerun {version}, {place}")),
+            Some(version) => judged(version, &format!("rerun {version}, {place}")),
         };
     }
     let ask = "import importlib.metadata as m; print(m.version('rerun-sdk'))";
@@ -48,26 +47,22 @@ fn viewer() -> Check {
         let answer = output(Command::new(python).args(["-c", ask]));
         if let Some(version) = answer.as_deref().and_then(version_in) {
             let found = format!("rerun-sdk {version} of {python}, not on PATH");
-            let check = judged(NAME, version, &found);
+            let check = judged(version, &found);
             let remedy = format!("start it with: {python} -m rerun FILE.rrd");
-            return Check { remedy: check.remedy.or(Some(remedy)), ..check };
+            return Found { remedy: check.remedy.or(Some(remedy)), ..check };
         }
     }
-    Check::missing(NAME, "no `rerun` on PATH, no package `rerun-sdk` of python3", remedy())
+    missing("no `rerun` on PATH, no package `rerun-sdk` of python3", remedy())
 }
 
 /// Whether `version` fits: an older minor version does not.
-fn judged(name: &'static str, version: &str, found: &str) -> Check {
+fn judged(version: &str, found: &str) -> Found {
     if [VERSION, NEWEST].contains(&version) {
-        return Check::ok(name, found);
+        return ok(found);
     }
     let made = format!("recordings are made for {VERSION} and were looked at in {NEWEST}");
     let found = format!("{found}; {made}");
-    if minor(version) >= minor(VERSION) {
-        Check::note(name, found, remedy())
-    } else {
-        Check::missing(name, found, remedy())
-    }
+    if minor(version) >= minor(VERSION) { note(found, remedy()) } else { missing(found, remedy()) }
 }
 
 /// The first two numbers of a version.
@@ -76,13 +71,12 @@ fn minor(version: &str) -> Option<(u32, u32)> {
     numbers.next().flatten().zip(numbers.next().flatten())
 }
 
-fn running() -> Check {
-    const NAME: &str = "running";
+fn running() -> Found {
     if is_listening(SocketAddr::from((Ipv4Addr::LOCALHOST, PORT))) {
-        return Check::ok(NAME, format!("something listens on port {PORT}, where viewers do"));
+        return ok(format!("something listens on port {PORT}, where viewers do"));
     }
     let found = format!("no viewer listens on port {PORT}");
-    Check::note(NAME, found, "`--spawn` starts one; `--connect` needs one: start it with: rerun")
+    note(found, "`--spawn` starts one; `--connect` needs one: start it with: rerun")
 }
 
 /// What a command prints, if it ends well and in time.
@@ -129,7 +123,7 @@ mod tests {
     fn a_version_is_found_and_judged_by_its_minor_number() {
         assert_eq!(version_in("rerun-cli 0.36.3 (base) [rustc 1.95.0"), Some("0.36.3"));
         assert_eq!(version_in("no version"), None);
-        let state = |version| judged("viewer", version, "").state;
+        let state = |version| judged(version, "").state;
         assert_eq!(state(VERSION), State::Ok);
         assert_eq!(state(NEWEST), State::Ok);
         assert_eq!(state("0.36.9"), State::Note);

@@ -19,7 +19,7 @@ use crate::cli::args::{ConditionArgs, DataArgs, Passband, RunArgs, ids_with, num
 use crate::cli::console::Bar;
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures, said};
-use crate::cli::output::{Outputs, SweepContents};
+use crate::cli::output::{Outputs, Recorded, SweepContents};
 use crate::cli::run::Session;
 use crate::cli::viewer::StreamArgs;
 use values::{Values, lengths, methods, passbands};
@@ -128,7 +128,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         reading: &experiment.options,
     };
     if let Some(path) = recording {
-        contents.record(path, verbosity)?;
+        Recorded::Sweep(&contents).record(path, verbosity)?;
     }
     session.stream.send_sweep(&contents)?;
     let shown = if args.output.steps { StepsShown::All } else { StepsShown::Worst };
@@ -160,28 +160,24 @@ fn fitting<'a>(grid: &Grid, trials: impl Iterator<Item = &'a Trial>) -> (Grid, V
 
 /// A message on each file, joint and setting that failed.
 fn failures(experiment: &Experiment, grid: &Grid, results: &[JointResult]) -> Vec<String> {
+    let all = grid.runs().len();
     let of_joint = |(joint, result): (&Joint, &JointResult)| {
         let name = &joint.name;
-        match result {
-            Err(error) => vec![joint_left_out(name, error)],
-            Ok(swept) => {
-                let mut different: Vec<&EstimateError> = Vec::new();
-                for (_, error) in &swept.failed {
-                    if !different.contains(&error) {
-                        different.push(error);
-                    }
-                }
-                let count = |error: &EstimateError| {
-                    swept.failed.iter().filter(|(_, other)| other == error).count()
-                };
-                let all = grid.runs().len();
-                let why = |error: &EstimateError| {
-                    let (count, why) = (count(error), said(error));
-                    format!("joint `{name}`, {count} of {all} settings are left out: {why}")
-                };
-                different.into_iter().map(why).collect()
+        let swept = match result {
+            Err(error) => return vec![joint_left_out(name, error)],
+            Ok(swept) => swept,
+        };
+        let mut different: Vec<(&EstimateError, usize)> = Vec::new();
+        for (_, error) in &swept.failed {
+            match different.iter_mut().find(|(known, _)| *known == error) {
+                Some((_, count)) => *count += 1,
+                None => different.push((error, 1)),
             }
         }
+        let why = |(error, count): (&EstimateError, usize)| {
+            format!("joint `{name}`, {count} of {all} settings are left out: {}", said(error))
+        };
+        different.into_iter().map(why).collect()
     };
     let of_joints = experiment.joints.iter().zip(results).flat_map(of_joint);
     read_failures(experiment).into_iter().chain(of_joints).collect()
