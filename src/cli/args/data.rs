@@ -1,6 +1,6 @@
 //! The options of every command that reads logs.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::number;
 use crate::cli::console::Host;
@@ -86,19 +86,6 @@ impl MemoryArgs {
 }
 
 impl DataArgs {
-    /// Reads all logs. Failures of single files and joints are in the result.
-    ///
-    /// # Errors
-    /// When no joint at all can be read.
-    pub(crate) fn read(&self) -> anyhow::Result<Experiment> {
-        self.reading.read(&self.data)
-    }
-
-    /// [`Self::read`] with other options.
-    pub(crate) fn read_with(&self, options: &ReadOptions) -> anyhow::Result<Experiment> {
-        read_with(&self.data, options)
-    }
-
     /// The logs by their names, each once; and messages on folders without any.
     pub(crate) fn logs(&self) -> (Vec<PathBuf>, Vec<String>) {
         let (mut files, unlisted) = expand_folders(&self.data);
@@ -156,14 +143,6 @@ impl DataArgs {
         self.reading.joint.is_empty()
     }
 
-    /// Reads another log in the same way.
-    ///
-    /// # Errors
-    /// When no joint of it can be read.
-    pub(crate) fn read_other(&self, path: &Path) -> anyhow::Result<Experiment> {
-        read_with(&[path.to_owned()], &self.options()?)
-    }
-
     /// The files that are read, where they really are.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let (files, _) = expand_folders(&self.data);
@@ -210,14 +189,6 @@ impl DataArgs {
 }
 
 impl ReadingArgs {
-    /// Reads the logs `data`. Failures of single files and joints are in the result.
-    ///
-    /// # Errors
-    /// When no joint at all can be read.
-    pub(crate) fn read(&self, data: &[PathBuf]) -> anyhow::Result<Experiment> {
-        read_with(data, &self.options()?)
-    }
-
     /// The joints that are named.
     pub(crate) fn joints(&self) -> Vec<String> {
         let name = |joint: &String| joint.split('=').next().unwrap_or_default().to_owned();
@@ -257,8 +228,11 @@ impl ReadingArgs {
     }
 }
 
-/// Reads the logs `data`, unless nothing of them can be read.
-fn read_with(data: &[PathBuf], options: &ReadOptions) -> anyhow::Result<Experiment> {
+/// Reads the logs `data`. Failures of single files and joints are in the result.
+///
+/// # Errors
+/// When no joint at all can be read.
+pub(crate) fn read(data: &[PathBuf], options: &ReadOptions) -> anyhow::Result<Experiment> {
     let mut experiment = read_or_take(data, options);
     if !experiment.joints.is_empty() {
         return Ok(experiment);

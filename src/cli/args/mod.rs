@@ -17,7 +17,7 @@ pub(crate) use against::AgainstArgs;
 pub(crate) use algorithm::AlgorithmArgs;
 pub(crate) use choice::{Choices, one_of};
 pub(crate) use conditions::{ConditionArgs, Passband, ids_with, passband};
-pub(crate) use data::{DataArgs, MemoryArgs, ReadingArgs};
+pub(crate) use data::{DataArgs, MemoryArgs, ReadingArgs, read};
 pub(crate) use effects::{EffectArgs, find};
 pub(crate) use model_file::{
     ModelFileArgs, fresh_name, name_of, note_conditions, note_missing, read_model,

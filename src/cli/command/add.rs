@@ -12,7 +12,7 @@ use crate::cli::args::{
     DataArgs, ModelFileArgs, ProtocolArgs, ResultArgs, find, name_of, note_missing,
 };
 use crate::cli::exit::Completion;
-use crate::cli::run::{Session, Start, Study, models, outcomes, revised, revision_names};
+use crate::cli::run::{Session, Start, Study, outcomes, revised};
 
 /// Add an effect to a model, and write its next revision
 ///
@@ -66,10 +66,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     // What the model still lacks was not looked for.
     let revised = revised(&file, &improved, &study.experiment().sources, |_| None)?;
     if output.is_recorded() {
-        let names = revision_names(&improved);
-        let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
         let alone = improved.iter().map(|joint| ImprovedJoint::of(joint.finding, joint.revisions));
-        study.record(output.recording.as_deref(), &models, &alone.collect::<Vec<_>>())?;
+        study.record_revisions(output.recording.as_deref(), &alone.collect::<Vec<_>>())?;
     }
     args.model.write(&file, &revised, study.verbosity())?;
     let text = || add_text(&joints);

@@ -16,9 +16,7 @@ use crate::cli::args::{
 use crate::cli::console::{Interrupt, STOPPING, message};
 use crate::cli::each_log::{Each, FolderArgs};
 use crate::cli::exit::Completion;
-use crate::cli::run::{
-    Progress, Session, Start, Study, add_arguments, models, outcomes, revised, revision_names,
-};
+use crate::cli::run::{Progress, Session, Start, Study, add_arguments, outcomes, revised};
 
 /// Add to a model what it lacks, effect by effect
 ///
@@ -107,9 +105,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let (improved, failures) = outcomes(study.experiment(), &results, improved)?;
     let improved: Vec<_> = improved.into_iter().flatten().collect();
     if output.is_recorded() {
-        let names = revision_names(&improved);
-        let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
-        study.record(output.recording.as_deref(), &models, &improved)?;
+        study.record_revisions(output.recording.as_deref(), &improved)?;
     }
     let sources = &study.experiment().sources;
     let revised = revised(&file, &improved, sources, |joint| Some(joint.finding.verdict))?;

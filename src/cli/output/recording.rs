@@ -9,7 +9,7 @@ use anyhow::bail;
 
 use crate::delay::Settings;
 use crate::delay::sweep::Grid;
-use crate::experiment::{ReadOptions, Source};
+use crate::experiment::{Experiment, ReadOptions, Source};
 use crate::report::{ComparedJoint, DesignedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep};
 
 use crate::study::OtherResult;
@@ -49,7 +49,18 @@ pub(crate) struct Contents<'a> {
     pub(crate) detail: Detail,
 }
 
-impl Contents<'_> {
+impl<'a> Contents<'a> {
+    /// The delays of `joints`, alone.
+    pub(crate) fn of_delays(
+        command: &'a str,
+        experiment: &'a Experiment,
+        (joints, settings): (&'a [EstimatedJoint<'a>], &'a Settings),
+    ) -> Self {
+        let Experiment { sources, options: reading, .. } = experiment;
+        let (also, models, revisions, detail) = (&[], &[], &[], Detail::Auto);
+        Self { command, joints, settings, also, sources, reading, models, revisions, detail }
+    }
+
     /// Joints up to which all are in one recording: with more of them a viewer takes long to open
     /// it, and gigabytes.
     const TOGETHER: usize = 20;

@@ -13,8 +13,6 @@ pub(crate) use add_command::add_arguments;
 pub(crate) use against::{compared, left_over, others};
 pub(crate) use estimates::{Estimates, estimated, failures, notes};
 pub(crate) use outcomes::outcomes;
-pub(crate) use revisions::{
-    Progress, Start, as_it_is, log_hashes, models, revised, revision_names,
-};
+pub(crate) use revisions::{Progress, Start, as_it_is, log_hashes, revised};
 pub(crate) use session::Session;
 pub(crate) use study::Study;

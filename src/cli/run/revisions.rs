@@ -224,13 +224,13 @@ fn entry(revision: u32, added: Option<&str>, before: &Comparison, after: &Compar
 }
 
 /// `revision 0` and so on, to the last number there is.
-pub(crate) fn revision_names(improved: &[ImprovedJoint<'_>]) -> Vec<String> {
+pub(super) fn revision_names(improved: &[ImprovedJoint<'_>]) -> Vec<String> {
     let last = improved.iter().map(|joint| joint.finding.compared.revision).max().unwrap_or(0);
     (0..=last).map(|number| format!("revision {number}")).collect()
 }
 
 /// The revisions of a joint, each as a model.
-pub(crate) fn models<'a>(
+pub(super) fn models<'a>(
     improved: &ImprovedJoint<'a>,
     names: &'a [String],
 ) -> Vec<ComparedJoint<'a>> {

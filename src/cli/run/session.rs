@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::estimates::Estimates;
 use crate::batch::Threads;
-use crate::cli::args::{DataArgs, OwnSettings, ResultArgs, RunArgs};
+use crate::cli::args::{DataArgs, OwnSettings, ResultArgs, RunArgs, read};
 use crate::cli::console::{Bar, Verbosity, warn};
 use crate::cli::exit::Completion;
 use crate::cli::output::Outputs;
@@ -57,7 +57,7 @@ impl<'a> Session<'a> {
     ) -> anyhow::Result<Self> {
         let _bar = Bar::spinner(run.verbosity(), "reading");
         let own = OwnSettings::of(options)?;
-        let experiment = data.read_with(options)?;
+        let experiment = read(data.given(), options)?;
         let (review, beside) = (Review::default(), Vec::new());
         Ok(Self { experiment, stream, command, review, beside, own, run })
     }

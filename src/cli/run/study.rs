@@ -5,11 +5,12 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::estimates::{Estimates, estimated};
+use super::revisions::{models, revision_names};
 use super::sensor::spikes_of;
 use super::session::Session;
 use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
-use crate::cli::output::{Contents, Detail};
+use crate::cli::output::Contents;
 use crate::delay::{Automatic, Settings};
 use crate::experiment::{Experiment, Joint, Other};
 use crate::fit::Mended;
@@ -99,17 +100,9 @@ impl<'a> Study<'a> {
         take: impl FnOnce(&Contents<'_>) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
         let Session { experiment, command, beside, .. } = &self.session;
-        take(&Contents {
-            command,
-            joints: &estimated(experiment, &self.estimates),
-            settings: &self.settings,
-            also: beside,
-            sources: &experiment.sources,
-            reading: &experiment.options,
-            models,
-            revisions,
-            detail: Detail::Auto,
-        })
+        let joints = estimated(experiment, &self.estimates);
+        let contents = Contents::of_delays(command, experiment, (&joints, &self.settings));
+        take(&Contents { also: beside, models, revisions, ..contents })
     }
 
     /// Records `models` and `revisions` beside the decisions, and shows them.
@@ -124,6 +117,17 @@ impl<'a> Study<'a> {
             self.with_contents(models, revisions, record)?;
         }
         self.show(models, revisions, None)
+    }
+
+    /// Records the revisions of models, each as a model too, and shows them.
+    pub(crate) fn record_revisions(
+        &self,
+        path: Option<&Path>,
+        improved: &[ImprovedJoint<'_>],
+    ) -> anyhow::Result<()> {
+        let names = revision_names(improved);
+        let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
+        self.record(path, &models, improved)
     }
 
     /// Says what failed, and how the logs were read, prints the results, and ends what viewers are sent.

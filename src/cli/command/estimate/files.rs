@@ -8,14 +8,34 @@ use crate::report::{Language, Lookup};
 use crate::report::{decision_table, delay_table, level_table, write_delays, write_review_sheet};
 
 use super::args::OutputArgs;
-use super::estimated::Estimated;
 use crate::cli::console::Verbosity;
 use crate::cli::output::{
     Contents, CsvText, FileKind, Outputs, write_bytes, write_csv, write_file, write_parquet,
     write_table,
 };
 use crate::cli::viewer::Stream;
-use crate::study::{FileError, Review};
+use crate::delay::Settings;
+use crate::experiment::Experiment;
+use crate::report::{Against, EstimatedJoint};
+use crate::study::{FileError, OtherResult, Review};
+
+/// The joints that have an estimate with some settings.
+pub(super) type Run<'a> = (&'a Settings, &'a [EstimatedJoint<'a>]);
+
+/// What was read and what came out.
+#[derive(Clone, Copy)]
+pub(super) struct Estimated<'a> {
+    pub(super) experiment: &'a Experiment,
+    /// The answer: what came out by the first method.
+    pub(super) joints: &'a [EstimatedJoint<'a>],
+    pub(super) settings: &'a Settings,
+    /// What came out by each method.
+    pub(super) runs: &'a [Run<'a>],
+    /// What is shown beside the answer.
+    pub(super) others: &'a [OtherResult],
+    /// How it differs from the answer.
+    pub(super) against: &'a [Against<'a>],
+}
 
 /// The files that were asked for, found to be writable before the work starts.
 pub(crate) struct Files<'a> {
@@ -86,17 +106,9 @@ impl<'a> Files<'a> {
             let source = language.source(&lookup(result), name)?;
             write_bytes(path, source)?;
         }
-        let contents = Contents {
-            command: "estimate",
-            joints: result.joints,
-            settings: result.settings,
-            also: result.others,
-            sources: &result.experiment.sources,
-            reading: &result.experiment.options,
-            models: &[],
-            revisions: &[],
-            detail: self.args.detail,
-        };
+        let delays = (result.joints, result.settings);
+        let contents = Contents::of_delays("estimate", result.experiment, delays);
+        let contents = Contents { also: result.others, detail: self.args.detail, ..contents };
         if let Some(path) = &self.args.recording {
             contents.record(path, verbosity)?;
         }

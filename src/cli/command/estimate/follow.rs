@@ -220,18 +220,8 @@ impl Reported {
         if joints.is_empty() {
             return Ok(());
         }
-        let contents = Contents {
-            command: "estimate",
-            also: &[],
-            joints: &joints,
-            settings,
-            sources: &experiment.sources,
-            reading: &experiment.options,
-            models: &[],
-            revisions: &[],
-            detail: args.output.detail,
-        };
-        stream.send(&contents, None)
+        let contents = Contents::of_delays("estimate", &experiment, (&joints, settings));
+        stream.send(&Contents { detail: args.output.detail, ..contents }, None)
     }
 
     fn report_joint(

@@ -1,7 +1,6 @@
 //! `tauscope estimate`: read, estimate, write, print.
 
 mod args;
-mod estimated;
 mod files;
 mod follow;
 
@@ -13,8 +12,7 @@ use crate::delay::{CandidateLines, Settings};
 use crate::report::{
     EstimateJson, against_table, against_text, delay_levels_text, estimate_table, steps_table,
 };
-use estimated::{Estimated, Run};
-use files::Files;
+use files::{Estimated, Files, Run};
 
 pub(crate) use args::Args;
 

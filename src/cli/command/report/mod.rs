@@ -264,10 +264,8 @@ impl Reported<'_> {
         models: &[ImprovedJoint<'_>],
         target: Option<&Target>,
     ) -> anyhow::Result<Option<Vec<u8>>> {
-        let names = run::revision_names(models);
-        let compared: Vec<_> = models.iter().flat_map(|joint| run::models(joint, &names)).collect();
         let path = target.and_then(|target| target.recording.as_deref());
-        self.study.record(path, &compared, models)?;
+        self.study.record_revisions(path, models)?;
         let Some(path) = path.filter(|_| self.args.output.embed) else {
             return Ok(None);
         };
