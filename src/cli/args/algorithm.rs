@@ -3,8 +3,8 @@
 use clap::Args as ClapArgs;
 
 use super::choice::{Choices, one_of};
-use super::conditions::{ConditionArgs, Passband, method, passband};
-use super::number::length;
+use super::conditions::{ConditionArgs, low_pass, method, passband};
+use super::number::{OrNone, length};
 use crate::delay::{Automatic, Interpolation, Method, Settings};
 use crate::units::Length;
 
@@ -26,7 +26,7 @@ pub(crate) struct AlgorithmArgs {
     beta: Option<OrAuto<Length>>,
 
     #[arg(long, help = passband_help(), value_name = "HZ|none|auto", value_parser = or_auto(passband), allow_negative_numbers = true)]
-    passband: Option<OrAuto<Passband>>,
+    passband: Option<OrAuto<OrNone>>,
 
     #[command(flatten)]
     conditions: ConditionArgs,
@@ -110,7 +110,7 @@ impl AlgorithmArgs {
             beta.unwrap_or_else(|| base.beta_length()),
         );
         let low_pass = match given(self.passband) {
-            Some(passband) => passband.low_pass(self.conditions.filter_order),
+            Some(passband) => low_pass(passband, self.conditions.filter_order),
             None => base.low_pass,
         };
         let low_pass_required = given(self.passband).is_some();

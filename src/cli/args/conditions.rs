@@ -1,7 +1,9 @@
 //! The settings that every command takes whose delays are asked for.
 
 use super::choice::{Choices, one_of};
-use super::number::{at_least_one, length, length_or_none, probability, threshold};
+use super::number::{
+    OrNone, at_least_one, length, length_or_none, number_where, or_none, probability, threshold,
+};
 use crate::delay::{FirstLast, InputKind, Method, MethodSpec, Settings};
 use crate::numerics::LowPass;
 use crate::units::Length;
@@ -12,7 +14,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 #[derive(Args, Debug)]
 pub(crate) struct ConditionArgs {
     #[arg(long, help = confidence_help(), value_name = "X|none", value_parser = confidence, allow_negative_numbers = true)]
-    confidence: Option<Confidence>,
+    confidence: Option<OrNone>,
 
     /// How often the interval of a delay is to hold the true one
     #[arg(long, value_name = "X", default_value_t = 0.95, value_parser = probability, allow_negative_numbers = true)]
@@ -107,42 +109,13 @@ pub(crate) fn method() -> impl TypedValueParser<Value = Method> {
     ids.try_map(|id| Method::find(&id).ok_or("no method has this name"))
 }
 
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Confidence {
-    Of(f64),
-    None,
+pub(crate) fn passband(text: &str) -> Result<OrNone, String> {
+    let expected = "expected a frequency in Hz, or `none`";
+    or_none(text, |text| number_where(text, |hz| hz > 0.0, expected))
 }
 
-impl Confidence {
-    /// How sure a reaction must be, where that is tested.
-    pub(super) fn level(self) -> Option<f64> {
-        match self {
-            Self::Of(confidence) => Some(confidence),
-            Self::None => None,
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Passband {
-    Hz(f64),
-    None,
-}
-
-pub(crate) fn passband(text: &str) -> Result<Passband, String> {
-    if text == "none" {
-        return Ok(Passband::None);
-    }
-    let hz = text.parse().ok().filter(|hz: &f64| hz.is_finite() && *hz > 0.0);
-    hz.map(Passband::Hz).ok_or_else(|| "expected a frequency in Hz, or `none`".to_owned())
-}
-
-pub(super) fn confidence(text: &str) -> Result<Confidence, String> {
-    if text == "none" {
-        return Ok(Confidence::None);
-    }
-    let found = probability(text).map(Confidence::Of);
-    found.map_err(|expected| format!("{expected}, or `none`"))
+pub(super) fn confidence(text: &str) -> Result<OrNone, String> {
+    or_none(text, |text| probability(text).map_err(|expected| format!("{expected}, or `none`")))
 }
 
 pub(super) fn limits(text: &str) -> Result<(f64, f64), String> {
@@ -155,14 +128,9 @@ pub(super) fn limits(text: &str) -> Result<(f64, f64), String> {
     }
 }
 
-impl Passband {
-    /// The low-pass of `order` that it stands for.
-    pub(crate) fn low_pass(self, order: usize) -> Option<LowPass> {
-        match self {
-            Self::Hz(cutoff_hz) => Some(LowPass { cutoff_hz, order }),
-            Self::None => None,
-        }
-    }
+/// The low-pass of `order` that a cutoff stands for.
+pub(crate) fn low_pass(passband: OrNone, order: usize) -> Option<LowPass> {
+    passband.number().map(|cutoff_hz| LowPass { cutoff_hz, order })
 }
 
 impl ConditionArgs {
@@ -178,7 +146,7 @@ impl ConditionArgs {
     pub(crate) fn settings(&self, method: Method) -> Settings {
         let usual = Settings::of(method);
         let order = self.filter_order;
-        let confidence = self.confidence.map_or(usual.confidence, Confidence::level);
+        let confidence = self.confidence.map_or(usual.confidence, OrNone::number);
         let settings = Settings {
             low_pass: usual.low_pass.map(|usual| LowPass { order, ..usual }),
             output_limits: self.output_limits,

@@ -16,7 +16,7 @@ mod review;
 pub(crate) use against::AgainstArgs;
 pub(crate) use algorithm::AlgorithmArgs;
 pub(crate) use choice::{Choices, one_of};
-pub(crate) use conditions::{ConditionArgs, Passband, ids_with, passband};
+pub(crate) use conditions::{ConditionArgs, ids_with, low_pass, passband};
 pub(crate) use data::{DataArgs, MemoryArgs, ReadingArgs, read};
 pub(crate) use effects::{EffectArgs, find};
 pub(crate) use model_file::{

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use anyhow::anyhow;
 
 use super::choice::chosen;
-use super::conditions::{FIRST_LAST, INPUT, confidence, limits, passband};
+use super::conditions::{FIRST_LAST, INPUT, confidence, limits, low_pass, passband};
 use super::number::{length, length_or_none, probability, threshold};
 use crate::delay::{Automatic, Settings};
 use crate::experiment::{Experiment, Joint, ReadOptions};
@@ -22,7 +22,7 @@ const SETTINGS: [(&str, Set); 13] = [
     ("beta", |text, it| Ok(it.with_beta(length(text)?))),
     ("passband", |text, it| {
         let order = it.low_pass.map_or(4, |usual| usual.order);
-        let low_pass = passband(text)?.low_pass(order);
+        let low_pass = low_pass(passband(text)?, order);
         Ok(Settings { low_pass, low_pass_required: true, ..it })
     }),
     ("min_delay", |text, it| Ok(it.with_min_delay(length_or_none(text)?))),
@@ -31,7 +31,7 @@ const SETTINGS: [(&str, Set); 13] = [
     ("min_slope_change", |text, it| Ok(Settings { min_slope_change: threshold(text)?, ..it })),
     ("max_sse", |text, it| Ok(Settings { max_sse: Some(threshold(text)?), ..it })),
     ("min_step", |text, it| Ok(Settings { min_step: threshold(text)?, ..it })),
-    ("confidence", |text, it| Ok(Settings { confidence: confidence(text)?.level(), ..it })),
+    ("confidence", |text, it| Ok(Settings { confidence: confidence(text)?.number(), ..it })),
     ("interval", |text, it| Ok(Settings { interval: probability(text)?, ..it })),
     ("first_last", |text, it| Ok(Settings { first_last: chosen(FIRST_LAST, text)?, ..it })),
     ("input", |text, it| Ok(Settings { input: chosen(INPUT, text)?, ..it })),

@@ -210,9 +210,10 @@ impl Work<'_> {
         }
         let document = serde_json::from_slice(&output.stdout)
             .with_context(|| format!("{}: its result is not JSON", log.display()))?;
-        let key = key.to_owned();
-        Kept::new(self.each.command, log, self.of, self.settings(), key, document)
-            .write(&self.place(log))
+        let (command, key) = (self.each.command.to_owned(), key.to_owned());
+        let (of, settings) = (self.of, self.settings());
+        let kept = Kept { command, of, settings, key, ..Kept::of(log, document) };
+        kept.write(&self.place(log))
     }
 }
 

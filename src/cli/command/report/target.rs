@@ -49,9 +49,9 @@ impl Target {
 
     /// Refuses what cannot be written.
     pub(super) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
-        let files = [self.path.as_path()].into_iter().chain(self.review.as_deref()).collect();
-        let recording = self.recording.as_deref();
-        Outputs { recording, files, ..Outputs::default() }.check(inputs)?;
+        let files = [Some(&self.path), self.recording.as_ref(), self.review.as_ref()];
+        let files = files.into_iter().flatten().map(PathBuf::as_path).collect();
+        Outputs { files, ..Outputs::default() }.check(inputs)?;
         let folder = self.folder();
         if self.kind == Kind::Markdown && folder.exists() && !folder.is_dir() {
             bail!("{}: the drawings need a folder of this name", folder.display());

@@ -15,7 +15,8 @@ use crate::units::Length;
 use anyhow::bail;
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{ConditionArgs, DataArgs, Passband, RunArgs, ids_with, number};
+use crate::cli::args::number::{self, OrNone};
+use crate::cli::args::{ConditionArgs, DataArgs, RunArgs, ids_with, low_pass};
 use crate::cli::console::Bar;
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures, said};
@@ -45,7 +46,7 @@ pub(crate) struct Args {
     beta: Values<Length>,
 
     #[arg(long, help = format!("Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none]; for `{}` alone", ids_with(|spec| !spec.has_intervals)), value_name = "LIST", value_parser = passbands, allow_hyphen_values = true)]
-    passband: Option<Values<Passband>>,
+    passband: Option<Values<OrNone>>,
 
     /// Delays that differ by so many samples more than β or their intervals allow still agree
     #[arg(long, value_name = "SAMPLES", default_value_t = 2.0, value_parser = number::threshold, allow_negative_numbers = true)]
@@ -189,7 +190,7 @@ impl Args {
         /// More would take days, and no memory holds them.
         const MOST: usize = 20_000;
         let order = self.conditions.filter_order;
-        let usual = [Passband::Hz(2.0), Passband::Hz(5.0), Passband::Hz(10.0), Passband::None];
+        let usual = [OrNone::Number(2.0), OrNone::Number(5.0), OrNone::Number(10.0), OrNone::None];
         let passbands = self.passband.as_ref().map_or(usual.as_slice(), |given| &given.0);
         let base = |method: &Method| {
             let settings = self.conditions.settings(*method);
@@ -204,7 +205,7 @@ impl Args {
         if combinations > MOST {
             bail!("{combinations} combinations of settings are more than {MOST}; try fewer values");
         }
-        let passbands = passbands.iter().map(|passband| passband.low_pass(order)).collect();
+        let passbands = passbands.iter().map(|passband| low_pass(*passband, order)).collect();
         Ok(Grid::new(bases, passbands, alphas, betas))
     }
 }
