@@ -32,5 +32,4 @@ pub(crate) use protocol::Watch;
 pub use protocol::{Mode, Protocol, Watched};
 pub use review::Review;
 pub use sheet::FileError;
-pub(crate) use sweep::sweep_each;
 pub use sweep::{SweptJoint, sweep_joints};

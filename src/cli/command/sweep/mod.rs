@@ -10,7 +10,7 @@ use crate::delay::{Automatic, EstimateError, Method, Settings};
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::numerics::LowPass;
 use crate::report::{ReportedSweep, StepsShown, SweepJson, sweep_text};
-use crate::study::{SweptJoint, sweep_each};
+use crate::study::{SweptJoint, sweep_joints};
 use crate::units::Length;
 use anyhow::bail;
 use clap::Args as ClapArgs;
@@ -109,7 +109,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         session.own().of_joint(joint, &(settings.clone(), Automatic::default())).0
     };
     let of_joint = |joint: &Joint| grid.with_settings(|settings| own(joint, settings));
-    let work = || sweep_each(joints, of_joint, args.tolerance, || bar.step(), &Threads);
+    let work = || sweep_joints(joints, of_joint, args.tolerance, || bar.step(), &Threads);
     let results = session.in_threads(work)?;
     drop(bar);
     let failures = failures(experiment, &grid, &results);
