@@ -12,7 +12,8 @@ use crate::cli::args::{
     DataArgs, ModelFileArgs, ProtocolArgs, ResultArgs, find, name_of, note_missing,
 };
 use crate::cli::exit::Completion;
-use crate::cli::run::{Session, Start, Study, outcomes, revised};
+use crate::cli::failure::outcomes;
+use crate::cli::run::{Session, Start, Study, revised};
 
 /// Add an effect to a model, and write its next revision
 ///

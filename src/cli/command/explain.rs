@@ -11,10 +11,12 @@ use crate::study::{Mode, OfJoints, compare_joints, explain_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    DataArgs, EffectArgs, ProtocolArgs, ResultArgs, fresh_name, name_of, note_missing, read_model,
+    DataArgs, EffectArgs, ProtocolArgs, ResultArgs, add_arguments, fresh_name, name_of,
+    note_missing, read_model,
 };
 use crate::cli::exit::Completion;
-use crate::cli::run::{Session, Start, Study, add_arguments, as_it_is, outcomes};
+use crate::cli::failure::outcomes;
+use crate::cli::run::{Session, Start, Study, as_it_is};
 
 /// Say which physical effect a model lacks
 ///

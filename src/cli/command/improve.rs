@@ -11,12 +11,14 @@ use crate::study::{Mode, improve_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, name_of, note_missing,
+    DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, add_arguments, name_of,
+    note_missing,
 };
 use crate::cli::console::{Interrupt, STOPPING, message};
 use crate::cli::each_log::{Each, FolderArgs};
 use crate::cli::exit::Completion;
-use crate::cli::run::{Progress, Session, Start, Study, add_arguments, outcomes, revised};
+use crate::cli::failure::outcomes;
+use crate::cli::run::{Progress, Session, Start, Study, revised};
 
 /// Add to a model what it lacks, effect by effect
 ///

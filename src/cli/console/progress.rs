@@ -25,12 +25,10 @@ impl Bar {
         length: u64,
     ) -> Self {
         let host = Host::current();
-        let bar = match verbosity {
-            _ if host.is_some() => {
-                ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
-            }
-            Verbosity::Quiet => ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()),
-            Verbosity::Normal => BARS.add(ProgressBar::new(length)),
+        let bar = if host.is_none() && verbosity == Verbosity::Normal {
+            BARS.add(ProgressBar::new(length))
+        } else {
+            ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
         };
         bar.set_prefix(units);
         bar.set_style(style(length));

@@ -21,14 +21,14 @@ pub(crate) use args::Args;
 use args::ModelArgs;
 use target::{Target, file_name};
 
-use crate::cli::args::{name_of, note_missing, read_model};
+use crate::cli::args::{add_arguments, name_of, note_missing, read_model};
 use crate::cli::console::{Bar, Interrupt, STOPPING, Verbosity, message};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, said};
 use crate::cli::output::write_bytes;
 use crate::cli::run::{
-    self, Progress, Session, Start, Study, add_arguments, as_it_is, compared, estimated,
-    log_hashes, others, revised,
+    self, Progress, Session, Start, Study, as_it_is, compared, estimated, log_hashes, others,
+    revised,
 };
 use crate::cli::typed::quoted;
 
