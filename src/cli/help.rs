@@ -4,111 +4,52 @@
 use clap::{Arg, Command};
 
 /// The options that come first in the help of a command, in this order; of other commands all do.
-const FIRST: [(&str, &[&str]); 9] = [
-    ("estimate", &["output", "joint", "decisions", "steps", "format"]),
-    ("sweep", &["output", "joint", "alpha", "beta", "passband"]),
-    ("compare", &["model", "against", "output", "joint", "format"]),
-    ("explain", &["model", "effects", "output", "joint", "format"]),
-    ("add", &["model", "write", "output", "joint", "format"]),
-    ("improve", &["model", "write", "output", "joint", "max-effects"]),
-    ("report", &["output", "model", "improve", "interactive", "joint"]),
-    ("first-look", &["output", "joint", "model", "effects", "max-effects"]),
-    ("design", &["model", "output", "output-range", "duration", "trials"]),
+const FIRST: [(&str, &str); 9] = [
+    ("estimate", "output joint decisions steps format"),
+    ("sweep", "output joint alpha beta passband"),
+    ("compare", "model against output joint format"),
+    ("explain", "model effects output joint format"),
+    ("add", "model write output joint format"),
+    ("improve", "model write output joint max-effects"),
+    ("report", "output model improve interactive joint"),
+    ("first-look", "output joint model effects max-effects"),
+    ("design", "model output output-range duration trials"),
 ];
 
 /// The headings of all other options.
-const QUESTIONS: [(&str, &[&str]); 13] = [
-    ("The columns are not recognised", &["joint", "time", "trial", "columns"]),
-    ("The clock is uneven, or samples are missing", &["sample-period", "resample", "fill"]),
-    ("The input is not what was sent", &["min-step", "input"]),
+const QUESTIONS: [(&str, &str); 13] = [
+    ("The columns are not recognised", "joint time trial columns"),
+    ("The clock is uneven, or samples are missing", "sample-period resample fill"),
+    ("The input is not what was sent", "min-step input"),
     (
         "Delays are to be found in another way",
-        &[
-            "method",
-            "alpha",
-            "beta",
-            "passband",
-            "filter-order",
-            "max-delay",
-            "interval",
-            "interpolate",
-            "paper",
-            "tolerance",
-        ],
+        "method alpha beta passband filter-order max-delay interval interpolate paper \
+         tolerance",
     ),
     (
         "Steps are accepted or rejected wrongly",
-        &[
-            "confidence",
-            "min-delay",
-            "output-limits",
-            "min-slope-change",
-            "max-sse",
-            "first-last",
-            "keep-first-last",
-            "accept-anyway",
-            "review",
-            "review-sheet",
-        ],
+        "confidence min-delay output-limits min-slope-change max-sse first-last \
+         keep-first-last accept-anyway review review-sheet",
     ),
     (
         "Which model, and how it is fitted",
-        &[
-            "model",
-            "write",
-            "improve",
-            "fit",
-            "effects",
-            "max-effects",
-            "refine",
-            "horizon",
-            "split",
-            "uncertainty",
-        ],
+        "model write improve fit effects max-effects refine horizon split uncertainty",
     ),
-    ("Beside another result", &["against"]),
+    ("Beside another result", "against"),
     (
         "Which input is designed",
-        &[
-            "output-range",
-            "duration",
-            "trials",
-            "levels",
-            "largest",
-            "hold",
-            "rate",
-            "start",
-            "dead-band",
-            "seed",
-            "separate",
-            "power",
-            "noise",
-            "rehearsals",
-        ],
+        "output-range duration trials levels largest hold rate start dead-band seed \
+         separate power noise rehearsals",
     ),
-    ("The log still grows", &["follow", "idle"]),
+    ("The log still grows", "follow idle"),
     (
         "What is written",
-        &[
-            "output",
-            "decisions",
-            "delays",
-            "table",
-            "export",
-            "preview",
-            "embed",
-            "no-recording",
-            "interactive",
-            "title",
-            "author",
-            "date",
-            "detail",
-            "safe-csv",
-        ],
+        "output decisions delays table export preview embed no-recording interactive \
+         title author date detail safe-csv",
     ),
-    ("What is printed", &["steps", "against-state", "format", "quiet"]),
-    ("A viewer shows it at once", &["connect", "spawn", "serve"]),
-    ("Many logs, memory and processors", &["results", "shard", "summary", "threads", "max-memory"]),
+    ("What is printed", "steps against-state format quiet"),
+    ("A viewer shows it at once", "connect spawn serve"),
+    ("Many logs, memory and processors", "results shard summary threads max-memory"),
 ];
 
 /// The options of `command` in their order, the first ones alone in its short help.
@@ -119,8 +60,9 @@ pub(super) fn arranged(command: Command) -> Command {
     };
     let place = |arg: Arg| {
         let long = arg.get_long().unwrap_or_default().to_owned();
-        let of_questions = QUESTIONS.iter().find(|(_, options)| options.contains(&&*long));
-        match (first.iter().position(|option| *option == long), of_questions) {
+        let place_in = |options: &str| options.split_whitespace().position(|option| option == long);
+        let of_questions = QUESTIONS.iter().find(|(_, options)| place_in(options).is_some());
+        match (place_in(first), of_questions) {
             (Some(place), _) => arg.help_heading(None).display_order(place),
             (None, Some((question, _))) => arg.help_heading(*question).hide_short_help(true),
             (None, None) => arg,
@@ -137,13 +79,13 @@ mod tests {
     #[test]
     fn an_option_stands_under_one_question() {
         let mut all: Vec<&str> =
-            QUESTIONS.iter().flat_map(|(_, options)| options.iter().copied()).collect();
+            QUESTIONS.iter().flat_map(|(_, options)| options.split_whitespace()).collect();
         let count = all.len();
         all.sort_unstable();
         all.dedup();
         assert_eq!(all.len(), count);
-        let first = FIRST.iter().flat_map(|(_, options)| options.iter());
+        let first = FIRST.iter().flat_map(|(_, options)| options.split_whitespace());
         let unknown: Vec<_> = first.filter(|option| !all.contains(option)).collect();
-        assert_eq!(unknown, [&""; 0]);
+        assert_eq!(unknown, [""; 0]);
     }
 }

@@ -12,8 +12,7 @@ use anyhow::{Context as _, bail};
 use super::console::{Hosting, message};
 use super::program;
 use super::viewer::{DECLINED, asked_about};
-use crate::effect::Effect;
-use crate::experiment::{Experiment, MemoryLimit, ReadOptions, Survey, is_named_like_a_log};
+use crate::experiment::{MemoryLimit, Survey, is_named_like_a_log};
 
 /// Runs the command that the arguments name, or what a viewer asks for that has called the program
 /// `rerun-importer-tauscope`.
@@ -78,28 +77,4 @@ fn parts(folder: &Path, whole: &Path) -> anyhow::Result<Vec<PathBuf>> {
 /// Whoever looks at the recording alone: it says itself what was found and how the log was read.
 struct Silent;
 
-impl Hosting for Silent {
-    fn logs(&self, _: &ReadOptions) -> Option<Experiment> {
-        None
-    }
-
-    fn effects(&self) -> Vec<&'static dyn Effect> {
-        Vec::new()
-    }
-
-    fn print(&self, _: &[u8]) -> io::Result<()> {
-        Ok(())
-    }
-
-    fn say(&self, _: &str, _: &str) {}
-
-    fn progress(&self, _: &str, _: u64, _: u64) {}
-
-    fn is_stopping(&self) -> bool {
-        false
-    }
-
-    fn is_ending(&self) -> bool {
-        false
-    }
-}
+impl Hosting for Silent {}

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use anyhow::Context as _;
 use clap::{Arg, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
-use crate::cli::args::DataArgs;
+use crate::cli::args::{DataArgs, read};
 use crate::cli::command::{
     add, columns, compare, completions, design, doctor, effects, estimate, explain, export,
     importer, improve, man, merge, report, simulate, sweep,
@@ -183,7 +183,7 @@ struct Reading {
 pub fn read_within(arguments: &[OsString], host: Arc<dyn Hosting>) -> Result<Experiment, Refused> {
     let reading = Reading::try_parse_from(arguments);
     let reading = reading.map_err(|error| Refused::because(&error.to_string()))?;
-    within(host, || reading.data.read())
+    within(host, || read(reading.data.given(), &reading.data.options()?))
 }
 
 /// The arguments behind the program's name.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::ExportError;
+use super::error::ExportError;
 use crate::effect::expression::Program;
 use crate::effect::{Dimension, Stage};
 use crate::experiment::is_control;
@@ -101,7 +101,7 @@ impl Export {
             effects.push(effect);
             parameters.extend(its);
         }
-        let origin = origin.iter().map(|line| one_line(line)).collect();
+        let origin = origin.iter().map(|line| one_line(line).trim_end().to_owned()).collect();
         Ok(Self { joint: one_line(joint), origin, units, parameters, effects })
     }
 
@@ -129,14 +129,6 @@ impl Export {
     /// Whether the joint moves otherwise while other joints move.
     pub(super) fn uses_others(&self) -> bool {
         self.effects.iter().any(|effect| effect.step.uses_others())
-    }
-
-    /// The lines on where it is from, each behind `prefix`.
-    pub(super) fn commented(&self, prefix: &str) -> String {
-        self.origin
-            .iter()
-            .map(|line| format!("{prefix}{line}").trim_end().to_owned() + "\n")
-            .collect()
     }
 }
 

@@ -49,4 +49,10 @@ pub enum ExportError {
         /// What its writer says.
         problem: String,
     },
+    /// The template of a language cannot be filled in.
+    #[error("the template cannot be filled in: {problem}")]
+    Template {
+        /// What is wrong with it.
+        problem: String,
+    },
 }

@@ -5,30 +5,24 @@
 //! ```
 //!
 //! Each effect gives its [`Equations`](crate::effect::Equations); they are printed in the
-//! notation of a language, and put into that language's template of the joint, which does what
-//! [`simulate`](crate::model::simulate()) does: it delays the input, runs it through the stages
-//! and integrates the speed. A file for each language:
+//! notation of a language, and put into that language's template of the joint (`template/`), which does
+//! what [`simulate`](crate::model::simulate()) does: it delays the input, runs it through the stages
+//! and integrates the speed. The languages:
 //!
-//! - `c`: C99 without allocation, source and header
-//! - `python`: a module of NumPy
-//! - `matlab`: a function of MATLAB and GNU Octave
-//! - `fmu`: FMI 3.0 for co-simulation, around the C
+//! - C99 without allocation, source and header
+//! - a module of Python for `NumPy`
+//! - a function of MATLAB and GNU Octave
+//! - an FMU: FMI 3.0 for co-simulation, around the C
 //!
 //! What is not here: the delay table as a lookup, which [`estimate`](crate::report) writes.
 
-mod body;
-mod c;
 mod description;
 mod error;
 mod fmu;
 mod language;
-mod matlab;
 mod notation;
-mod python;
-mod registry;
 mod template;
 
 pub use description::{Export, Units};
 pub use error::ExportError;
-pub use language::{File, Language};
-pub use registry::{by_ending, endings};
+pub use language::{File, Language, by_ending, endings};

@@ -3,63 +3,113 @@
 use super::description::Exported;
 use crate::effect::expression::{Function, Line, Name, Node, Operator, Program};
 
-/// How a language writes what an equation is made of. Arguments are text already, in
-/// parentheses where they need some.
-pub(super) trait Notation {
-    /// A parameter of the model.
-    fn parameter(&self, name: &str) -> String;
-    /// A number that an effect remembers.
-    fn memory(&self, name: &str) -> String;
-    /// What an effect sees of the joint at an instant.
-    fn at(&self, name: &str) -> String {
-        format!("at.{name}")
-    }
-    /// What an effect sees of the joint.
-    fn signal(&self, name: &str) -> String {
-        match name {
-            "radians" => self.parameter("radians_per_output_unit"),
-            _ => self.at(name),
-        }
-    }
-    /// The name of a function of one number, which is called as in mathematics.
-    fn function(&self, function: Function) -> &'static str;
-    /// Sign of a comparison or of logic, or the name of a function of two numbers.
-    fn operator(&self, operator: Operator) -> &'static str {
-        usual_operator(operator)
-    }
-    /// The opposite of a condition.
-    fn not(&self, condition: &str) -> String;
-    /// A number, as a condition: whether it is not zero.
-    fn is_true(&self, number: &str) -> String;
-    /// One of two numbers.
-    fn choice(&self, condition: &str, then: &str, otherwise: &str) -> String;
-    /// A line that gives a value to a name of its own.
-    fn local(&self, name: &str, value: &str) -> String {
-        self.remember(name, value)
-    }
-    /// A line that gives a value to what is remembered.
-    fn remember(&self, name: &str, value: &str) -> String {
-        format!("{name} = {value};")
-    }
+/// A language in which equations are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Notation {
+    C,
+    Python,
+    Matlab,
 }
 
-/// The operator in C, and in most languages.
-pub(super) fn usual_operator(operator: Operator) -> &'static str {
-    match operator {
-        Operator::Add => "+",
-        Operator::Sub => "-",
-        Operator::Mul => "*",
-        Operator::Div => "/",
-        Operator::Pow => "pow",
-        Operator::Min => "fmin",
-        Operator::Max => "fmax",
-        Operator::Less => "<",
-        Operator::LessOrEqual => "<=",
-        Operator::Greater => ">",
-        Operator::GreaterOrEqual => ">=",
-        Operator::Equal => "==",
-        Operator::And => "&&",
-        Operator::Or => "||",
+impl Notation {
+    /// The text of this language, of one in each: C, Python, MATLAB.
+    fn of<T>(self, [c, python, matlab]: [T; 3]) -> T {
+        match self {
+            Self::C => c,
+            Self::Python => python,
+            Self::Matlab => matlab,
+        }
+    }
+
+    /// A parameter of the model.
+    fn parameter(self, name: &str) -> String {
+        self.of(["model->p.", "self.p.", "s.p."]).to_owned() + name
+    }
+
+    /// A number that an effect remembers.
+    fn memory(self, name: &str) -> String {
+        self.of(["model->", "self.", "s."]).to_owned() + name
+    }
+
+    /// What an effect sees of the joint.
+    fn signal(self, name: &str) -> String {
+        match name {
+            "radians" => self.parameter("radians_per_output_unit"),
+            _ => self.of(["at->", "at.", "at."]).to_owned() + name,
+        }
+    }
+
+    /// The name of a function of one number, which is called as in mathematics. What C and MATLAB do not
+    /// have is a function of their templates.
+    fn function(self, function: Function) -> &'static str {
+        self.of(match function {
+            Function::Abs => ["fabs", "abs", "abs"],
+            Function::Sign => ["sign_of", "np.sign", "sign"],
+            Function::Sqrt => ["sqrt", "np.sqrt", "real_sqrt"],
+            Function::Exp => ["exp", "np.exp", "exp"],
+            Function::Expm1 => ["expm1", "np.expm1", "expm1"],
+            Function::Ln => ["log", "np.log", "real_log"],
+            Function::Ln1p => ["log1p", "np.log1p", "real_log1p"],
+            Function::Sin => ["sin", "np.sin", "sin"],
+            Function::Cos => ["cos", "np.cos", "cos"],
+            Function::Tan => ["tan", "np.tan", "tan"],
+            Function::Atan => ["atan", "np.arctan", "atan"],
+            Function::Tanh => ["tanh", "np.tanh", "tanh"],
+            Function::Floor => ["floor", "np.floor", "floor"],
+            Function::IsFinite => ["isfinite", "np.isfinite", "isfinite"],
+            Function::Neg => ["-"; 3],
+            Function::Not => ["!", "not ", "~"],
+        })
+    }
+
+    /// Sign of a comparison or of logic, or the name of a function of two numbers.
+    fn operator(self, operator: Operator) -> &'static str {
+        self.of(match operator {
+            Operator::Add => ["+"; 3],
+            Operator::Sub => ["-"; 3],
+            Operator::Mul => ["*"; 3],
+            Operator::Div => ["/"; 3],
+            Operator::Pow => ["pow", "np.float_power", "real_pow"],
+            Operator::Min => ["fmin", "np.fmin", "min"],
+            Operator::Max => ["fmax", "np.fmax", "max"],
+            Operator::Less => ["<"; 3],
+            Operator::LessOrEqual => ["<="; 3],
+            Operator::Greater => [">"; 3],
+            Operator::GreaterOrEqual => [">="; 3],
+            Operator::Equal => ["=="; 3],
+            Operator::And => ["&&", "and", "&&"],
+            Operator::Or => ["||", "or", "||"],
+        })
+    }
+
+    /// The opposite of a condition.
+    fn not(self, condition: &str) -> String {
+        match self {
+            Self::C => format!("!({condition})"),
+            Self::Python => format!("(not ({condition}))"),
+            Self::Matlab => format!("~({condition})"),
+        }
+    }
+
+    /// A number, as a condition: whether it is not zero.
+    fn is_true(self, number: &str) -> String {
+        number.to_owned() + self.of([" != 0.0", " != 0.0", " ~= 0"])
+    }
+
+    /// One of two numbers.
+    fn choice(self, condition: &str, then: &str, otherwise: &str) -> String {
+        match self {
+            Self::C => format!("({condition} ? {then} : {otherwise})"),
+            Self::Python => format!("({then} if {condition} else {otherwise})"),
+            Self::Matlab => format!("pick({condition}, {then}, {otherwise})"),
+        }
+    }
+
+    /// A line that gives a value to what is remembered, or to a name of its own.
+    fn line(self, to: Name, name: &str, value: &str) -> String {
+        let is_declared = self == Self::C && !matches!(to, Name::Memory(_));
+        let declared = if is_declared { "const double " } else { "" };
+        format!("{declared}{name} = {value}{}", self.of([";", "", ";"]))
     }
 }
 
@@ -94,15 +144,10 @@ impl Written {
 }
 
 /// The lines of `program`, an equation of `effect`.
-pub(super) fn lines(notation: &dyn Notation, effect: &Exported, program: &Program) -> Vec<String> {
+pub(super) fn lines(notation: Notation, effect: &Exported, program: &Program) -> Vec<String> {
     let scope = Scope { notation, effect, program };
-    let line = |line: &Line| {
-        let value = scope.number(&line.value).text;
-        match line.to {
-            Name::Memory(_) => notation.remember(&scope.name(line.to), &value),
-            _ => notation.local(&scope.name(line.to), &value),
-        }
-    };
+    let line =
+        |line: &Line| notation.line(line.to, &scope.name(line.to), &scope.number(&line.value).text);
     program.lines.iter().map(line).collect()
 }
 
@@ -120,7 +165,7 @@ fn local(name: &str) -> String {
 
 #[derive(Clone, Copy)]
 struct Scope<'a> {
-    notation: &'a dyn Notation,
+    notation: Notation,
     effect: &'a Exported,
     program: &'a Program,
 }

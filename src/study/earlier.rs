@@ -2,82 +2,14 @@
 
 use std::io::ErrorKind;
 use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Deserialize;
 
 use super::difference::{JointResult, OtherResult, StepResult, verdict_of};
+use super::sheet::{FileError, table_reader};
 use crate::experiment::read_result;
 use crate::numerics::Line;
-
-/// Why the result of an earlier run cannot be read.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum EarlierError {
-    /// The file cannot be opened or is no text.
-    #[error("{path}: cannot be read")]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: std::io::Error,
-    },
-    /// The file is JSON, and not the result of an estimate.
-    #[error("{path}: expected the JSON of an estimate, schema `{}`; found {found}", SCHEMA)]
-    Schema {
-        /// The file.
-        path: PathBuf,
-        /// Its schema in words.
-        found: String,
-    },
-    /// The JSON is broken, or something that is needed is missing.
-    #[error("{path}: this is no whole result of an estimate")]
-    Json {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: serde_json::Error,
-    },
-    /// A row of the table of decisions cannot be understood.
-    #[error("{path}: the table of decisions cannot be read")]
-    Table {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: csv::Error,
-    },
-    /// A delay that is none.
-    #[error(
-        "{path}: joint `{joint}`, trial {trial}, step {i}: a delay of {got:e} s is none; expected \
-         at most 1e8 s"
-    )]
-    Delay {
-        /// The file.
-        path: PathBuf,
-        /// The joint.
-        joint: String,
-        /// The trial.
-        trial: String,
-        /// Number of the step.
-        i: usize,
-        /// What is there.
-        got: f64,
-    },
-    /// A verdict that there is not.
-    #[error("{path}: joint `{joint}`, trial {trial}, step {i}: there is no verdict `{got}`")]
-    Verdict {
-        /// The file.
-        path: PathBuf,
-        /// The joint.
-        joint: String,
-        /// The trial.
-        trial: String,
-        /// Number of the step.
-        i: usize,
-        /// What is there.
-        got: String,
-    },
-}
 
 /// The schema of an estimate.
 const SCHEMA: &str = "tauscope/estimate/1";
@@ -147,20 +79,17 @@ impl OtherResult {
     /// any result.
     ///
     /// # Errors
-    /// [`EarlierError::File`] for what cannot be opened, [`EarlierError::Schema`],
-    /// [`EarlierError::Json`], [`EarlierError::Table`] and [`EarlierError::Verdict`] for what
-    /// is one of both and cannot be understood.
-    pub fn read(path: &Path) -> Result<Option<Self>, EarlierError> {
-        let file = |source| EarlierError::File { path: path.to_owned(), source };
+    /// [`FileError`] for what cannot be opened, and for what is one of both and cannot be understood.
+    pub fn read(path: &Path) -> Result<Option<Self>, FileError> {
         match read_result(path) {
             Ok(text) => Self::parse(text.trim_start_matches('\u{feff}'), path),
             // A log may be long, and may be no text.
             Err(error) if error.kind() == ErrorKind::InvalidData => Ok(None),
-            Err(error) => Err(file(error)),
+            Err(error) => Err(FileError::unreadable(path, "cannot be read")(error)),
         }
     }
 
-    fn parse(text: &str, path: &Path) -> Result<Option<Self>, EarlierError> {
+    fn parse(text: &str, path: &Path) -> Result<Option<Self>, FileError> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if text.trim_start().starts_with(['{', '[']) {
             let document = document(text, path)?;
@@ -183,27 +112,22 @@ impl OtherResult {
     }
 }
 
-fn document(text: &str, path: &Path) -> Result<Document, EarlierError> {
-    let json = |source| EarlierError::Json { path: path.to_owned(), source };
-    let value: serde_json::Value = serde_json::from_str(text).map_err(json)?;
+fn document(text: &str, path: &Path) -> Result<Document, FileError> {
+    let json = FileError::unreadable(path, "this is no whole result of an estimate");
+    let value: serde_json::Value = serde_json::from_str(text).map_err(&json)?;
     let schema = value.get("schema").and_then(serde_json::Value::as_str);
     if schema != Some(SCHEMA) {
         let found = schema.map_or_else(|| "none".to_owned(), |schema| format!("`{schema}`"));
-        return Err(EarlierError::Schema { path: path.to_owned(), found });
+        let problem = format!("expected the JSON of an estimate, schema `{SCHEMA}`; found {found}");
+        return Err(FileError::wrong(path, String::new(), problem));
     }
     serde_json::from_value(value).map_err(json)
 }
 
 /// The rows of a table of decisions; none where `text` is no such table.
-fn rows(text: &str, path: &Path) -> Result<Option<Vec<Row>>, EarlierError> {
-    let table = |source| EarlierError::Table { path: path.to_owned(), source };
-    let header = text.lines().find(|line| !line.starts_with('#')).unwrap_or_default();
-    let delimiters = [b',', b';', b'\t'].into_iter();
-    let delimiter =
-        delimiters.max_by_key(|delimiter| header.bytes().filter(|byte| byte == delimiter).count());
-    let mut builder = csv::ReaderBuilder::new();
-    builder.delimiter(delimiter.unwrap_or(b',')).trim(csv::Trim::All).comment(Some(b'#'));
-    let mut reader = builder.from_reader(text.as_bytes());
+fn rows(text: &str, path: &Path) -> Result<Option<Vec<Row>>, FileError> {
+    let table = FileError::unreadable(path, "the table of decisions cannot be read");
+    let mut reader = table_reader(text, Some(b'#'));
     let Ok(found) = reader.headers().cloned() else { return Ok(None) };
     if COLUMNS.into_iter().any(|name| found.iter().all(|column| column != name)) {
         return Ok(None);
@@ -211,20 +135,24 @@ fn rows(text: &str, path: &Path) -> Result<Option<Vec<Row>>, EarlierError> {
     reader.deserialize().collect::<Result<Vec<Row>, _>>().map(Some).map_err(table)
 }
 
-fn joint_of(joint: String, rows: Vec<Row>, path: &Path) -> Result<JointResult, EarlierError> {
+fn joint_of(joint: String, rows: Vec<Row>, path: &Path) -> Result<JointResult, FileError> {
     let steps = rows.into_iter().map(|row| row.step(path));
     Ok(JointResult { joint, steps: steps.collect::<Result<_, _>>()? })
 }
 
 impl Row {
-    fn step(self, path: &Path) -> Result<StepResult, EarlierError> {
+    fn step(self, path: &Path) -> Result<StepResult, FileError> {
+        let wrong = |problem| {
+            let Self { joint, trial, i, .. } = &self;
+            let place = format!(": joint `{joint}`, trial {trial}, step {i}");
+            FileError::wrong(path, place, problem)
+        };
         let Some(verdict) = verdict_of(&self.verdict) else {
-            let Self { joint, trial, i, verdict: got, .. } = self;
-            return Err(EarlierError::Verdict { path: path.to_owned(), joint, trial, i, got });
+            return Err(wrong(format!("there is no verdict `{}`", self.verdict)));
         };
         if let Some(got) = self.delta_s.filter(|delay| !DELAYS_S.contains(delay)) {
-            let Self { joint, trial, i, .. } = self;
-            return Err(EarlierError::Delay { path: path.to_owned(), joint, trial, i, got });
+            let problem = format!("a delay of {got:e} s is none; expected at most 1e8 s");
+            return Err(wrong(problem));
         }
         let line = |slope: Option<f64>, intercept: Option<f64>| {
             Some(Line { slope: slope?, intercept: intercept? })
@@ -267,7 +195,7 @@ mod tests {
     const HEADER: &str = "joint,trial,i,p,r,end,candidates,f_opt,q,delta,delta_s,sse,\
         slope_before,intercept_before,slope_after,intercept_after,verdict,failed";
 
-    fn parse(text: &str) -> Result<Option<OtherResult>, EarlierError> {
+    fn parse(text: &str) -> Result<Option<OtherResult>, FileError> {
         OtherResult::parse(text, Path::new("earlier.csv"))
     }
 
@@ -287,18 +215,17 @@ mod tests {
     #[test]
     fn what_is_no_result_is_none_and_what_is_a_broken_one_names_its_place() {
         assert_eq!(parse("time_s,boom.input,boom.output\n0,1,2\n").unwrap(), None);
-        let other = r#"{"schema": "tauscope/sweep/1"}"#;
-        assert!(
-            matches!(parse(other), Err(EarlierError::Schema { found, .. }) if found.contains("sweep"))
-        );
-        assert!(matches!(parse("{"), Err(EarlierError::Json { .. })));
+        let said = |text: &str| parse(text).map_err(|error| error.to_string()).unwrap_err();
+        let other = said(r#"{"schema": "tauscope/sweep/1"}"#);
+        assert!(other.ends_with("found `tauscope/sweep/1`"), "{other}");
+        assert!(matches!(parse("{"), Err(FileError::Unreadable { .. })));
         let unknown = "boom,1,1,89,79,126,8,5,104,15,0.15,1.5,0,2,0.1,-8,perhaps,\n";
-        let error = parse(&format!("{HEADER}\n{unknown}"));
-        assert!(matches!(error, Err(EarlierError::Verdict { i: 1, .. })));
+        let unknown = said(&format!("{HEADER}\n{unknown}"));
+        assert!(unknown.ends_with("step 1: there is no verdict `perhaps`"), "{unknown}");
         let endless = "boom,1,1,89,79,126,8,5,104,15,1e308,1.5,0,2,0.1,-8,accepted,\n";
-        let error = parse(&format!("{HEADER}\n{endless}"));
-        assert!(matches!(error, Err(EarlierError::Delay { i: 1, .. })));
+        let endless = said(&format!("{HEADER}\n{endless}"));
+        assert!(endless.contains("step 1: a delay of 1e308 s"), "{endless}");
         let ragged = parse(&format!("{HEADER}\nboom,1\n"));
-        assert!(matches!(ragged, Err(EarlierError::Table { .. })));
+        assert!(matches!(ragged, Err(FileError::Unreadable { .. })));
     }
 }

@@ -45,22 +45,11 @@ pub fn estimate_joints(
     done: impl Fn() + Sync,
     workers: &impl Workers,
 ) -> Vec<Result<JointEstimate, EstimateError>> {
-    estimate_joints_with(joints, settings, Automatic::default(), done, workers)
+    estimate_each(joints, |_| (settings.clone(), Automatic::default()), done, workers)
 }
 
-/// Estimates every trial of every joint with settings of which some are chosen for each joint
-/// from its own record: see [`choose`].
-pub(crate) fn estimate_joints_with(
-    joints: &[Joint],
-    settings: &Settings,
-    automatic: Automatic,
-    done: impl Fn() + Sync,
-    workers: &impl Workers,
-) -> Vec<Result<JointEstimate, EstimateError>> {
-    estimate_each(joints, |_| (settings.clone(), automatic), done, workers)
-}
-
-/// Estimates every trial of every joint with what is `asked` for of that joint.
+/// Estimates every trial of every joint with what is `asked` for of that joint: settings, of which some
+/// are chosen from its own record (see [`choose`]).
 pub(crate) fn estimate_each(
     joints: &[Joint],
     asked: impl Fn(&Joint) -> (Settings, Automatic) + Sync,

@@ -17,11 +17,11 @@ mod estimate;
 mod models;
 mod protocol;
 mod review;
+mod sheet;
 mod start;
 mod sweep;
 
 pub use difference::{JointDifferences, JointResult, OtherResult, StepPair, StepResult, Verdicts};
-pub use earlier::EarlierError;
 pub(crate) use estimate::estimate_each;
 pub use estimate::{JointEstimate, estimate_joints};
 pub(crate) use models::{Known, OfJoints, explain_unknown_joints, others_of};
@@ -30,6 +30,6 @@ pub use models::{
 };
 pub(crate) use protocol::Watch;
 pub use protocol::{Mode, Protocol, Watched};
-pub use review::{Review, ReviewError, ReviewNote, Why};
-pub(crate) use sweep::sweep_each;
+pub use review::Review;
+pub use sheet::FileError;
 pub use sweep::{SweptJoint, sweep_joints};

@@ -16,22 +16,11 @@ pub struct SweptJoint {
     pub failed: Vec<(usize, EstimateError)>,
 }
 
-/// Estimates every joint with all settings of `grid` and shows how its delays move; delays
-/// agree within `tolerance` samples. `done` is called after each run of a joint.
+/// Estimates every joint with all settings of the grid that `of_joint` gives it, and shows how its delays
+/// move; delays agree within `tolerance` samples. `done` is called after each run of a joint.
 ///
 /// A joint fails when all runs do, with the first one's error.
 pub fn sweep_joints(
-    joints: &[Joint],
-    grid: &Grid,
-    tolerance: f64,
-    done: impl Fn() + Sync,
-    workers: &impl Workers,
-) -> Vec<Result<SweptJoint, EstimateError>> {
-    sweep_each(joints, |_| grid.clone(), tolerance, done, workers)
-}
-
-/// Estimates every joint with all settings of a grid of its own.
-pub(crate) fn sweep_each(
     joints: &[Joint],
     of_joint: impl Fn(&Joint) -> Grid + Sync,
     tolerance: f64,

@@ -30,7 +30,7 @@ fn swept(made: &Synthetic, methods: &[Method], passbands: &[Option<f64>]) -> Joi
     let low_pass = |hz: &Option<f64>| hz.map(|cutoff_hz| LowPass { cutoff_hz, order: 4 });
     let passbands = passbands.iter().map(low_pass).collect();
     let grid = Grid::new(bases, passbands, vec![10], vec![1, 2]);
-    let mut found = sweep_joints(&made.joints, &grid, 2.0, || (), &Threads);
+    let mut found = sweep_joints(&made.joints, |_| grid.clone(), 2.0, || (), &Threads);
     found.remove(0).unwrap().sweep
 }
 

@@ -269,7 +269,7 @@ fn a_tie_of_the_maker_of_test_data_is_seen() {
 }
 
 /// Libraries, and the places that may name them.
-const PLACES: [(&str, &[&str]); 21] = [
+const PLACES: [(&str, &[&str]); 22] = [
     ("rayon", &["src/batch.rs"]),
     ("rerun", &["src/recording"]),
     ("sci_rs", &["src/numerics/filter.rs"]),
@@ -287,7 +287,8 @@ const PLACES: [(&str, &[&str]); 21] = [
     ("arrow_schema", &["src/experiment/format/parquet.rs"]),
     ("calamine", &["src/experiment/format/xlsx.rs"]),
     ("hdf5_pure", &["src/experiment/format/mat"]),
-    ("zip", &["src/export/fmu", "src/experiment/format/xlsx.rs"]),
+    ("minijinja", &["src/export"]),
+    ("zip", &["src/export/fmu.rs", "src/experiment/format/xlsx.rs"]),
     ("mcap", &["src/experiment/format"]),
     ("re_cdr", &["src/experiment/format/mcap"]),
     ("re_ros_msg", &["src/experiment/format/mcap"]),

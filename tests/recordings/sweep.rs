@@ -50,7 +50,7 @@ impl Swept {
         write_log(&made, std::fs::File::create(&path).unwrap()).unwrap();
         let experiment = Experiment::read(&[path], &ReadOptions::default());
         let grid = grid();
-        let joints = sweep_joints(&experiment.joints, &grid, 2.0, || (), &Threads);
+        let joints = sweep_joints(&experiment.joints, |_| grid.clone(), 2.0, || (), &Threads);
         let joints = joints.into_iter().map(Result::unwrap).collect();
         Self { experiment, grid, joints, folder }
     }

@@ -1,9 +1,10 @@
 //! How delays are found: the options of `estimate` and `report`.
 
-use clap::{Args as ClapArgs, ValueEnum};
+use clap::Args as ClapArgs;
 
-use super::conditions::{ConditionArgs, Passband, method, passband};
-use super::number::length;
+use super::choice::{Choices, one_of};
+use super::conditions::{ConditionArgs, low_pass, method, passband};
+use super::number::{OrNone, length};
 use crate::delay::{Automatic, Interpolation, Method, Settings};
 use crate::units::Length;
 
@@ -25,14 +26,14 @@ pub(crate) struct AlgorithmArgs {
     beta: Option<OrAuto<Length>>,
 
     #[arg(long, help = passband_help(), value_name = "HZ|none|auto", value_parser = or_auto(passband), allow_negative_numbers = true)]
-    passband: Option<OrAuto<Passband>>,
+    passband: Option<OrAuto<OrNone>>,
 
     #[command(flatten)]
     conditions: ConditionArgs,
 
     /// The delay between two steps
-    #[arg(long, value_enum, default_value_t = Between::Hold)]
-    interpolate: Between,
+    #[arg(long, default_value = "hold", value_parser = one_of(BETWEEN))]
+    interpolate: Interpolation,
 }
 
 fn passband_help() -> String {
@@ -65,13 +66,11 @@ fn given<T>(value: Option<OrAuto<T>>) -> Option<T> {
     }
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Between {
-    /// Keep the delay until the next step
-    Hold,
-    /// Go in a line to the next accepted delay
-    Linear,
-}
+/// The delay between two steps.
+const BETWEEN: Choices<Interpolation> = &[
+    ("hold", "Keep the delay until the next step", Interpolation::Hold),
+    ("linear", "Go in a line to the next accepted delay", Interpolation::Linear),
+];
 
 impl AlgorithmArgs {
     /// The settings of each method that was asked for, each once.
@@ -111,15 +110,12 @@ impl AlgorithmArgs {
             beta.unwrap_or_else(|| base.beta_length()),
         );
         let low_pass = match given(self.passband) {
-            Some(passband) => passband.low_pass(self.conditions.filter_order),
+            Some(passband) => low_pass(passband, self.conditions.filter_order),
             None => base.low_pass,
         };
-        let interpolation = match self.interpolate {
-            Between::Hold => Interpolation::Hold,
-            Between::Linear => Interpolation::Linear,
-        };
         let low_pass_required = given(self.passband).is_some();
-        let settings = Settings { low_pass, low_pass_required, interpolation, ..base };
+        let settings =
+            Settings { low_pass, low_pass_required, interpolation: self.interpolate, ..base };
         settings.with_alpha(alpha).with_beta(beta)
     }
 

@@ -1,17 +1,20 @@
 //! The settings that every command takes whose delays are asked for.
 
-use super::number::{at_least_one, length, length_or_none, probability, threshold};
+use super::choice::{Choices, one_of};
+use super::number::{
+    OrNone, at_least_one, length, length_or_none, number_where, or_none, probability, threshold,
+};
 use crate::delay::{FirstLast, InputKind, Method, MethodSpec, Settings};
 use crate::numerics::LowPass;
 use crate::units::Length;
+use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
 
 /// The settings that are no part of how a breakpoint is searched.
 #[derive(Args, Debug)]
 pub(crate) struct ConditionArgs {
     #[arg(long, help = confidence_help(), value_name = "X|none", value_parser = confidence, allow_negative_numbers = true)]
-    confidence: Option<Confidence>,
+    confidence: Option<OrNone>,
 
     /// How often the interval of a delay is to hold the true one
     #[arg(long, value_name = "X", default_value_t = 0.95, value_parser = probability, allow_negative_numbers = true)]
@@ -43,8 +46,8 @@ pub(crate) struct ConditionArgs {
     max_sse: Option<f64>,
 
     /// Whether the first and the last step of a trial are judged
-    #[arg(long, value_enum, default_value_t = EndSteps::Auto)]
-    first_last: EndSteps,
+    #[arg(long, default_value = "auto", value_parser = one_of(FIRST_LAST))]
+    first_last: FirstLast,
 
     /// Judge the first and the last step of a trial, as `--first-last keep` does
     #[arg(long, conflicts_with = "first_last")]
@@ -67,27 +70,23 @@ pub(crate) struct ConditionArgs {
 
     /// Take the input as steps, each of which has a delay, or as moving all the time, with one
     /// dead time over the record; `auto` decides it for each joint from the record
-    #[arg(long, value_name = "KIND", value_enum, default_value_t = Input::Auto)]
-    input: Input,
+    #[arg(long, value_name = "KIND", default_value = "auto", value_parser = one_of(INPUT))]
+    input: InputKind,
 }
 
 /// How inputs are taken.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Input {
-    Auto,
-    Steps,
-    Continuous,
-}
+pub(super) const INPUT: Choices<InputKind> = &[
+    ("auto", "", InputKind::Auto),
+    ("steps", "", InputKind::Steps),
+    ("continuous", "", InputKind::Continuous),
+];
 
-impl From<Input> for InputKind {
-    fn from(input: Input) -> Self {
-        match input {
-            Input::Auto => Self::Auto,
-            Input::Steps => Self::Steps,
-            Input::Continuous => Self::Continuous,
-        }
-    }
-}
+/// Whether the first and the last step of a trial are judged.
+pub(super) const FIRST_LAST: Choices<FirstLast> = &[
+    ("auto", "In trials of three steps or fewer", FirstLast::Auto),
+    ("reject", "Never, as in the paper", FirstLast::Reject),
+    ("keep", "Always", FirstLast::Keep),
+];
 
 /// The methods that say so of themselves.
 pub(crate) fn ids_with(says: impl Fn(&MethodSpec) -> bool) -> String {
@@ -110,52 +109,13 @@ pub(crate) fn method() -> impl TypedValueParser<Value = Method> {
     ids.try_map(|id| Method::find(&id).ok_or("no method has this name"))
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum EndSteps {
-    /// In trials of three steps or fewer
-    Auto,
-    /// Never, as in the paper
-    Reject,
-    /// Always
-    Keep,
+pub(crate) fn passband(text: &str) -> Result<OrNone, String> {
+    let expected = "expected a frequency in Hz, or `none`";
+    or_none(text, |text| number_where(text, |hz| hz > 0.0, expected))
 }
 
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Confidence {
-    Of(f64),
-    None,
-}
-
-impl Confidence {
-    /// How sure a reaction must be, where that is tested.
-    pub(super) fn level(self) -> Option<f64> {
-        match self {
-            Self::Of(confidence) => Some(confidence),
-            Self::None => None,
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Passband {
-    Hz(f64),
-    None,
-}
-
-pub(crate) fn passband(text: &str) -> Result<Passband, String> {
-    if text == "none" {
-        return Ok(Passband::None);
-    }
-    let hz = text.parse().ok().filter(|hz: &f64| hz.is_finite() && *hz > 0.0);
-    hz.map(Passband::Hz).ok_or_else(|| "expected a frequency in Hz, or `none`".to_owned())
-}
-
-pub(super) fn confidence(text: &str) -> Result<Confidence, String> {
-    if text == "none" {
-        return Ok(Confidence::None);
-    }
-    let found = probability(text).map(Confidence::Of);
-    found.map_err(|expected| format!("{expected}, or `none`"))
+pub(super) fn confidence(text: &str) -> Result<OrNone, String> {
+    or_none(text, |text| probability(text).map_err(|expected| format!("{expected}, or `none`")))
 }
 
 pub(super) fn limits(text: &str) -> Result<(f64, f64), String> {
@@ -168,14 +128,9 @@ pub(super) fn limits(text: &str) -> Result<(f64, f64), String> {
     }
 }
 
-impl Passband {
-    /// The low-pass of `order` that it stands for.
-    pub(crate) fn low_pass(self, order: usize) -> Option<LowPass> {
-        match self {
-            Self::Hz(cutoff_hz) => Some(LowPass { cutoff_hz, order }),
-            Self::None => None,
-        }
-    }
+/// The low-pass of `order` that a cutoff stands for.
+pub(crate) fn low_pass(passband: OrNone, order: usize) -> Option<LowPass> {
+    passband.number().map(|cutoff_hz| LowPass { cutoff_hz, order })
 }
 
 impl ConditionArgs {
@@ -183,9 +138,7 @@ impl ConditionArgs {
         match self.first_last {
             _ if self.paper => FirstLast::Reject,
             _ if self.keep_first_last => FirstLast::Keep,
-            EndSteps::Auto => FirstLast::Auto,
-            EndSteps::Reject => FirstLast::Reject,
-            EndSteps::Keep => FirstLast::Keep,
+            given => given,
         }
     }
 
@@ -193,7 +146,7 @@ impl ConditionArgs {
     pub(crate) fn settings(&self, method: Method) -> Settings {
         let usual = Settings::of(method);
         let order = self.filter_order;
-        let confidence = self.confidence.map_or(usual.confidence, Confidence::level);
+        let confidence = self.confidence.map_or(usual.confidence, OrNone::number);
         let settings = Settings {
             low_pass: usual.low_pass.map(|usual| LowPass { order, ..usual }),
             output_limits: self.output_limits,
@@ -203,7 +156,7 @@ impl ConditionArgs {
             paper: self.paper,
             accept_anyway: self.accept_anyway,
             min_step: self.min_step,
-            input: if self.paper { InputKind::Steps } else { self.input.into() },
+            input: if self.paper { InputKind::Steps } else { self.input },
             confidence,
             interval: self.interval,
             ..usual

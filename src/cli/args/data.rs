@@ -1,6 +1,6 @@
 //! The options of every command that reads logs.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::number;
 use crate::cli::console::Host;
@@ -86,19 +86,6 @@ impl MemoryArgs {
 }
 
 impl DataArgs {
-    /// Reads all logs. Failures of single files and joints are in the result.
-    ///
-    /// # Errors
-    /// When no joint at all can be read.
-    pub(crate) fn read(&self) -> anyhow::Result<Experiment> {
-        self.reading.read(&self.data)
-    }
-
-    /// [`Self::read`] with other options.
-    pub(crate) fn read_with(&self, options: &ReadOptions) -> anyhow::Result<Experiment> {
-        read_with(&self.data, options)
-    }
-
     /// The logs by their names, each once; and messages on folders without any.
     pub(crate) fn logs(&self) -> (Vec<PathBuf>, Vec<String>) {
         let (mut files, unlisted) = expand_folders(&self.data);
@@ -146,17 +133,14 @@ impl DataArgs {
         self.reading.options()
     }
 
+    /// How logs are read, also of the joints that are not asked for.
+    pub(crate) fn options_with_others(&self) -> anyhow::Result<ReadOptions> {
+        Ok(ReadOptions { others: true, ..self.options()? })
+    }
+
     /// Whether no joint is named, so that all of the logs are used.
     pub(crate) fn has_all_joints(&self) -> bool {
         self.reading.joint.is_empty()
-    }
-
-    /// Reads another log in the same way.
-    ///
-    /// # Errors
-    /// When no joint of it can be read.
-    pub(crate) fn read_other(&self, path: &Path) -> anyhow::Result<Experiment> {
-        read_with(&[path.to_owned()], &self.options()?)
     }
 
     /// The files that are read, where they really are.
@@ -205,14 +189,6 @@ impl DataArgs {
 }
 
 impl ReadingArgs {
-    /// Reads the logs `data`. Failures of single files and joints are in the result.
-    ///
-    /// # Errors
-    /// When no joint at all can be read.
-    pub(crate) fn read(&self, data: &[PathBuf]) -> anyhow::Result<Experiment> {
-        read_with(data, &self.options()?)
-    }
-
     /// The joints that are named.
     pub(crate) fn joints(&self) -> Vec<String> {
         let name = |joint: &String| joint.split('=').next().unwrap_or_default().to_owned();
@@ -252,8 +228,11 @@ impl ReadingArgs {
     }
 }
 
-/// Reads the logs `data`, unless nothing of them can be read.
-fn read_with(data: &[PathBuf], options: &ReadOptions) -> anyhow::Result<Experiment> {
+/// Reads the logs `data`. Failures of single files and joints are in the result.
+///
+/// # Errors
+/// When no joint at all can be read.
+pub(crate) fn read(data: &[PathBuf], options: &ReadOptions) -> anyhow::Result<Experiment> {
     let mut experiment = read_or_take(data, options);
     if !experiment.joints.is_empty() {
         return Ok(experiment);

@@ -6,8 +6,8 @@ use crate::model::{Component, JointModel, ModelError, ModelFile};
 use anyhow::{Context as _, bail};
 use clap::Args;
 
-use crate::cli::console::{Host, Verbosity, message};
-use crate::cli::output::{target_of, write_file};
+use crate::cli::console::{Host, Verbosity};
+use crate::cli::output::{target_of, write_bytes};
 use crate::experiment::{Joint, has_word, nearest_name, read_text};
 
 /// The name of a model file where none is given.
@@ -74,13 +74,8 @@ impl ModelFileArgs {
         if is_in_place && read.text() == revised.text() {
             return Ok(());
         }
-        write_file(target, |file| {
-            use std::io::Write as _;
-            Ok(file.write_all(revised.text().as_bytes())?)
-        })?;
-        if verbosity == Verbosity::Normal {
-            message("model", &target.display().to_string());
-        }
+        write_bytes(target, revised.text())?;
+        verbosity.say("model", target.display().to_string());
         Ok(())
     }
 }
@@ -119,7 +114,7 @@ pub(crate) fn fresh_name() -> String {
 
 /// Says which joints a file that has some does not have.
 pub(crate) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbosity) {
-    if verbosity == Verbosity::Quiet || file.names().next().is_none() {
+    if file.names().next().is_none() {
         return;
     }
     for joint in joints.iter().filter(|joint| file.joint(&joint.name).is_none()) {
@@ -128,34 +123,29 @@ pub(crate) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbos
         let is_in_log = |name: &str| joints.iter().any(|joint| joint.name == name);
         let near = nearest_name(name, file.names().filter(|name| !is_in_log(name)));
         let near = near.map_or_else(String::new, |near| format!(", which has `{near}`"));
-        message(
-            "note",
-            &format!("joint `{name}`: not in the model file{near}; a plain integrator"),
-        );
+        let missing = format!("joint `{name}`: not in the model file{near}; a plain integrator");
+        verbosity.say("note", missing);
     }
     note_conditions(file, joints, verbosity);
 }
 
 /// Says which effects do nothing as no trial is of their condition, or their signal was not measured.
 pub(crate) fn note_conditions(file: &ModelFile, joints: &[Joint], verbosity: Verbosity) {
-    if verbosity == Verbosity::Quiet {
-        return;
-    }
     for joint in joints {
-        let model = file.joint(&joint.name).into_iter();
+        let name = &joint.name;
+        let model = file.joint(name).into_iter();
         for effect in model.flat_map(JointModel::components).map(Component::effect) {
-            let signal = effect.measured_signal();
-            let is_measured = |name: &str| joint.covariates.iter().any(|own| own.name == name);
-            if let Some(signal) = signal.filter(|signal| !is_measured(signal)) {
-                let (name, id) = (&joint.name, effect.spec().id);
-                let none = format!("the log has no column `{name}.{signal}`: `{id}` does nothing");
-                message("note", &format!("joint `{name}`: {none}"));
-            }
-            let Some(of) = effect.within_trials() else { continue };
-            if !joint.trials.iter().any(|trial| has_word(trial.label(), of.word)) {
-                let (name, id, word) = (&joint.name, effect.spec().id, of.word);
-                let none = format!("no trial has `{word}` in its label: `{id}` does nothing");
-                message("note", &format!("joint `{name}`: {none}"));
+            let is_measured =
+                |signal: &&str| joint.covariates.iter().any(|own| own.name == *signal);
+            let is_there =
+                |word: &str| joint.trials.iter().any(|trial| has_word(trial.label(), word));
+            let signal = effect.measured_signal().filter(|signal| !is_measured(signal));
+            let signal = signal.map(|signal| format!("the log has no column `{name}.{signal}`"));
+            let word = effect.within_trials().map(|of| of.word).filter(|word| !is_there(word));
+            let word = word.map(|word| format!("no trial has `{word}` in its label"));
+            for none in signal.into_iter().chain(word) {
+                let id = effect.spec().id;
+                verbosity.say("note", format!("joint `{name}`: {none}: `{id}` does nothing"));
             }
         }
     }

@@ -11,10 +11,44 @@ pub(crate) fn period(text: &str) -> Result<SamplePeriod, String> {
     period.ok_or_else(|| "expected a number of seconds from 1e-9 to 1e8, as in 0.01".to_owned())
 }
 
+/// A finite number that `is_allowed`; `expected` is said of all else.
+pub(crate) fn number_where(
+    text: &str,
+    is_allowed: impl Fn(f64) -> bool,
+    expected: &str,
+) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && is_allowed(*number));
+    number.ok_or_else(|| expected.to_owned())
+}
+
+/// A number, or `none`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum OrNone {
+    Number(f64),
+    None,
+}
+
+impl OrNone {
+    /// The number, where there is one.
+    pub(crate) fn number(self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(number),
+            Self::None => None,
+        }
+    }
+}
+
+/// What `number` understands, or `none`.
+pub(crate) fn or_none(
+    text: &str,
+    number: impl Fn(&str) -> Result<f64, String>,
+) -> Result<OrNone, String> {
+    if text == "none" { Ok(OrNone::None) } else { number(text).map(OrNone::Number) }
+}
+
 /// A length of time in seconds.
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|s: &f64| s.is_finite() && *s >= 0.0);
-    seconds.ok_or_else(|| "expected a number of seconds from zero up".to_owned())
+    number_where(text, |s| s >= 0.0, "expected a number of seconds from zero up")
 }
 
 /// A number of bytes, alone or in kilobytes and so on.
@@ -74,14 +108,12 @@ fn any_length(text: &str) -> Option<Length> {
 
 /// A limit that is no less than 0.
 pub(crate) fn threshold(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0);
-    number.ok_or_else(|| "expected a number from 0 up".to_owned())
+    number_where(text, |x| x >= 0.0, "expected a number from 0 up")
 }
 
 /// A probability that is neither 0 nor 1.
 pub(crate) fn probability(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|x: &f64| *x > 0.0 && *x < 1.0);
-    number.ok_or_else(|| "expected a number between 0 and 1, as in 0.99".to_owned())
+    number_where(text, |x| x > 0.0 && x < 1.0, "expected a number between 0 and 1, as in 0.99")
 }
 
 #[cfg(test)]

@@ -4,85 +4,44 @@ use std::collections::BTreeMap;
 
 use anyhow::anyhow;
 
-use super::conditions::{confidence, limits, passband};
+use super::choice::chosen;
+use super::conditions::{FIRST_LAST, INPUT, confidence, limits, low_pass, passband};
 use super::number::{length, length_or_none, probability, threshold};
-use crate::delay::{Automatic, FirstLast, InputKind, Settings};
+use crate::delay::{Automatic, Settings};
 use crate::experiment::{Experiment, Joint, ReadOptions};
 
 /// What is asked for: settings, of which some are chosen from the record.
 pub(crate) type Asked = (Settings, Automatic);
 
-/// Changes what is asked for to what a text says.
-type Set = fn(&str, Asked) -> Result<Asked, String>;
+/// Changes settings to what a text says.
+type Set = fn(&str, Settings) -> Result<Settings, String>;
 
 /// The settings that a joint may have of its own, named like the options.
 const SETTINGS: [(&str, Set); 13] = [
-    ("alpha", |text, (settings, automatic)| {
-        Ok((settings.with_alpha(length(text)?), Automatic { alpha: false, ..automatic }))
+    ("alpha", |text, it| Ok(it.with_alpha(length(text)?))),
+    ("beta", |text, it| Ok(it.with_beta(length(text)?))),
+    ("passband", |text, it| {
+        let order = it.low_pass.map_or(4, |usual| usual.order);
+        let low_pass = low_pass(passband(text)?, order);
+        Ok(Settings { low_pass, low_pass_required: true, ..it })
     }),
-    ("beta", |text, (settings, automatic)| {
-        Ok((settings.with_beta(length(text)?), Automatic { beta: false, ..automatic }))
-    }),
-    ("passband", |text, (settings, automatic)| {
-        let order = settings.low_pass.map_or(4, |usual| usual.order);
-        let low_pass = passband(text)?.low_pass(order);
-        let settings = Settings { low_pass, low_pass_required: true, ..settings };
-        Ok((settings, Automatic { passband: false, ..automatic }))
-    }),
-    ("min_delay", |text, asked| with(asked, |it| Ok(it.with_min_delay(length_or_none(text)?)))),
-    ("max_delay", |text, asked| with(asked, |it| Ok(it.with_max_delay(length(text)?)))),
-    ("output_limits", |text, asked| {
-        with(asked, |it| Ok(Settings { output_limits: Some(limits(text)?), ..it }))
-    }),
-    ("min_slope_change", |text, asked| {
-        with(asked, |it| Ok(Settings { min_slope_change: threshold(text)?, ..it }))
-    }),
-    ("max_sse", |text, asked| {
-        with(asked, |it| Ok(Settings { max_sse: Some(threshold(text)?), ..it }))
-    }),
-    ("min_step", |text, asked| with(asked, |it| Ok(Settings { min_step: threshold(text)?, ..it }))),
-    ("confidence", |text, asked| {
-        with(asked, |it| Ok(Settings { confidence: confidence(text)?.level(), ..it }))
-    }),
-    ("interval", |text, asked| {
-        with(asked, |it| Ok(Settings { interval: probability(text)?, ..it }))
-    }),
-    ("first_last", |text, asked| {
-        with(asked, |it| Ok(Settings { first_last: first_last(text)?, ..it }))
-    }),
-    ("input", |text, asked| with(asked, |it| Ok(Settings { input: input_kind(text)?, ..it }))),
+    ("min_delay", |text, it| Ok(it.with_min_delay(length_or_none(text)?))),
+    ("max_delay", |text, it| Ok(it.with_max_delay(length(text)?))),
+    ("output_limits", |text, it| Ok(Settings { output_limits: Some(limits(text)?), ..it })),
+    ("min_slope_change", |text, it| Ok(Settings { min_slope_change: threshold(text)?, ..it })),
+    ("max_sse", |text, it| Ok(Settings { max_sse: Some(threshold(text)?), ..it })),
+    ("min_step", |text, it| Ok(Settings { min_step: threshold(text)?, ..it })),
+    ("confidence", |text, it| Ok(Settings { confidence: confidence(text)?.number(), ..it })),
+    ("interval", |text, it| Ok(Settings { interval: probability(text)?, ..it })),
+    ("first_last", |text, it| Ok(Settings { first_last: chosen(FIRST_LAST, text)?, ..it })),
+    ("input", |text, it| Ok(Settings { input: chosen(INPUT, text)?, ..it })),
 ];
-
-fn with(
-    (settings, automatic): Asked,
-    set: impl FnOnce(Settings) -> Result<Settings, String>,
-) -> Result<Asked, String> {
-    Ok((set(settings)?, automatic))
-}
-
-fn first_last(text: &str) -> Result<FirstLast, String> {
-    match text {
-        "auto" => Ok(FirstLast::Auto),
-        "reject" => Ok(FirstLast::Reject),
-        "keep" => Ok(FirstLast::Keep),
-        _ => Err("expected auto, reject or keep".to_owned()),
-    }
-}
-
-fn input_kind(text: &str) -> Result<InputKind, String> {
-    match text {
-        "auto" => Ok(InputKind::Auto),
-        "steps" => Ok(InputKind::Steps),
-        "continuous" => Ok(InputKind::Continuous),
-        _ => Err("expected auto, steps or continuous".to_owned()),
-    }
-}
 
 /// The settings that single joints have of their own; they stand above the options, which are
 /// for all joints.
 #[derive(Debug, Default)]
 pub(crate) struct OwnSettings {
-    joints: BTreeMap<String, Vec<(Set, String)>>,
+    joints: BTreeMap<String, Vec<(&'static str, Set, String)>>,
 }
 
 impl OwnSettings {
@@ -96,10 +55,13 @@ impl OwnSettings {
             for (name, text) in settings {
                 let wrong =
                     |why: String| anyhow!("--columns: [joint.{joint}.estimate] {name}: {why}");
-                let set =
-                    named(name).ok_or_else(|| wrong(format!("expected one of {}", names())))?;
-                set(text, Default::default()).map_err(wrong)?;
-                own.joints.entry(joint.clone()).or_default().push((set, text.clone()));
+                let known = SETTINGS.iter().find(|(known, _)| known == name);
+                let (name, set) = known.ok_or_else(|| {
+                    let names = SETTINGS.map(|(name, _)| name).join(", ");
+                    wrong(format!("expected one of {names}"))
+                })?;
+                set(text, Settings::default()).map_err(wrong)?;
+                own.joints.entry(joint.clone()).or_default().push((name, *set, text.clone()));
             }
         }
         Ok(own)
@@ -108,9 +70,14 @@ impl OwnSettings {
     /// What is asked for of `joint`, where `asked` is for all of them.
     pub(crate) fn of_joint(&self, joint: &Joint, asked: &Asked) -> Asked {
         let own = self.joints.get(&joint.name).map_or(&[][..], Vec::as_slice);
-        let set =
-            |asked: Asked, (set, text): &(Set, String)| set(text, asked.clone()).unwrap_or(asked);
-        let (settings, automatic) = own.iter().fold(asked.clone(), set);
+        let (mut settings, mut automatic) = asked.clone();
+        for (name, set, text) in own {
+            settings = set(text, settings.clone()).unwrap_or(settings);
+            // What is given is not chosen from the record.
+            automatic.alpha &= *name != "alpha";
+            automatic.beta &= *name != "beta";
+            automatic.passband &= *name != "passband";
+        }
         (settings.in_samples(&joint.trials), automatic)
     }
 
@@ -122,13 +89,4 @@ impl OwnSettings {
             |name: &String| format!("[joint.{name}.estimate]: the logs have no joint `{name}`");
         missing.map(note).collect()
     }
-}
-
-fn named(name: &str) -> Option<Set> {
-    SETTINGS.iter().find(|(known, _)| *known == name).map(|(_, set)| *set)
-}
-
-fn names() -> String {
-    let names: Vec<_> = SETTINGS.iter().map(|(name, _)| *name).collect();
-    names.join(", ")
 }

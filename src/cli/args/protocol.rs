@@ -2,6 +2,9 @@
 
 use clap::Args;
 
+use super::data::DataArgs;
+use crate::cli::typed::quoted;
+use crate::experiment::Joint;
 use crate::fit::{Horizon, Split};
 use crate::study::{Mode, Protocol};
 
@@ -50,6 +53,24 @@ impl ProtocolArgs {
         let given = options.filter_map(|(name, value)| Some([name.to_owned(), value?]));
         given.flatten().collect()
     }
+}
+
+/// What follows the effect in the command that adds it to the model of a joint, for each of
+/// `joints`; the model is in the file `model`.
+pub(crate) fn add_arguments(
+    data: &DataArgs,
+    protocol: &ProtocolArgs,
+    model: &str,
+    joints: &[Joint],
+) -> Vec<String> {
+    let of_joint = |joint: &Joint| {
+        let one_of_several = (joints.len() > 1).then_some(joint.name.as_str());
+        let mut words = data.typed(one_of_several);
+        words.extend(["--model".to_owned(), model.to_owned()]);
+        words.extend(protocol.typed());
+        quoted(&words)
+    };
+    joints.iter().map(of_joint).collect()
 }
 
 fn horizon(text: &str) -> Result<Horizon, String> {

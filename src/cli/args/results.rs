@@ -20,6 +20,20 @@ pub(crate) enum Format {
     Json,
 }
 
+impl Format {
+    /// Prints `text`, or JSON.
+    pub(crate) fn print<J: Serialize>(
+        self,
+        text: impl FnOnce() -> String,
+        json: impl FnOnce() -> J,
+    ) -> anyhow::Result<()> {
+        match self {
+            Self::Text => console::print(&text()),
+            Self::Json => console::print_json(&json()),
+        }
+    }
+}
+
 /// How a command works and prints.
 #[derive(Args, Debug)]
 pub(crate) struct RunArgs {
@@ -54,18 +68,6 @@ impl RunArgs {
         };
         with_prepared_threads(self.threads, run, work)
             .map_err(|error| anyhow!("threads cannot be started: {error}"))
-    }
-
-    /// Prints `text`, or JSON.
-    pub(crate) fn print<J: Serialize>(
-        &self,
-        text: impl FnOnce() -> String,
-        json: impl FnOnce() -> J,
-    ) -> anyhow::Result<()> {
-        match self.format {
-            Format::Text => console::print(&text()),
-            Format::Json => console::print_json(&json()),
-        }
     }
 }
 

@@ -1,16 +1,15 @@
 //! `tauscope columns`: what a log's columns are taken for, and the mapping that follows.
 
 use std::ffi::OsString;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{MemoryArgs, RunArgs};
-use crate::cli::console::{Verbosity, message, warn};
+use crate::cli::console::{Verbosity, warn};
 use crate::cli::exit::Completion;
-use crate::cli::output::{check_outputs, write_file};
+use crate::cli::output::{Outputs, write_bytes};
 use crate::cli::typed::mapping_options;
 use crate::experiment::{ColumnMap, Experiment, KEPT, MemoryLimit, ReadOptions, Survey};
 use crate::report::{ColumnsJson, columns_table};
@@ -43,7 +42,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     if let Some(path) = &args.write {
         let beside = args.log.with_file_name(KEPT);
         let path = if path.is_empty() { &beside } else { Path::new(path) };
-        check_outputs(&[path], std::slice::from_ref(&args.log))?;
+        let outputs = Outputs { files: vec![path], ..Outputs::default() };
+        outputs.check(std::slice::from_ref(&args.log))?;
         write(&survey, path, args.run.verbosity())?;
     }
     let map = &survey.map;
@@ -56,7 +56,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let text = || columns_table(&survey, &options, &mended);
     let time_alone = [mapping_options(named, &[])];
     let of_json = if options.is_empty() { &time_alone[..] } else { &options };
-    args.run.print(text, || ColumnsJson::new(&survey, of_json, &mended))?;
+    args.run.format.print(text, || ColumnsJson::new(&survey, of_json, &mended))?;
     let told = !survey.map.joints.is_empty();
     Ok(if told { Completion::Whole } else { Completion::Partial })
 }
@@ -76,10 +76,8 @@ fn write(survey: &Survey, path: &Path, verbosity: Verbosity) -> anyhow::Result<(
             "--write {name}: is there already and says something else; remove it, or name another file"
         );
     }
-    write_file(path, |file| Ok(file.write_all(mapping.as_bytes())?))?;
-    if verbosity == Verbosity::Normal {
-        message("columns", &name.to_string());
-    }
+    write_bytes(path, mapping)?;
+    verbosity.say("columns", name.to_string());
     Ok(())
 }
 

@@ -14,7 +14,6 @@ use clap::Args as ClapArgs;
 use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs, note_conditions, read_model};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures};
-use crate::cli::output::check_recorded;
 use crate::cli::run::{Session, Study};
 
 /// Compare a model with the measurement
@@ -56,31 +55,24 @@ struct Named {
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let models = models(&args.model, &args.against)?;
-    let inputs = [args.data.files(), args.model.clone(), args.against.clone()].concat();
-    check_recorded(args.output.recording.as_deref(), &[], &inputs)?;
-    let stream = args.output.stream.open(args.output.run.verbosity())?;
-    let session = Session::with_others("compare", &args.data, &args.output.run, stream)?;
-    let study = Study::of(session, &args.output.delay_settings(), |begun| {
-        let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("comparing"));
+    let inputs = [args.model.as_slice(), &args.against].concat();
+    let session = Session::of_models("compare", &args.data, &args.output, None, inputs)?;
+    let study = Study::of(session, &args.output.delay_settings())?;
+    let results = study.work("comparing", |bar, others| {
         let one = |named: &Named| {
             let starts = |joint: &Joint| named.starts(joint);
-            compare_joints(
-                joints,
-                estimates,
-                starts,
-                args.protocol.with(named.mode(args)).watched(&bar).beside(begun.others),
-                &Threads,
-            )
+            let watched = args.protocol.with(named.mode(args)).watched(bar).beside(others);
+            compare_joints(study.joints(), &study.estimates, starts, watched, &Threads)
         };
         models.iter().map(one).collect::<Vec<_>>()
     })?;
     for file in models.iter().filter_map(|named| named.file.as_ref()) {
-        note_conditions(file, &study.experiment().joints, study.verbosity());
+        note_conditions(file, study.joints(), study.verbosity());
     }
     let mut failures = read_failures(study.experiment());
     let mut compared = Vec::new();
-    for (named, results) in models.iter().zip(&study.result) {
-        for (joint, result) in study.experiment().joints.iter().zip(results) {
+    for (named, results) in models.iter().zip(&results) {
+        for (joint, result) in study.joints().iter().zip(results) {
             match named.compared(joint, result.as_ref()) {
                 Ok(joint) => compared.push(joint),
                 Err(failure) => failures.push(failure),

@@ -5,7 +5,6 @@ use crate::report::{EffectsJson, listing, sheet};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::Format;
-use crate::cli::console;
 use crate::cli::exit::Completion;
 
 /// List the physical effects that a model can have
@@ -23,10 +22,9 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     /// Columns of the text.
     const WIDTH: usize = 90;
-    match (args.format, &args.effect) {
-        (Format::Json, _) => console::print_json(&EffectsJson::new(REGISTRY))?,
-        (Format::Text, None) => console::print(&listing(WIDTH))?,
-        (Format::Text, Some(id)) => console::print(&sheet(find(id)?, WIDTH))?,
-    }
+    let effect = args.effect.as_deref().filter(|_| args.format == Format::Text);
+    let effect = effect.map(find).transpose()?;
+    let text = || effect.map_or_else(|| listing(WIDTH), |effect| sheet(effect, WIDTH));
+    args.format.print(text, || EffectsJson::new(REGISTRY))?;
     Ok(Completion::Whole)
 }

@@ -4,19 +4,19 @@ use std::path::PathBuf;
 
 use crate::batch::Threads;
 use crate::diagnosis::Comparison;
-use crate::experiment::Joint;
-use crate::explain::{Change, Explanation, Revision};
-use crate::model::ModelFile;
-use crate::report::{ComparedJoint, ExplainJson, Finding, ImprovedJoint, explain_text};
-use crate::study::{JointEstimate, Mode, OfJoints, compare_joints, explain_joints};
+use crate::experiment::{Joint, Other};
+use crate::explain::Explanation;
+use crate::report::{ComparedJoint, ExplainJson, ImprovedJoint, explain_text};
+use crate::study::{Mode, OfJoints, compare_joints, explain_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    DataArgs, EffectArgs, ProtocolArgs, ResultArgs, fresh_name, name_of, note_missing, read_model,
+    DataArgs, EffectArgs, ProtocolArgs, ResultArgs, add_arguments, fresh_name, name_of,
+    note_missing, read_model,
 };
 use crate::cli::exit::Completion;
-use crate::cli::output::check_recorded;
-use crate::cli::run::{Session, Study, StudyContext, add_arguments, estimate_at, outcomes};
+use crate::cli::failure::outcomes;
+use crate::cli::run::{Session, Start, Study, as_it_is};
 
 /// Say which physical effect a model lacks
 ///
@@ -46,65 +46,42 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let file = args.model.as_deref().map(read_model).transpose()?.unwrap_or_default();
     let options = args.effects.options(file.candidates())?;
-    let inputs: Vec<_> = args.data.files().into_iter().chain(args.model.clone()).collect();
-    check_recorded(args.output.recording.as_deref(), &[], &inputs)?;
-    let stream = args.output.stream.open(args.output.run.verbosity())?;
-    let session = Session::with_others("explain", &args.data, &args.output.run, stream)?;
+    let (data, output) = (&args.data, &args.output);
+    let inputs = args.model.iter().cloned().collect();
+    let session = Session::of_models("explain", data, output, None, inputs)?;
+    let study = Study::of(session, &output.delay_settings())?;
+    let joints = study.joints();
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
-    let study = Study::of(session, &args.output.delay_settings(), |context| {
-        let (joints, estimates, bar) =
-            (context.joints, context.estimates, context.bar("explaining"));
-        let watched = protocol.watched(&bar).beside(context.others);
-        let explained = explain_joints(joints, estimates, starts, watched, &options, &Threads);
-        let bests = args.output.is_recorded().then(|| args.bests(context, &explained));
+    let (explained, bests) = study.work("explaining", |bar, others| {
+        let watched = protocol.watched(bar).beside(others);
+        let explained =
+            explain_joints(joints, &study.estimates, starts, watched, &options, &Threads);
+        let bests = output.is_recorded().then(|| args.bests(&study, others, &explained));
         (explained, bests.unwrap_or_default())
     })?;
-    let joints = &study.experiment().joints;
     note_missing(&file, joints, study.verbosity());
     let arguments = args.add_arguments(joints);
     let name = name_of(args.model.as_deref());
-    let finding = |index: usize, joint, explanation| {
-        let delays = estimate_at(&study.estimates, index);
-        let arguments = arguments.get(index).map_or("", String::as_str);
-        finding(&file, &name, joint, (explanation, delays), arguments)
-    };
-    let (explained, bests) = &study.result;
-    let (findings, failures) = outcomes(study.experiment(), explained, finding)?;
-    if args.output.is_recorded() {
-        let bests = joints.iter().zip(bests).filter_map(|(joint, best)| {
+    let estimates = &study.estimates;
+    let start = Start { file: &file, model: &name, arguments: &arguments, estimates };
+    let explained = explained.into_iter().map(|found| Some(found?.map(as_it_is)));
+    let explained: Vec<_> = explained.collect();
+    let improved = |index, joint, found| start.improved(index, joint, found);
+    let (improved, failures) = outcomes(study.experiment(), &explained, improved)?;
+    let improved: Vec<ImprovedJoint<'_>> = improved.into_iter().flatten().collect();
+    let findings: Vec<_> = improved.iter().map(|joint| joint.finding).collect();
+    if output.is_recorded() {
+        let bests = joints.iter().zip(&bests).filter_map(|(joint, best)| {
             let (model, comparison) = best.as_ref()?;
             Some(ComparedJoint { joint, model, revision: 0, comparison })
         });
         let models: Vec<_> = findings.iter().map(|f| f.compared).chain(bests).collect();
-        let revisions: Vec<[Revision; 1]> = findings.iter().map(as_revision).collect();
-        let revisions = findings.iter().zip(&revisions);
-        let revisions: Vec<_> = revisions.map(|(f, one)| ImprovedJoint::of(*f, one)).collect();
-        study.record(args.output.recording.as_deref(), &models, &revisions)?;
+        let alone = improved.iter().map(|joint| ImprovedJoint::of(joint.finding, joint.revisions));
+        study.record(output.recording.as_deref(), &models, &alone.collect::<Vec<_>>())?;
     }
     let text = || explain_text(&findings);
     study.end(&failures, text, || ExplainJson::new(&findings, &failures))
-}
-
-fn finding<'a>(
-    file: &ModelFile,
-    model: &'a str,
-    joint: &'a Joint,
-    (explanation, delays): (&'a Explanation, Option<&'a JointEstimate>),
-    add_arguments: &'a str,
-) -> Finding<'a> {
-    let revision = file.revision(&joint.name).unwrap_or(0);
-    let Explanation { base, verdict, ranking, attribution } = explanation;
-    let attribution = Some(attribution);
-    let compared = ComparedJoint { joint, model, revision, comparison: base };
-    let (verdict, before) = (*verdict, None);
-    Finding { compared, verdict, ranking, add_arguments, before, attribution, delays }
-}
-
-/// The model as the only one of its revisions.
-fn as_revision(finding: &Finding<'_>) -> [Revision; 1] {
-    let (comparison, ranking) = (finding.compared.comparison.clone(), finding.ranking.to_vec());
-    [Revision { change: Change::Start, comparison, ranking }]
 }
 
 impl Args {
@@ -117,18 +94,19 @@ impl Args {
     /// The best candidate of each joint beside the measurement, and its name.
     fn bests(
         &self,
-        context: StudyContext<'_>,
+        study: &Study<'_>,
+        others: &[Other<'_>],
         explained: &OfJoints<Explanation>,
     ) -> Vec<Option<(String, Comparison)>> {
-        let joints = context.joints;
+        let joints = study.joints();
         let best = |joint: &Joint| {
             let index = joints.iter().position(|other| other.name == joint.name)?;
             explained.get(index)?.as_ref()?.as_ref().ok()?.proposed()
         };
         let model = |joint: &Joint| Some(best(joint)?.fit.model.clone());
         let protocol = self.protocol.with(Mode::AsItIs);
-        let watched = protocol.watched(&()).beside(context.others);
-        let compared = compare_joints(joints, context.estimates, model, watched, &Threads);
+        let watched = protocol.watched(&()).beside(others);
+        let compared = compare_joints(joints, &study.estimates, model, watched, &Threads);
         let named = |(joint, compared): (&Joint, Option<Result<Comparison, _>>)| {
             Some((format!("with {}", best(joint)?.name()), compared?.ok()?))
         };

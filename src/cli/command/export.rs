@@ -2,16 +2,15 @@
 
 use std::borrow::Cow;
 use std::ffi::OsStr;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::read_model;
-use crate::cli::console::message;
+use crate::cli::console::{Verbosity, message};
 use crate::cli::exit::Completion;
-use crate::cli::output::{check_outputs, write_file};
+use crate::cli::output::{Outputs, write_bytes};
 use crate::experiment::{did_you_mean, nearest_name};
 use crate::export::{Export, File, Language, Units, by_ending, endings};
 use crate::model::{Component, Fitted, JointModel, ModelFile};
@@ -67,15 +66,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let paths = |file: &File| target.with_extension(file.ending);
     let planned: Vec<PathBuf> = planned(language, target);
     let planned: Vec<&Path> = planned.iter().map(PathBuf::as_path).collect();
-    check_outputs(&planned, std::slice::from_ref(&args.model))?;
+    let outputs = Outputs { files: planned, ..Outputs::default() };
+    outputs.check(std::slice::from_ref(&args.model))?;
     let export = exported(args, &model, joint)?;
     let files = language.files(&export, name).with_context(|| shown(target))?;
     for file in &files {
         let path = paths(file);
-        write_file(&path, |output| Ok(output.write_all(&file.content)?))?;
-        if !args.quiet {
-            message("model", &shown(&path));
-        }
+        write_bytes(&path, &file.content)?;
+        Verbosity::from(args.quiet).say("model", shown(&path));
         if let Some(note) = &file.note {
             message("note", &format!("{}: {note}", shown(&path)));
         }
@@ -88,7 +86,7 @@ fn shown(path: &Path) -> String {
 }
 
 /// The language of a file, and what it is called without its ending.
-fn language(path: &Path) -> anyhow::Result<(&'static dyn Language, &str)> {
+fn language(path: &Path) -> anyhow::Result<(Language, &str)> {
     let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default();
     let known = endings().iter().map(|ending| format!(".{ending}")).collect::<Vec<_>>().join(", ");
     let language = by_ending(ending)
@@ -97,7 +95,7 @@ fn language(path: &Path) -> anyhow::Result<(&'static dyn Language, &str)> {
 }
 
 /// The files that will be written: a C header and its source go together.
-fn planned(language: &dyn Language, path: &Path) -> Vec<PathBuf> {
+fn planned(language: Language, path: &Path) -> Vec<PathBuf> {
     language.endings().iter().map(|ending| path.with_extension(ending)).collect()
 }
 

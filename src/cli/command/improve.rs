@@ -7,20 +7,18 @@ use crate::experiment::Joint;
 use crate::explain::{Attribution, Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
 use crate::model::ModelFile;
 use crate::report::{ImproveJson, improve_text};
-use crate::study::{Mode, OfJoints, improve_joints};
+use crate::study::{Mode, improve_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, name_of, note_missing,
+    DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, add_arguments, name_of,
+    note_missing,
 };
 use crate::cli::console::{Interrupt, STOPPING, message};
 use crate::cli::each_log::{Each, FolderArgs};
 use crate::cli::exit::Completion;
-use crate::cli::output::check_recorded;
-use crate::cli::run::{
-    Progress, Session, Study, StudyContext, add_arguments, estimate_at, improved, models, outcomes,
-    revised, revision_names,
-};
+use crate::cli::failure::outcomes;
+use crate::cli::run::{Progress, Session, Start, Study, revised};
 
 /// Add to a model what it lacks, effect by effect
 ///
@@ -80,76 +78,47 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let file = args.model.read()?;
     let options = args.options(&file)?;
     let target = args.model.target();
-    check_recorded(
-        args.output.recording.as_deref(),
-        &[target],
-        &[args.data.files(), args.model.kept()].concat(),
-    )?;
-    let stream = args.output.stream.open(args.output.run.verbosity())?.expecting_revisions()?;
+    let (data, output) = (&args.data, &args.output);
     let interrupt = Interrupt::watch(STOPPING);
-    let session = Session::with_others("improve", &args.data, &args.output.run, stream)?;
+    let mut session = Session::of_models("improve", data, output, Some(target), args.model.kept())?;
+    session.stream = session.stream.expecting_revisions()?;
+    let study = Study::of(session, &output.delay_settings())?;
+    let joints = study.joints();
+    // What follows the effect in the command that adds one more, for each joint.
+    let model = target.display().to_string();
+    let arguments = add_arguments(data, &args.protocol, &model, joints);
     let name = name_of(Some(target));
+    let estimates = &study.estimates;
+    let start = Start { file: &file, model: &name, arguments: &arguments, estimates };
+    let progress = Progress::new(&file, joints, study.verbosity(), Some(interrupt));
+    let stage = Stage::new(&study, start);
+    let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
-    let study = Study::of(session, &args.output.delay_settings(), |context| {
-        let (joints, estimates, bar) =
-            (context.joints, context.estimates, context.bar("improving"));
-        let progress = Progress::new(&file, joints, context.verbosity(), Some(interrupt));
-        let arguments = args.add_arguments(joints);
-        let stage = Stage::new(context, &file, &name, &arguments);
-        let starts = |joint: &Joint| file.joint(&joint.name).cloned();
-        let done = |index, revision: &Step| {
-            stage.show(index, revision);
-            progress.done(index, revision)
-        };
-        let improved = improve_joints(
-            joints,
-            estimates,
-            starts,
-            protocol.watched(&bar).beside(context.others),
-            &options,
-            done,
-            &Threads,
-        );
-        (improved, progress.stopped())
+    let done = |index, revision: &Step| {
+        stage.show(index, revision);
+        progress.done(index, revision)
+    };
+    let results = study.work("improving", |bar, others| {
+        let watched = protocol.watched(bar).beside(others);
+        improve_joints(joints, estimates, starts, watched, &options, done, &Threads)
     })?;
-    args.end(&study, (&file, &name))
+    note_missing(&file, joints, study.verbosity());
+    let improved = |index, joint, found| progress.improved(start, index, joint, found);
+    let (improved, failures) = outcomes(study.experiment(), &results, improved)?;
+    let improved: Vec<_> = improved.into_iter().flatten().collect();
+    if output.is_recorded() {
+        study.record_revisions(output.recording.as_deref(), &improved)?;
+    }
+    let sources = &study.experiment().sources;
+    let revised = revised(&file, &improved, sources, |joint| Some(joint.finding.verdict))?;
+    args.model.write(&file, &revised, study.verbosity())?;
+    let text = || improve_text(&improved);
+    let completion = study.end(&failures, text, || ImproveJson::new(&improved, &failures))?;
+    let is_whole = improved.iter().all(|joint| !joint.interrupted);
+    Ok(if is_whole { completion } else { Completion::Partial })
 }
 
 impl Args {
-    /// Says and writes what came of each joint.
-    fn end(
-        &self,
-        study: &Study<'_, (OfJoints<Improvement>, Vec<bool>)>,
-        (file, name): (&ModelFile, &str),
-    ) -> anyhow::Result<Completion> {
-        let joints = &study.experiment().joints;
-        note_missing(file, joints, study.verbosity());
-        let ((results, stopped), arguments) = (&study.result, self.add_arguments(joints));
-        let improved = |index: usize, joint, improvement| {
-            let stopped = stopped.get(index).is_some_and(|stopped| *stopped);
-            let add_arguments = arguments.get(index)?;
-            let found = (improvement, estimate_at(&study.estimates, index));
-            let improved = improved(file, name, joint, found, add_arguments)?;
-            Some(if stopped { improved.stopped() } else { improved })
-        };
-        let (improved, failures) = outcomes(study.experiment(), results, improved)?;
-        let improved: Vec<_> = improved.into_iter().flatten().collect();
-        if self.output.is_recorded() {
-            let names = revision_names(&improved);
-            let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
-            study.record(self.output.recording.as_deref(), &models, &improved)?;
-        }
-        self.model.write(
-            file,
-            &revised(file, &improved, &study.experiment().sources)?,
-            study.verbosity(),
-        )?;
-        let text = || improve_text(&improved);
-        let completion = study.end(&failures, text, || ImproveJson::new(&improved, &failures))?;
-        let is_whole = improved.iter().all(|joint| !joint.interrupted);
-        Ok(if is_whole { completion } else { Completion::Partial })
-    }
-
     fn options(&self, file: &ModelFile) -> anyhow::Result<Options> {
         Ok(Options {
             max_effects: self.max_effects,
@@ -158,52 +127,37 @@ impl Args {
             ..self.effects.options(file.candidates())?
         })
     }
-
-    /// What follows the effect in the command that adds one more, for each joint.
-    fn add_arguments(&self, joints: &[Joint]) -> Vec<String> {
-        let model = self.model.target().display().to_string();
-        add_arguments(&self.data, &self.protocol, &model, joints)
-    }
 }
 
 /// The revisions so far, shown to whoever looks on.
 struct Stage<'a> {
-    context: StudyContext<'a>,
-    file: &'a ModelFile,
-    name: &'a str,
-    arguments: &'a [String],
+    study: &'a Study<'a>,
+    start: Start<'a>,
     /// Per joint.
     steps: Vec<Mutex<Vec<Step>>>,
 }
 
 impl<'a> Stage<'a> {
-    fn new(
-        context: StudyContext<'a>,
-        file: &'a ModelFile,
-        name: &'a str,
-        arguments: &'a [String],
-    ) -> Self {
-        let steps = context.joints.iter().map(|_| Mutex::default()).collect();
-        Self { context, file, name, arguments, steps }
+    fn new(study: &'a Study<'a>, start: Start<'a>) -> Self {
+        let steps = study.joints().iter().map(|_| Mutex::default()).collect();
+        Self { study, start, steps }
     }
 
     /// Shows one more revision of a joint. What goes wrong is reported, and is no reason to stop:
     /// the results do not depend on the viewer.
     fn show(&self, index: usize, revision: &Step) {
-        if !self.context.is_shown() {
+        if !self.study.is_shown() {
             return;
         }
-        let of_joint = self.context.joints.get(index).zip(self.steps.get(index));
+        let of_joint = self.study.joints().get(index).zip(self.steps.get(index));
         let Some((joint, steps)) = of_joint else { return };
         let Ok(mut steps) = steps.lock() else { return };
         steps.push(revision.clone());
         let (revisions, attribution) = (steps.clone(), Attribution::default());
         let improvement = Improvement { revisions, verdict: so_far(revision), attribution };
-        let arguments = self.arguments.get(index).map_or("", String::as_str);
-        let delays = estimate_at(self.context.estimates, index);
-        let improved = improved(self.file, self.name, joint, (&improvement, delays), arguments);
+        let improved = self.start.improved(index, joint, &improvement);
         let revisions: Vec<_> = improved.into_iter().collect();
-        if let Err(error) = self.context.show(&[], &revisions, Some(&joint.name)) {
+        if let Err(error) = self.study.show(&[], &revisions, Some(&joint.name)) {
             message("warning", &format!("{error:#}"));
         }
     }

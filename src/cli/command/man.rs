@@ -9,7 +9,7 @@ use clap_mangen::Man;
 
 use crate::cli::console::{self, message};
 use crate::cli::exit::Completion;
-use crate::cli::output::write_file;
+use crate::cli::output::write_bytes;
 use crate::experiment::{did_you_mean, nearest_name};
 
 /// Print the manual page of a command, or write all pages to a folder
@@ -69,7 +69,7 @@ fn write_all(pages: &[Command], folder: &Path) -> anyhow::Result<Completion> {
         .with_context(|| format!("{}: cannot be made", folder.display()))?;
     for page in pages {
         let path = folder.join(format!("{}.1", name_of(page)));
-        write_file(&path, |file| Ok(file.write_all(&rendered(page)?)?))?;
+        write_bytes(&path, rendered(page)?)?;
     }
     message("pages", &format!("{} in {}", pages.len(), folder.display()));
     Ok(Completion::Whole)

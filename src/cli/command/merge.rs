@@ -6,7 +6,7 @@ use crate::report::FolderReport;
 use clap::Args as ClapArgs;
 
 use crate::cli::args::Format;
-use crate::cli::console::message;
+use crate::cli::console::Verbosity;
 use crate::cli::each_log::{Merged, Tables, kept_in, present, read_folders};
 use crate::cli::exit::Completion;
 use crate::cli::output::CsvText;
@@ -48,14 +48,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let tables = Tables { decisions, summary, text: CsvText::from(args.safe_csv) };
     tables.check(&kept_in(&args.folders)?)?;
     let Merged { command, results, failures, notes } = read_folders(&args.folders)?;
-    if !args.quiet {
-        for note in &notes {
-            message("note", note);
-        }
-    }
+    let verbosity = Verbosity::from(args.quiet);
+    notes.iter().for_each(|note| verbosity.say("note", note));
     let report = FolderReport::new(&command, results);
     if command != "estimate" && tables.decisions.is_some() {
         anyhow::bail!("--decisions: these are results of `{command}`, which makes no decisions");
     }
-    present(&report, &failures, tables, args.format, args.quiet.into())
+    present(&report, &failures, tables, args.format, verbosity)
 }

@@ -3,14 +3,15 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use crate::synthetic::scenario::{self, Noise, Scenario};
+use crate::synthetic::scenario::{self, Noise, Scenario, Strength};
 use crate::synthetic::{PlantSpec, Synthetic, simulate, write_log, write_truth};
 use anyhow::{Context as _, bail};
-use clap::{Args as ClapArgs, ValueEnum};
+use clap::Args as ClapArgs;
 
-use crate::cli::console::{Bar, Verbosity, message};
+use crate::cli::args::{Choices, one_of};
+use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
-use crate::cli::output::{OutputFile, check_places, filled_file};
+use crate::cli::output::{OutputFile, Outputs, filled_file};
 use crate::experiment::read_text;
 
 /// Make a log of joints whose truth is known
@@ -35,7 +36,7 @@ pub(crate) struct Args {
 
     /// How clearly an effect without numbers shows: the nearest plain integrator is wrong by
     /// some 3 times the noise, or 12 times [default: clear]
-    #[arg(long, value_enum, conflicts_with = "plant")]
+    #[arg(long, value_parser = one_of(STRENGTH), conflicts_with = "plant")]
     strength: Option<Strength>,
 
     /// Where the log goes
@@ -68,13 +69,11 @@ pub(crate) struct Args {
     quiet: bool,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Strength {
-    /// Some 3 times the noise
-    Weak,
-    /// Some 12 times the noise
-    Clear,
-}
+/// How clearly an effect shows.
+const STRENGTH: Choices<Strength> = &[
+    ("weak", "Some 3 times the noise", Strength::Weak),
+    ("clear", "Some 12 times the noise", Strength::Clear),
+];
 
 /// An effect, and its numbers where they are given.
 #[derive(Clone, Debug)]
@@ -103,25 +102,22 @@ const SEED: u64 = 1;
 const NOISE: f64 = 0.05;
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let verbosity = Verbosity::from(args.quiet);
     let spec = {
-        let _bar = Bar::spinner(Verbosity::from(args.quiet), "sizing effects");
+        let _bar = Bar::spinner(verbosity, "sizing effects");
         spec(args)?
     };
-    let outputs = std::iter::once(&args.output).chain(&args.truth);
-    let inputs = args.plant.iter().filter_map(|path| path.canonicalize().ok());
-    // What it writes is a log, which may be made anew.
-    check_places(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), &inputs.collect::<Vec<_>>())?;
-    let bar = Bar::spinner(Verbosity::from(args.quiet), "simulating");
+    let logs = std::iter::once(&args.output).chain(&args.truth).map(PathBuf::as_path).collect();
+    Outputs { logs, ..Outputs::default() }.check(args.plant.as_slice())?;
+    let bar = Bar::spinner(verbosity, "simulating");
     let made = match &args.plant {
         Some(path) => simulate(&spec).with_context(|| path.display().to_string())?,
         None => simulate(&spec)?,
     };
     write(args, &spec, &made)?;
     drop(bar);
-    if !args.quiet {
-        let (joints, steps) = (made.joints.len(), made.truth.len());
-        message("log", &format!("{}: {joints} joints, {steps} steps", args.output.display()));
-    }
+    let (joints, steps) = (made.joints.len(), made.truth.len());
+    verbosity.say("log", format!("{}: {joints} joints, {steps} steps", args.output.display()));
     Ok(Completion::Whole)
 }
 
@@ -190,10 +186,7 @@ fn calibrated(args: &Args) -> anyhow::Result<PlantSpec> {
         bail!("--duration: an effect without numbers is sized for 120 s; give it numbers");
     }
     let names: Vec<&str> = args.effect.iter().map(|hidden| hidden.name.as_str()).collect();
-    let strength = match args.strength {
-        Some(Strength::Weak) => scenario::Strength::Weak,
-        Some(Strength::Clear) | None => scenario::Strength::Clear,
-    };
+    let strength = args.strength.unwrap_or(Strength::Clear);
     let deviation = args.noise.unwrap_or(NOISE);
     if !(deviation.is_finite() && deviation > 0.0) {
         bail!("--noise {deviation}: an effect without numbers is sized by the noise, above zero");

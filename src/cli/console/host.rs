@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::fmt;
 use std::io;
+use std::ops::Deref;
 use std::sync::Arc;
 
 use crate::effect::Effect;
@@ -12,7 +13,9 @@ use crate::experiment::{Experiment, ReadOptions};
 pub trait Hosting: Send + Sync {
     /// The logs that it has in memory, read with these options; `None` where they are in the
     /// files that the arguments name.
-    fn logs(&self, options: &ReadOptions) -> Option<Experiment>;
+    fn logs(&self, _options: &ReadOptions) -> Option<Experiment> {
+        None
+    }
 
     /// Effects of its own, which models may name, and which are tried like those of the
     /// catalogue where one is missing.
@@ -29,19 +32,25 @@ pub trait Hosting: Send + Sync {
     ///
     /// # Errors
     /// When it cannot be kept.
-    fn print(&self, results: &[u8]) -> io::Result<()>;
+    fn print(&self, _results: &[u8]) -> io::Result<()> {
+        Ok(())
+    }
 
     /// Takes a message: its kind, such as `warning`, and its text.
-    fn say(&self, kind: &str, text: &str);
+    fn say(&self, _kind: &str, _text: &str) {}
 
     /// So many pieces of `of` are done, where it is known how many there are.
-    fn progress(&self, what: &str, done: u64, of: u64);
+    fn progress(&self, _what: &str, _done: u64, _of: u64) {}
 
     /// Whether to stop at the next occasion, with what was reached.
-    fn is_stopping(&self) -> bool;
+    fn is_stopping(&self) -> bool {
+        false
+    }
 
     /// Whether to end at once, without results.
-    fn is_ending(&self) -> bool;
+    fn is_ending(&self) -> bool {
+        false
+    }
 }
 
 /// The program in whose place this thread works.
@@ -51,6 +60,14 @@ pub(crate) struct Host(Arc<dyn Hosting>);
 impl fmt::Debug for Host {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Host").finish_non_exhaustive()
+    }
+}
+
+impl Deref for Host {
+    type Target = dyn Hosting;
+
+    fn deref(&self) -> &Self::Target {
+        &*self.0
     }
 }
 
@@ -88,28 +105,8 @@ impl Host {
         CURRENT.set(host);
     }
 
-    pub(crate) fn logs(&self, options: &ReadOptions) -> Option<Experiment> {
-        self.0.logs(options)
-    }
-
-    pub(crate) fn effects(&self) -> Vec<&'static dyn Effect> {
-        self.0.effects()
-    }
-
-    pub(crate) fn run_thread(&self, thread: &mut (dyn FnMut() + Send)) {
-        self.0.run_thread(thread);
-    }
-
-    pub(crate) fn say(&self, kind: &str, text: &str) {
-        self.0.say(kind, text);
-    }
-
-    pub(crate) fn is_stopping(&self) -> bool {
-        self.0.is_stopping()
-    }
-
     /// Says how far the work is; unwinds the thread where it is to end.
-    pub(crate) fn progress(&self, what: &str, done: u64, of: u64) {
+    pub(crate) fn tell_progress(&self, what: &str, done: u64, of: u64) {
         self.0.progress(what, done, of);
         if self.0.is_ending() {
             // Not a panic: nothing went wrong, and nobody is to be told so.

@@ -1,33 +1,11 @@
 //! Progress on stderr, where a person looks at it.
 
-use std::sync::LazyLock;
 use std::time::Duration;
 
 use super::host::Host;
+use super::terminal::{BARS, Verbosity};
 use crate::study::Watch;
-use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
-
-/// Whether progress and notices are shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Verbosity {
-    Normal,
-    Quiet,
-}
-
-impl From<bool> for Verbosity {
-    /// What `--quiet` says.
-    fn from(quiet: bool) -> Self {
-        if quiet { Self::Quiet } else { Self::Normal }
-    }
-}
-
-/// All bars there are. It draws nothing where stderr is no terminal.
-static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
-
-/// Does `write` while no bar is in its way.
-pub(crate) fn aside(write: impl FnOnce()) {
-    BARS.suspend(write);
-}
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// A bar that is gone when it is dropped.
 #[derive(Debug)]
@@ -47,12 +25,10 @@ impl Bar {
         length: u64,
     ) -> Self {
         let host = Host::current();
-        let bar = match verbosity {
-            _ if host.is_some() => {
-                ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
-            }
-            Verbosity::Quiet => ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()),
-            Verbosity::Normal => BARS.add(ProgressBar::new(length)),
+        let bar = if host.is_none() && verbosity == Verbosity::Normal {
+            BARS.add(ProgressBar::new(length))
+        } else {
+            ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
         };
         bar.set_prefix(units);
         bar.set_style(style(length));
@@ -82,7 +58,7 @@ impl Bar {
 
     fn tell(&self) {
         if let Some(host) = &self.host {
-            host.progress(self.what, self.drawn.position(), self.drawn.length().unwrap_or(0));
+            host.tell_progress(self.what, self.drawn.position(), self.drawn.length().unwrap_or(0));
         }
     }
 }

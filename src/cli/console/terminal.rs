@@ -4,14 +4,15 @@
 //! pipe is the text alone.
 
 use std::io::{self, BufWriter, StdoutLock, Write};
+use std::sync::LazyLock;
 
 use anstream::AutoStream;
 use anstyle::{AnsiColor, Style};
 use anyhow::Context as _;
+use indicatif::MultiProgress;
 use serde::Serialize;
 
 use super::host::Host;
-use super::progress;
 use crate::experiment::is_control;
 
 /// `text` with its control characters shown, not sent: names in a log may hold what moves a
@@ -93,9 +94,35 @@ pub(crate) fn message(kind: &str, text: &str) {
         _ => AnsiColor::Cyan.on_default(),
     };
     let text = shown_in_tones(text);
-    progress::aside(|| {
+    BARS.suspend(|| {
         writeln!(anstream::stderr().lock(), "{style}{kind}:{style:#} {text}").unwrap_or_default();
     });
+}
+
+/// All bars there are, which no message is to be in the way of. It draws nothing where stderr is no terminal.
+pub(super) static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
+
+/// Whether progress and notices are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verbosity {
+    Normal,
+    Quiet,
+}
+
+impl From<bool> for Verbosity {
+    /// What `--quiet` says.
+    fn from(quiet: bool) -> Self {
+        if quiet { Self::Quiet } else { Self::Normal }
+    }
+}
+
+impl Verbosity {
+    /// Prints one line on stderr, where notices are shown.
+    pub(crate) fn say(self, kind: &str, text: impl AsRef<str>) {
+        if self == Self::Normal {
+            message(kind, text.as_ref());
+        }
+    }
 }
 
 /// Prints a warning of each failure.

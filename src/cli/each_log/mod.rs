@@ -18,9 +18,9 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 
 use crate::cli::args::Format;
-use crate::cli::console::{self, Verbosity, message, warn};
+use crate::cli::console::{Verbosity, warn};
 use crate::cli::exit::Completion;
-use crate::cli::output::{CsvText, check_outputs, check_tables, target_of, write_table};
+use crate::cli::output::{CsvText, Outputs, target_of, write_table};
 
 pub(crate) use each::Each;
 use store::name_of;
@@ -113,10 +113,8 @@ impl FolderArgs {
         std::fs::create_dir_all(results)
             .with_context(|| format!("{}: cannot be made", results.display()))?;
         let (all, mut failures) = each.data.logs();
-        if each.run.verbosity() == Verbosity::Normal {
-            for note in each.data.left_out() {
-                message("note", &note);
-            }
+        for note in each.data.left_out() {
+            each.run.verbosity().say("note", note);
         }
         tables.check(&[each.data.files(), typed.files.clone()].concat())?;
         tables.check_beside(results, &all)?;
@@ -140,23 +138,22 @@ impl FolderArgs {
 /// Ends the work on a part of the logs.
 fn finish_part(failures: &[String], part: &str, results: &Path, each: &Each<'_>) -> Completion {
     warn(failures);
-    if each.run.verbosity() == Verbosity::Normal {
-        let folder = results.display();
-        message("done", &format!("{part}; `tauscope merge {folder}` makes the tables of all"));
-    }
+    let folder = results.display();
+    let done = format!("{part}; `tauscope merge {folder}` makes the tables of all");
+    each.run.verbosity().say("done", done);
     Completion::without(failures)
 }
 
 impl Tables<'_> {
-    fn files(&self) -> impl Iterator<Item = PathBuf> {
-        [self.decisions, self.summary].into_iter().flatten().map(Path::to_owned)
+    fn files(&self) -> impl Iterator<Item = &Path> {
+        [self.decisions, self.summary].into_iter().flatten()
     }
 
     /// Refuses what would replace the result or the model of one of `logs`.
     fn check_beside(&self, results: &Path, logs: &[PathBuf]) -> anyhow::Result<()> {
         let folder = results.canonicalize().unwrap_or_else(|_| results.to_owned());
         let named: BTreeSet<PathBuf> = logs.iter().map(|log| folder.join(name_of(log))).collect();
-        let is_taken = |table: &PathBuf| {
+        let is_taken = |table: &&Path| {
             let target = target_of(table);
             let ending = target.extension().and_then(OsStr::to_str).unwrap_or_default();
             ["json", "toml"].contains(&ending) && named.contains(&target.with_extension(""))
@@ -172,9 +169,7 @@ impl Tables<'_> {
 
     /// Refuses what cannot be written, or would replace an input or another table.
     pub(crate) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
-        let files: Vec<PathBuf> = self.files().collect();
-        check_outputs(&files.iter().map(PathBuf::as_path).collect::<Vec<_>>(), inputs)?;
-        check_tables(&files)
+        Outputs { tables: self.files().collect(), ..Outputs::default() }.check(inputs)
     }
 }
 
@@ -191,8 +186,8 @@ pub(crate) fn present(
     if report.is_empty() {
         bail!("no log has a result");
     }
-    if verbosity == Verbosity::Normal && tables.files().next().is_none() && format == Format::Text {
-        message("note", "`--summary FILE` writes a row per log and joint");
+    if tables.files().next().is_none() && format == Format::Text {
+        verbosity.say("note", "`--summary FILE` writes a row per log and joint");
     }
     if let Some(path) = tables.decisions {
         write_table(&report.decisions(), path, tables.text)?;
@@ -200,10 +195,7 @@ pub(crate) fn present(
     if let Some(path) = tables.summary {
         write_table(&report.summary(), path, tables.text)?;
     }
-    match format {
-        Format::Text => console::print(&report.text())?,
-        Format::Json => console::print_json(&FolderJson::new(report, &failures))?,
-    }
+    format.print(|| report.text(), || FolderJson::new(report, &failures))?;
     Ok(Completion::without(&failures))
 }
 

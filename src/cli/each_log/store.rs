@@ -15,17 +15,17 @@ use crate::cli::output::write_file;
 const SCHEMA: &str = "tauscope/result/1";
 
 /// What is kept of a log.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Kept {
-    schema: String,
-    version: String,
+    pub(super) schema: String,
+    pub(super) version: String,
     pub(crate) command: String,
     /// The log, as it was given.
     pub(crate) file: String,
     /// Logs that were given in all.
     pub(crate) of: usize,
     /// The options, as they were given.
-    pub(crate) settings: String,
+    pub(super) settings: String,
     /// Stands for the bytes of the log, the settings and the version.
     pub(crate) key: String,
     /// What the command said in JSON.
@@ -33,17 +33,11 @@ pub(crate) struct Kept {
 }
 
 impl Kept {
-    pub(crate) fn new(
-        command: &str,
-        log: &Path,
-        of: usize,
-        settings: String,
-        key: String,
-        document: Value,
-    ) -> Self {
+    /// Of `log`, which was worked on by this version of the program.
+    pub(crate) fn of(log: &Path, document: Value) -> Self {
         let (schema, version) = (SCHEMA.to_owned(), env!("CARGO_PKG_VERSION").to_owned());
-        let (command, file) = (command.to_owned(), text_of(log.as_os_str()));
-        Self { schema, version, command, file, of, settings, key, document }
+        let file = text_of(log.as_os_str());
+        Self { schema, version, file, document, ..Self::default() }
     }
 
     /// The result of a log, where there is one.

@@ -1,5 +1,6 @@
 //! The work on the logs: which are done, and this program on each of the others.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs::File;
 use std::io::{BufRead as _, BufReader};
@@ -16,7 +17,7 @@ use super::each::Each;
 use super::store::{Kept, check_own_file, is_foreign, name_of, text_of};
 use super::typed::Typed;
 use super::with_parent;
-use crate::cli::console::{Bar, Verbosity, message};
+use crate::cli::console::{Bar, Verbosity};
 
 /// What is to be done, and where results are kept.
 pub(crate) struct Work<'a> {
@@ -33,6 +34,15 @@ pub(crate) struct Done {
     pub(crate) failures: Vec<String>,
 }
 
+/// A log and what is known of it.
+struct Known<'a> {
+    log: &'a Path,
+    /// Stands for all that its result depends on.
+    key: anyhow::Result<String>,
+    /// What is kept of it, but for the document.
+    earlier: Option<Kept>,
+}
+
 impl Work<'_> {
     /// Works on each log that has no result yet.
     pub(crate) fn run(&self, logs: &[&PathBuf]) -> anyhow::Result<Done> {
@@ -40,47 +50,33 @@ impl Work<'_> {
             |log: &&PathBuf| Kept::read(&self.place(log)).ok().map(Kept::without_document);
         let earlier: Vec<Option<Kept>> = logs.iter().map(earlier).collect();
         self.check_command(&earlier)?;
-        let keys = logs.iter().map(|log| self.key(log)).collect::<Vec<_>>();
-        let is_open = |index: &usize| {
-            let (Some(log), Some(Ok(key))) = (logs.get(*index), keys.get(*index)) else {
-                return true;
-            };
-            let known = earlier.get(*index).and_then(Option::as_ref);
-            !known.is_some_and(|known| self.is_done(log, key, known))
-        };
-        let open: Vec<usize> = (0..logs.len()).filter(is_open).collect();
-        let (left, all) = (open.len(), logs.len());
-        if left < all && self.each.run.verbosity() == Verbosity::Normal {
-            message("note", &format!("{} of {all} logs are done already", all - left));
+        let known = logs.iter().zip(earlier);
+        let known = known.map(|(log, earlier)| Known { log, key: self.key(log), earlier });
+        let logs: Vec<Known<'_>> = known.collect();
+        let open: Vec<&Known<'_>> = logs.iter().filter(|known| !self.is_done(known)).collect();
+        let (done, all) = (logs.len() - open.len(), logs.len());
+        if done > 0 {
+            self.verbosity().say("note", format!("{done} of {all} logs are done already"));
         }
-        if self.each.run.verbosity() == Verbosity::Normal {
-            self.note_replaced(open.iter().filter_map(|index| {
-                let (key, known) =
-                    (keys.get(*index)?.as_ref().ok()?, earlier.get(*index)?.as_ref()?);
-                (known.key != *key).then_some((*logs.get(*index)?, known))
-            }));
-        }
-        let bar = Bar::new(self.each.run.verbosity(), "working", "logs", open.len() as u64);
-        let failures = Mutex::new(Vec::new());
+        self.note_replaced(&open);
+        let bar = Bar::new(self.verbosity(), "working", "logs", open.len() as u64);
+        // They are sorted, as the logs are.
+        let failures: Mutex<BTreeMap<&Path, String>> = Mutex::default();
         let next = AtomicUsize::new(0);
         let processors = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = self.each.run.threads.unwrap_or(processors);
         let workers = threads.min(open.len());
+        let of_each = (threads / workers.max(1)).max(1);
         let work = || {
-            while let Some(&index) = open.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let (Some(log), Some(key)) = (logs.get(index), keys.get(index)) else { continue };
-                let done = key
-                    .as_ref()
-                    .map_err(|error| anyhow!("{error:#}"))
-                    .and_then(|key| self.work_on(log, key, (threads / workers.max(1)).max(1)));
-                if let Err(error) = done {
+            while let Some(known) = open.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if let Err(error) = self.work_on(known, of_each) {
                     // What an earlier version of the log gave is no result of this one; of one that
                     // cannot be read it may be.
-                    if key.is_ok() {
-                        std::fs::remove_file(self.place(log)).unwrap_or_default();
+                    if known.key.is_ok() {
+                        std::fs::remove_file(self.place(known.log)).unwrap_or_default();
                     }
-                    let failure = (index, format!("left out: {error:#}"));
-                    failures.lock().unwrap_or_else(PoisonError::into_inner).push(failure);
+                    let mut failures = failures.lock().unwrap_or_else(PoisonError::into_inner);
+                    failures.insert(known.log, format!("left out: {error:#}"));
                 }
                 bar.step();
             }
@@ -90,32 +86,37 @@ impl Work<'_> {
                 scope.spawn(work);
             }
         });
-        let mut failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
-        failures.sort();
-        let left_out: Vec<usize> = failures.iter().map(|(index, _)| *index).collect();
-        let kept = logs.iter().enumerate().filter(|(index, _)| !left_out.contains(index));
-        let results = kept.map(|(_, log)| Ok(Kept::read(&self.place(log))?.result()));
+        let failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let kept = logs.iter().filter(|known| !failures.contains_key(known.log));
+        let results = kept.map(|known| Ok(Kept::read(&self.place(known.log))?.result()));
         let results = results.collect::<anyhow::Result<_>>()?;
-        Ok(Done { results, failures: failures.into_iter().map(|(_, text)| text).collect() })
+        Ok(Done { results, failures: failures.into_values().collect() })
     }
 
     /// Says that results of the same options are replaced, since the bytes under the name of their log or of
     /// a file in the options are others now.
-    fn note_replaced<'k>(&self, others: impl Iterator<Item = (&'k PathBuf, &'k Kept)>) {
+    fn note_replaced(&self, open: &[&Known<'_>]) {
         let settings = self.settings();
-        let of_these_options = others.filter(|(_, known)| known.has(&settings));
-        let replaced: Vec<&PathBuf> = of_these_options.map(|(log, _)| log).collect();
-        let Some(first) = replaced.first() else { return };
-        let (first, count) = (first.display(), replaced.len());
+        let is_replaced = |known: &&&Known<'_>| {
+            let Known { key: Ok(key), earlier: Some(earlier), .. } = known else { return false };
+            earlier.key != *key && earlier.has(&settings)
+        };
+        let mut replaced = open.iter().filter(is_replaced);
+        let Some(first) = replaced.next() else { return };
+        let (first, count) = (first.log.display(), 1 + replaced.count());
         let results = if count == 1 { "result is" } else { "results are" };
-        message(
+        self.verbosity().say(
             "note",
-            &format!(
+            format!(
                 "{count} {results} replaced: {first}, or a file that is given beside it, has changed \
                  since; results are known by the paths of their logs as typed, so that logs of one name in \
                  two folders need the folders in their paths"
             ),
         );
+    }
+
+    fn verbosity(&self) -> Verbosity {
+        self.each.run.verbosity()
     }
 
     /// Refuses a folder with results of another command, which would be replaced.
@@ -136,10 +137,13 @@ impl Work<'_> {
         self.results.join(format!("{}.json", name_of(log)))
     }
 
-    /// Whether what is `known` of a log is its result.
-    fn is_done(&self, log: &Path, key: &str, known: &Kept) -> bool {
+    /// Whether what is kept of a log is its result.
+    fn is_done(&self, Known { log, key, earlier }: &Known<'_>) -> bool {
         let has_model = self.model_of(log).is_none_or(|model| model.is_file());
-        has_model && known.key == key && known.file == text_of(log.as_os_str())
+        let is_result = |kept: &Kept| {
+            key.as_ref().is_ok_and(|key| kept.key == *key) && kept.file == text_of(log.as_os_str())
+        };
+        has_model && earlier.as_ref().is_some_and(is_result)
     }
 
     /// Where the model of a log is written, where the command makes one.
@@ -184,7 +188,8 @@ impl Work<'_> {
     }
 
     /// Runs this program on one log and keeps what it says.
-    fn work_on(&self, log: &Path, key: &str, threads: usize) -> anyhow::Result<()> {
+    fn work_on(&self, Known { log, key, .. }: &Known<'_>, threads: usize) -> anyhow::Result<()> {
+        let key = key.as_ref().map_err(|error| anyhow!("{error:#}"))?;
         let program = std::env::current_exe().context("this program cannot be found")?;
         let mut command = Command::new(program);
         command.arg(self.each.command).args(&self.typed.words);
@@ -208,9 +213,10 @@ impl Work<'_> {
         }
         let document = serde_json::from_slice(&output.stdout)
             .with_context(|| format!("{}: its result is not JSON", log.display()))?;
-        let key = key.to_owned();
-        Kept::new(self.each.command, log, self.of, self.settings(), key, document)
-            .write(&self.place(log))
+        let (command, key) = (self.each.command.to_owned(), key.clone());
+        let (of, settings) = (self.of, self.settings());
+        let kept = Kept { command, of, settings, key, ..Kept::of(log, document) };
+        kept.write(&self.place(log))
     }
 }
 

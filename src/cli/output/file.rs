@@ -11,8 +11,6 @@ use std::time::Duration;
 use anyhow::{Context as _, bail};
 use tempfile::NamedTempFile;
 
-use crate::experiment::{MemoryLimit, Survey, is_named_like_a_log};
-
 /// A file that is being written. Dropped before [`commit`](Self::commit), it leaves
 /// nothing behind and what stood under the name before stays.
 #[derive(Debug)]
@@ -197,74 +195,14 @@ fn remove_left_parts(folder: &Path) {
 }
 
 /// Where an output ends up, also one that is written to a file that is open.
-fn place_of(path: &Path) -> PathBuf {
+pub(super) fn place_of(path: &Path) -> PathBuf {
     let opened = OpenedFile::named(path).and_then(|_| path.canonicalize().ok());
     opened.unwrap_or_else(|| target_of(path))
 }
 
-/// Refuses outputs that cannot be written, or would replace an input, one another, or any log.
-pub(crate) fn check_outputs(outputs: &[&Path], inputs: &[PathBuf]) -> anyhow::Result<()> {
-    check_places(outputs, inputs)?;
-    match outputs.iter().find(|path| is_log(path)) {
-        Some(path) => bail!(
-            "{}: this is a log, which would be replaced; give the output another name",
-            path.display()
-        ),
-        None => Ok(()),
-    }
-}
-
-/// Refuses a recording and `others` that cannot be written, or would replace one of the `inputs` or
-/// another log; and a recording whose name says that it is something else.
-pub(crate) fn check_recorded(
-    recording: Option<&Path>,
-    others: &[&Path],
-    inputs: &[PathBuf],
-) -> anyhow::Result<()> {
-    let outputs: Vec<&Path> = recording.into_iter().chain(others.iter().copied()).collect();
-    check_outputs(&outputs, inputs)?;
-    recording.map_or(Ok(()), check_name)
-}
-
-fn check_name(path: &Path) -> anyhow::Result<()> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let others = [".html", ".htm", ".md", ".json", ".toml", ".pdf"];
-    if is_named_like_a_log(&name) || others.iter().any(|ending| name.ends_with(ending)) {
-        bail!(
-            "{}: `-o` writes a recording for the Rerun viewer; call it FILE.rrd (tables of `estimate`: \
-             `--decisions` and `--delays`; a page: `tauscope report`)",
-            path.display()
-        );
-    }
-    Ok(())
-}
-
-/// Whether a log is at `path`: a table in which a time and at least one joint are recognised.
-fn is_log(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let survey = || Survey::of(path, MemoryLimit::default());
-    is_named_like_a_log(&name) && path.is_file() && survey().is_ok_and(|log| log.open.is_empty())
-}
-
-/// Refuses outputs that cannot be written, or would replace an input or one another.
-pub(crate) fn check_places(outputs: &[&Path], inputs: &[PathBuf]) -> anyhow::Result<()> {
-    let inputs: Vec<PathBuf> = inputs.iter().map(|path| target_of(path)).collect();
-    let mut taken: Vec<PathBuf> = Vec::new();
-    for path in outputs {
-        let target = place_of(path);
-        let name = path.display();
-        // A device, such as /dev/null, may take any number of outputs.
-        let is_file = !target.exists() || target.is_file();
-        if inputs.contains(&target) {
-            bail!("{name}: this is a file that is read; give the output another name");
-        }
-        if is_file && taken.contains(&target) {
-            bail!("{name}: two outputs have this name; give each its own");
-        }
-        OutputFile::probe(path)?;
-        taken.push(target);
-    }
-    Ok(())
+/// Writes `content` to a file whole.
+pub(crate) fn write_bytes(path: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
+    write_file(path, |file| Ok(file.write_all(content.as_ref())?))
 }
 
 /// Lets `write` fill a file and gives it its name when that went well.

@@ -2,16 +2,16 @@
 
 mod file;
 mod limit;
+mod outputs;
 mod recording;
 mod table;
 
-pub(crate) use file::{
-    OutputFile, check_outputs, check_places, check_recorded, filled_file, target_of, write_file,
-};
+pub(crate) use file::{OutputFile, filled_file, target_of, write_bytes, write_file};
 pub(crate) use limit::meet_file_limits;
+pub(crate) use outputs::Outputs;
 #[cfg(not(feature = "rrd"))]
 pub(crate) use recording::left_out;
 pub(crate) use recording::{
-    Contents, Detail, PreviewContents, SweepContents, check_beside_parts, check_recordings,
+    Contents, Detail, PreviewContents, Recorded, SweepContents, check_recordings,
 };
-pub(crate) use table::{CsvText, FileKind, check_tables, write_csv, write_parquet, write_table};
+pub(crate) use table::{CsvText, FileKind, write_csv, write_parquet, write_table};

@@ -4,19 +4,22 @@ use std::path::Path;
 #[cfg(feature = "rrd")]
 use std::path::PathBuf;
 
+#[cfg(feature = "rrd")]
 use anyhow::bail;
 
 use crate::delay::Settings;
 use crate::delay::sweep::Grid;
-use crate::experiment::{ReadOptions, Source};
+use crate::experiment::{Experiment, ReadOptions, Source};
 use crate::report::{ComparedJoint, DesignedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep};
 
 use crate::study::OtherResult;
 
+#[cfg(feature = "rrd")]
+use super::file::filled_file;
 use super::file::{OutputFile, is_file, write_file};
 #[cfg(feature = "rrd")]
-use super::file::{check_outputs, filled_file};
-use crate::cli::console::{Bar, Verbosity, message};
+use super::outputs::Outputs;
+use crate::cli::console::{Bar, Verbosity};
 
 /// How many candidates are recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -46,7 +49,18 @@ pub(crate) struct Contents<'a> {
     pub(crate) detail: Detail,
 }
 
-impl Contents<'_> {
+impl<'a> Contents<'a> {
+    /// The delays of `joints`, alone.
+    pub(crate) fn of_delays(
+        command: &'a str,
+        experiment: &'a Experiment,
+        (joints, settings): (&'a [EstimatedJoint<'a>], &'a Settings),
+    ) -> Self {
+        let Experiment { sources, options: reading, .. } = experiment;
+        let (also, models, revisions, detail) = (&[], &[], &[], Detail::Auto);
+        Self { command, joints, settings, also, sources, reading, models, revisions, detail }
+    }
+
     /// Joints up to which all are in one recording: with more of them a viewer takes long to open
     /// it, and gigabytes.
     const TOGETHER: usize = 20;
@@ -72,19 +86,17 @@ impl Contents<'_> {
     /// to them.
     pub(crate) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
         if self.joints.len() <= Self::TOGETHER || !is_file(path) {
-            return record(path, verbosity, |file| self.write(file));
+            return Recorded::Decisions(self).record(path, verbosity);
         }
         let parts = {
             let _bar = Bar::spinner(verbosity, "recording");
             self.write_parts(path)?
         };
-        if verbosity == Verbosity::Normal {
-            let path = path.display();
-            let (first, last) = (parts.first(), parts.last());
-            let ends = first.zip(last).map(|(first, last)| format!("{first} … {last}"));
-            let said = ends.unwrap_or_default();
-            message("recording", &format!("{path}; look at it with: rerun {path}; joints: {said}"));
-        }
+        let path = path.display();
+        let ends = parts.first().zip(parts.last());
+        let said = ends.map(|(first, last)| format!("{first} … {last}")).unwrap_or_default();
+        verbosity
+            .say("recording", format!("{path}; look at it with: rerun {path}; joints: {said}"));
         Ok(())
     }
 
@@ -98,7 +110,7 @@ impl Contents<'_> {
         let paths: Vec<PathBuf> = (1..=groups.len()).map(|number| part(path, number)).collect();
         let inputs: Vec<PathBuf> = self.sources.iter().map(|source| source.path.clone()).collect();
         let outputs: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
-        check_outputs(&outputs, &inputs)?;
+        Outputs { files: outputs.clone(), ..Outputs::default() }.check(&inputs)?;
         check_own(path, &outputs)?;
         let mut files = Vec::new();
         for (joints, path) in groups.iter().zip(&paths) {
@@ -108,7 +120,7 @@ impl Contents<'_> {
             let ends: Vec<&str> = ends.collect();
             let command = format!("{} of {}", self.command, ends.join(" … "));
             let some = Contents { joints, command: &command, ..*self };
-            files.push(filled_file(path, |file| some.write(file))?);
+            files.push(filled_file(path, |file| Recorded::Decisions(&some).write(file))?);
         }
         let volume = |(path, joints): (&PathBuf, &&[EstimatedJoint<'_>])| Volume {
             file: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -127,11 +139,6 @@ impl Contents<'_> {
     #[expect(clippy::unused_self, reason = "with recordings it is used")]
     fn write_parts(&self, _: &Path) -> anyhow::Result<Vec<String>> {
         Err(left_out())
-    }
-
-    #[cfg(feature = "rrd")]
-    fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
-        self.with_recording(|recording| Ok(crate::recording::write_recording(recording, file)?))
     }
 
     /// Does `work` with the recording.
@@ -161,32 +168,6 @@ impl Contents<'_> {
             revisions,
         })
     }
-
-    #[cfg(not(feature = "rrd"))]
-    #[expect(clippy::unused_self, reason = "with recordings it is used")]
-    fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
-        Err(left_out())
-    }
-}
-
-/// Refuses `others` that have the name of one of the files to which a recording of many joints at
-/// `path` goes.
-pub(crate) fn check_beside_parts(path: &Path, others: &[&Path]) -> anyhow::Result<()> {
-    let (stem, ending) = (path.file_stem(), path.extension());
-    let is_part = |other: &&&Path| {
-        let number = other.file_stem().and_then(|name| {
-            name.to_str()?.strip_prefix(stem?.to_str()?)?.strip_prefix('_')?.parse::<usize>().ok()
-        });
-        number.is_some() && other.extension() == ending && other.parent() == path.parent()
-    };
-    if let Some(other) = others.iter().find(is_part) {
-        bail!(
-            "{}: a recording of many joints has files of this name beside {}; give it another",
-            other.display(),
-            path.display()
-        );
-    }
-    Ok(())
 }
 
 /// Refuses to replace a file that lies where a part of the recording at `path` goes, and cannot be
@@ -223,27 +204,11 @@ pub(crate) struct SweepContents<'a> {
     pub(crate) reading: &'a ReadOptions,
 }
 
+#[cfg(feature = "rrd")]
 impl SweepContents<'_> {
-    /// Writes the recording to `path` and says how to look at it.
-    pub(crate) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
-        record(path, verbosity, |file| self.write(file))
-    }
-
-    #[cfg(feature = "rrd")]
-    fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
-        Ok(crate::recording::write_sweep(&self.recording(), file)?)
-    }
-
-    #[cfg(feature = "rrd")]
     pub(crate) fn recording(&self) -> crate::recording::SweepRecording<'_> {
         let Self { joints, grid, tolerance, sources, reading } = *self;
         crate::recording::SweepRecording { joints, grid, tolerance, sources, reading }
-    }
-
-    #[cfg(not(feature = "rrd"))]
-    #[expect(clippy::unused_self, reason = "with recordings it is used")]
-    fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
-        Err(left_out())
     }
 }
 
@@ -257,41 +222,47 @@ pub(crate) struct PreviewContents<'a> {
     pub(crate) model: Option<&'a Path>,
 }
 
-impl PreviewContents<'_> {
+/// What goes into one file.
+#[derive(Clone, Copy)]
+#[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
+pub(crate) enum Recorded<'a> {
+    Decisions(&'a Contents<'a>),
+    Sweep(&'a SweepContents<'a>),
+    Preview(PreviewContents<'a>),
+}
+
+impl Recorded<'_> {
     /// Writes the recording to `path` and says how to look at it.
-    pub(crate) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
-        record(path, verbosity, |file| self.write(file))
+    pub(crate) fn record(self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
+        {
+            let _bar = Bar::spinner(verbosity, "recording");
+            write_file(path, |file| self.write(file))?;
+        }
+        let path = path.display();
+        verbosity.say("recording", format!("{path}; look at it with: rerun {path}"));
+        Ok(())
     }
 
     #[cfg(feature = "rrd")]
-    fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
-        let Self { joints, sources, reading, model } = *self;
-        let preview = crate::recording::PreviewRecording { joints, sources, reading, model };
-        Ok(crate::recording::write_preview(&preview, file)?)
+    fn write(self, file: &mut OutputFile) -> anyhow::Result<()> {
+        use crate::recording::{PreviewRecording, write_preview, write_recording, write_sweep};
+
+        Ok(match self {
+            Self::Decisions(contents) => {
+                contents.with_recording(|recording| write_recording(recording, file))?
+            }
+            Self::Sweep(contents) => write_sweep(&contents.recording(), file)?,
+            Self::Preview(PreviewContents { joints, sources, reading, model }) => {
+                write_preview(&PreviewRecording { joints, sources, reading, model }, file)?
+            }
+        })
     }
 
     #[cfg(not(feature = "rrd"))]
     #[expect(clippy::unused_self, reason = "with recordings it is used")]
-    fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
+    fn write(self, _: &mut OutputFile) -> anyhow::Result<()> {
         Err(left_out())
     }
-}
-
-/// Writes a recording to `path` and says how to look at it.
-fn record(
-    path: &Path,
-    verbosity: Verbosity,
-    write: impl FnOnce(&mut OutputFile) -> anyhow::Result<()>,
-) -> anyhow::Result<()> {
-    {
-        let _bar = Bar::spinner(verbosity, "recording");
-        write_file(path, write)?;
-    }
-    if verbosity == Verbosity::Normal {
-        let path = path.display();
-        message("recording", &format!("{path}; look at it with: rerun {path}"));
-    }
-    Ok(())
 }
 
 /// Says before the work is done whether its recording can be written.

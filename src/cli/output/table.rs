@@ -1,7 +1,7 @@
 //! Tables as CSV or Parquet, by the ending of the file's name.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::experiment::is_control;
 use crate::report::DataTable;
@@ -21,19 +21,6 @@ impl FileKind {
         let ending = path.extension().unwrap_or_default();
         let parquet = ["parquet", "pq"].iter().any(|name| ending.eq_ignore_ascii_case(name));
         if parquet { Self::Parquet } else { Self::Csv }
-    }
-}
-
-/// Refuses tables that this build cannot write, before the work is done.
-pub(crate) fn check_tables<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> anyhow::Result<()> {
-    let parquet = paths.into_iter().find(|path| FileKind::of(path) == FileKind::Parquet);
-    match parquet {
-        Some(path) if !cfg!(feature = "parquet") => anyhow::bail!(
-            "{}: Parquet is not in this build of tauscope; build it with `--features parquet`, or \
-             give the file a name that ends in .csv",
-            path.display()
-        ),
-        _ => Ok(()),
     }
 }
 

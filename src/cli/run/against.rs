@@ -6,7 +6,7 @@ use anyhow::{Context as _, bail};
 
 use super::estimates::Estimates;
 use super::session::Session;
-use crate::cli::args::{AgainstArgs, DataArgs};
+use crate::cli::args::{AgainstArgs, DataArgs, read};
 use crate::delay::{Automatic, Settings};
 use crate::report::{Against, EstimatedJoint, settings_in_short};
 use crate::study::OtherResult;
@@ -54,9 +54,10 @@ fn other(
             "a log in a pipe can be read once, and was read for a result; write it to a file first"
         );
     }
-    let experiment = data.read_other(path)?;
-    let estimates =
-        session.in_threads(|| session.estimates_of(&experiment.joints, (settings, automatic)))?;
+    let experiment = read(&[path.to_owned()], &data.options()?)?;
+    let settings_of_one = std::slice::from_ref(settings);
+    let work = || session.estimates_of(&experiment.joints, settings_of_one, automatic).pop();
+    let estimates = session.in_threads(work)?.unwrap_or_default();
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(OtherResult::of(name, settings_in_short(settings), &experiment.joints, &estimates))
 }

@@ -24,11 +24,6 @@ pub(crate) fn estimated<'a>(
     estimated.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect()
 }
 
-/// The delays of the joint at `index`, where it has any.
-pub(crate) fn estimate_at(results: &Estimates, index: usize) -> Option<&JointEstimate> {
-    results.get(index)?.as_ref().ok()
-}
-
 /// A message on each file, joint and trial that failed.
 pub(crate) fn failures(experiment: &Experiment, results: &Estimates) -> Vec<String> {
     // With several files a trial's name says which one it is from.
@@ -53,38 +48,42 @@ pub(crate) fn failures(experiment: &Experiment, results: &Estimates) -> Vec<Stri
 
 /// What a person should know who looks at the numbers.
 pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
-    let mut notes = Vec::new();
-    for EstimatedJoint { joint, estimate } in joints {
-        let name = &joint.name;
-        let steps: usize = estimate.estimated().map(|trial| trial.decisions.len()).sum();
-        let warnings = EstimatedJoint { joint, estimate }.warnings();
-        notes.extend(warnings.into_iter().map(|it| format!("joint `{name}`: {}", it.text)));
-        // What is said of two lines is not said of an onset.
-        let by_lines = !estimate.settings.method.spec().has_intervals;
-        if estimate.dead_time.is_none() && by_lines {
-            notes.extend(unsmoothed(joint, estimate));
-            notes.extend(cut_at_the_next_step(joint, estimate));
-            notes.extend(smeared(joint, estimate));
-            notes.extend(later_than_the_next_step(joint));
-        }
-        if estimate.dead_time.is_none() {
-            notes.extend(unresolved(joint, estimate));
-            notes.extend(as_long_as_allowed(joint, estimate));
-            notes.extend(notes_on_sensor(joint, estimate));
-        }
-        let verdicts =
-            || estimate.estimated().flat_map(|trial| &trial.decisions).map(Decision::verdict);
-        let is_end = |verdict| verdict == Verdict::Rejected(Condition::FirstOrLast);
-        if steps > 0 && verdicts().all(is_end) {
-            notes.push(format!(
-                "joint `{name}`: every step is the first or the last of its trial; \
-                 `--keep-first-last` judges them like the others"
-            ));
-        }
-        notes.extend(input_note(&EstimatedJoint { joint, estimate }));
+    let of_joint = |estimated: &EstimatedJoint<'_>| {
+        let name = &estimated.joint.name;
+        let notes = notes_on(*estimated).into_iter().map(|note| format!("joint `{name}`: {note}"));
+        notes.chain(input_note(estimated)).collect::<Vec<_>>()
+    };
+    joints.iter().flat_map(of_joint).chain(coarse_grid(joints)).collect()
+}
+
+/// What a person should know of one joint.
+fn notes_on(estimated: EstimatedJoint<'_>) -> Vec<String> {
+    let EstimatedJoint { joint, estimate } = estimated;
+    let mut notes: Vec<String> = estimated.warnings().into_iter().map(|it| it.text).collect();
+    // What is said of two lines is not said of an onset.
+    if estimate.dead_time.is_none() && !estimate.settings.method.spec().has_intervals {
+        notes.extend(unsmoothed(joint, estimate));
+        notes.extend(cut_at_the_next_step(estimate));
+        notes.extend(smeared(joint, estimate));
+        notes.extend(later_than_the_next_step(joint));
     }
-    notes.extend(coarse_grid(joints));
+    if estimate.dead_time.is_none() {
+        notes.extend(unresolved(joint, estimate));
+        notes.extend(as_long_as_allowed(joint, estimate));
+        notes.extend(notes_on_sensor(joint, estimate));
+    }
+    let mut verdicts = decisions(estimate).map(Decision::verdict).peekable();
+    let is_end = |verdict| verdict == Verdict::Rejected(Condition::FirstOrLast);
+    if verdicts.peek().is_some() && verdicts.all(is_end) {
+        let ends = "every step is the first or the last of its trial; `--keep-first-last` judges them like \
+                    the others";
+        notes.push(ends.to_owned());
+    }
     notes
+}
+
+fn decisions(estimate: &JointEstimate) -> impl Iterator<Item = &Decision> {
+    estimate.estimated().flat_map(|trial| &trial.decisions)
 }
 
 /// A line where most reactions begin within a sample of their step.
@@ -96,10 +95,9 @@ fn unresolved(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let longest = joint.trials.iter().map(|trial| trial.period().seconds()).fold(0.0, f64::max);
     (delays.len() >= FEWEST && 2 * short > delays.len()).then(|| {
         format!(
-            "joint `{}`: {short} of {} delays are shorter than the sample period of {longest} s, \
+            "{short} of {} delays are shorter than the sample period of {longest} s, \
              which is all that this log says of them; a log that is sampled faster would resolve \
              them",
-            joint.name,
             delays.len()
         )
     })
@@ -147,15 +145,13 @@ fn smeared(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let settings = &estimate.settings;
     let first = joint.trials.first()?.period();
     let cutoff_hz = settings.low_pass_at(first).filter(|_| !settings.low_pass_required)?.cutoff_hz;
-    let holds = estimate.estimated().flat_map(|trial| &trial.decisions);
-    let holds: Vec<f64> = holds.map(|decision| decision.hold as f64).collect();
+    let holds: Vec<f64> = decisions(estimate).map(|decision| decision.hold as f64).collect();
     let hold_s = median(&holds)? * first.seconds();
     let unsmoothed = Method::AUTO;
     (hold_s * cutoff_hz < 1.0).then(|| {
         format!(
-            "joint `{}`: the input is held for {} s (median), less than a period of the low-pass of \
+            "the input is held for {} s (median), less than a period of the low-pass of \
              {cutoff_hz} Hz, which blends reactions into one another: `--method {unsmoothed}` needs none",
-            joint.name,
             number(hold_s),
         )
     })
@@ -165,10 +161,9 @@ fn smeared(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
 fn later_than_the_next_step(joint: &Joint) -> Option<String> {
     delay_beyond_holds(&joint.trials).map(|delay_s| {
         format!(
-            "joint `{}`: over the whole record it answers about {} s late, longer than most levels are \
+            "over the whole record it answers about {} s late, longer than most levels are \
              held: what is listed are delays of its answers to earlier steps. A model shows the \
              delay (`tauscope compare`), and so does an input that holds its levels for longer",
-            joint.name,
             number(delay_s),
         )
     })
@@ -185,27 +180,25 @@ fn as_long_as_allowed(joint: &Joint, estimate: &JointEstimate) -> Option<String>
     let bounded = delays.iter().filter(|delay| **delay > longest - near).count();
     (bounded > 0 && bounded as f64 >= PART * delays.len() as f64).then(|| {
         format!(
-            "joint `{}`: {bounded} of {} delays are as long as `--max-delay` allows: reactions may \
+            "{bounded} of {} delays are as long as `--max-delay` allows: reactions may \
              come later; raise it",
-            joint.name,
             delays.len()
         )
     })
 }
 
 fn accepted(estimate: &JointEstimate) -> impl Iterator<Item = &Decision> {
-    let decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
-    decisions.filter(|decision| decision.verdict() == Verdict::Accepted)
+    decisions(estimate).filter(|decision| decision.verdict() == Verdict::Accepted)
 }
 
 /// A line where segments end at the next step, since they held the reaction to it.
-fn cut_at_the_next_step(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
+fn cut_at_the_next_step(estimate: &JointEstimate) -> Option<String> {
     let settings = &estimate.settings;
     estimate.estimated().any(|trial| end_at_the_next_step(&trial.decisions)).then(|| {
         format!(
-            "joint `{}`: it reacts within α = {} samples, so that segments hold the reaction to the \
+            "it reacts within α = {} samples, so that segments hold the reaction to the \
              next step, too: they end at that step",
-            joint.name, settings.alpha
+            settings.alpha
         )
     })
 }
@@ -215,11 +208,11 @@ fn unsmoothed(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let low_pass = estimate.settings.low_pass?;
     let is_slow = |trial: &&Trial| estimate.settings.low_pass_at(trial.period()).is_none();
     let slow = joint.trials.iter().filter(is_slow).count();
-    let (name, all, hz) = (&joint.name, joint.trials.len(), low_pass.cutoff_hz);
+    let (all, hz) = (joint.trials.len(), low_pass.cutoff_hz);
     let whose = if slow == all { String::new() } else { format!(" at {slow} of {all} trials") };
     (slow > 0).then(|| {
         format!(
-            "joint `{name}`: the low-pass of {hz} Hz is left out{whose}, where no more than {} \
+            "the low-pass of {hz} Hz is left out{whose}, where no more than {} \
              samples come in a second",
             2.0 * hz
         )

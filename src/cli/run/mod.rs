@@ -1,20 +1,14 @@
 //! What commands on logs share: read, estimate, use threads, report.
 
-mod add_command;
 mod against;
 mod estimates;
-mod outcomes;
 mod revisions;
 mod sensor;
 mod session;
 mod study;
 
-pub(crate) use add_command::add_arguments;
 pub(crate) use against::{compared, left_over, others};
-pub(crate) use estimates::{Estimates, estimate_at, estimated, failures, notes};
-pub(crate) use outcomes::outcomes;
-pub(crate) use revisions::{
-    Progress, entry, improved, log_hashes, models, revised, revision_names, with_fit,
-};
+pub(crate) use estimates::{Estimates, estimated, failures, notes};
+pub(crate) use revisions::{Progress, Start, as_it_is, log_hashes, revised};
 pub(crate) use session::Session;
-pub(crate) use study::{Study, StudyContext};
+pub(crate) use study::Study;

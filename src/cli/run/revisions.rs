@@ -2,15 +2,15 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-use crate::cli::console::{Interrupt, Verbosity, message};
+use super::estimates::Estimates;
+use crate::cli::console::{Interrupt, Verbosity};
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Source};
-use crate::explain::{Change, Improvement, Revision as Step, Verdict};
+use crate::explain::{Change, Explanation, Improvement, Revision as Step, Verdict};
 use crate::model::{Fitted, FittedParameter, LogHash, ModelFile, Revision};
 use crate::report::{
     ComparedJoint, Finding, History, ImprovedJoint, errors_of, gone, revision_line,
 };
-use crate::study::JointEstimate;
 use crate::wording::parameter_units;
 
 /// Which revisions there are so far, reported as they come.
@@ -49,60 +49,94 @@ impl<'a> Progress<'a> {
             next.store(self.first.get(index).copied().unwrap_or(0), Ordering::Relaxed);
         }
         let number = next.fetch_add(1, Ordering::Relaxed);
-        if self.verbosity == Verbosity::Normal {
-            message("improving", &revision_line(joint, number, revision));
-        }
+        self.verbosity.say("improving", revision_line(joint, number, revision));
         let stops = self.interrupt.is_some_and(Interrupt::was_pressed);
         stopped.store(stops, Ordering::Relaxed);
         !stops
     }
 
-    /// Which joints were stopped.
-    pub(crate) fn stopped(&self) -> Vec<bool> {
-        self.next.iter().map(|(_, stopped)| stopped.load(Ordering::Relaxed)).collect()
+    /// What is to be said of the joint at `index`, which somebody may have stopped.
+    pub(crate) fn improved<'b>(
+        &self,
+        start: Start<'b>,
+        index: usize,
+        joint: &'b Joint,
+        improvement: &'b Improvement,
+    ) -> Option<ImprovedJoint<'b>> {
+        let improved = start.improved(index, joint, improvement)?;
+        let next = self.next.get(index);
+        let is_stopped = next.is_some_and(|(_, stopped)| stopped.load(Ordering::Relaxed));
+        Some(if is_stopped { improved.stopped() } else { improved })
     }
 }
 
-/// What is to be said of a joint that was improved.
-pub(crate) fn improved<'a>(
-    file: &'a ModelFile,
-    model: &'a str,
-    joint: &'a Joint,
-    (improvement, delays): (&'a Improvement, Option<&'a JointEstimate>),
-    add_arguments: &'a str,
-) -> Option<ImprovedJoint<'a>> {
-    let Improvement { revisions, verdict, attribution } = improvement;
-    let last = revisions.last()?;
-    let first_revision = file.revision(&joint.name).unwrap_or(0);
-    let revision = (first_revision..).zip(revisions).last()?.0;
-    let compared = ComparedJoint { joint, model, revision, comparison: &last.comparison };
-    let before = revisions.first().filter(|_| revisions.len() > 1).map(|first| &first.comparison);
-    let (verdict, ranking) = (*verdict, last.ranking.as_slice());
-    let attribution = Some(attribution);
-    let finding =
-        Finding { compared, verdict, ranking, add_arguments, before, attribution, delays };
-    // Where more is missing at the end, nothing but the limit has ended it, or whoever stopped it.
-    let reached_limit = verdict == Verdict::MissingEffect;
-    let improved = ImprovedJoint::of(finding, revisions);
-    let history =
-        History { revisions: file.history(&joint.name), fitted: file.fitted(&joint.name) };
-    Some(ImprovedJoint { first_revision, history, reached_limit, ..improved })
+/// What models begin with, and what they are called.
+#[derive(Clone, Copy)]
+pub(crate) struct Start<'a> {
+    pub(crate) file: &'a ModelFile,
+    /// The name of the model in the output.
+    pub(crate) model: &'a str,
+    /// Per joint, what follows the effect in the command that adds one.
+    pub(crate) arguments: &'a [String],
+    /// Per joint, its delays.
+    pub(crate) estimates: &'a Estimates,
 }
 
-/// `file` with all revisions of all joints. A joint that has no new one stays as it is.
+impl<'a> Start<'a> {
+    /// What is to be said of the joint at `index`, which was improved.
+    pub(crate) fn improved(
+        self,
+        index: usize,
+        joint: &'a Joint,
+        improvement: &'a Improvement,
+    ) -> Option<ImprovedJoint<'a>> {
+        let Self { file, model, arguments, estimates } = self;
+        let Improvement { revisions, verdict, attribution } = improvement;
+        let last = revisions.last()?;
+        let first_revision = file.revision(&joint.name).unwrap_or(0);
+        let revision = (first_revision..).zip(revisions).last()?.0;
+        let first = revisions.first().filter(|_| revisions.len() > 1);
+        let finding = Finding {
+            compared: ComparedJoint { joint, model, revision, comparison: &last.comparison },
+            verdict: *verdict,
+            ranking: last.ranking.as_slice(),
+            add_arguments: arguments.get(index).map_or("", String::as_str),
+            before: first.map(|first| &first.comparison),
+            attribution: Some(attribution),
+            delays: estimates.get(index).and_then(|estimate| estimate.as_ref().ok()),
+        };
+        // Where more is missing at the end, nothing but the limit has ended it, or whoever stopped it.
+        let reached_limit = *verdict == Verdict::MissingEffect;
+        let improved = ImprovedJoint::of(finding, revisions);
+        let history =
+            History { revisions: file.history(&joint.name), fitted: file.fitted(&joint.name) };
+        Some(ImprovedJoint { first_revision, history, reached_limit, ..improved })
+    }
+}
+
+/// A model and what it lacks, as the only revision.
+pub(crate) fn as_it_is(explanation: Explanation) -> Improvement {
+    let Explanation { base, verdict, ranking, attribution } = explanation;
+    let revisions = vec![Step { change: Change::Start, comparison: base, ranking }];
+    Improvement { revisions, verdict, attribution }
+}
+
+/// `file` with all revisions of all joints, and with the verdict on each where `judged` has one. A joint
+/// that has no new one stays as it is.
 pub(crate) fn revised(
     file: &ModelFile,
     improved: &[ImprovedJoint<'_>],
     sources: &[Source],
+    judged: impl Fn(&ImprovedJoint<'_>) -> Option<Verdict>,
 ) -> anyhow::Result<ModelFile> {
+    let revised_for =
+        |file, joint: &ImprovedJoint<'_>| revised_for(file, joint, judged(joint), sources);
     let is_known = |joint: &&ImprovedJoint<'_>| file.joint(joint.name()).is_some();
     let known = improved.iter().filter(is_known);
-    let file =
-        known.clone().try_fold(file.clone(), |file, joint| revised_for(file, joint, sources))?;
+    let file = known.clone().try_fold(file.clone(), |file, joint| revised_for(file, joint))?;
     let new = improved.iter().filter(|joint| !is_known(joint));
-    let new: Vec<ModelFile> = new
-        .map(|joint| revised_for(file.emptied(), joint, sources))
-        .collect::<anyhow::Result<_>>()?;
+    let new: Vec<ModelFile> =
+        new.map(|joint| revised_for(file.emptied(), joint)).collect::<anyhow::Result<_>>()?;
     Ok(file.joined(&new)?)
 }
 
@@ -110,6 +144,7 @@ pub(crate) fn revised(
 fn revised_for(
     mut file: ModelFile,
     joint: &ImprovedJoint<'_>,
+    verdict: Option<Verdict>,
     sources: &[Source],
 ) -> anyhow::Result<ModelFile> {
     let pairs = (joint.first_revision + 1..).zip(joint.revisions.windows(2));
@@ -130,14 +165,14 @@ fn revised_for(
     }
     if is_new || joint.revisions.len() > 1 {
         let first = joint.numbered().next().map(|(number, first)| (number, &first.comparison));
-        file = with_fit(&file, &compared, first, Some(joint.finding.verdict), sources)?;
+        file = with_fit(&file, &compared, first, verdict, sources)?;
     }
     Ok(file)
 }
 
 /// `file` with what the model of a joint was fitted to; `first` is the model that this work began
 /// with, and the number of that revision.
-pub(crate) fn with_fit(
+fn with_fit(
     file: &ModelFile,
     compared: &ComparedJoint<'_>,
     first: Option<(u32, &Comparison)>,
@@ -178,12 +213,7 @@ pub(crate) fn log_hashes(sources: &[Source]) -> Vec<LogHash> {
 }
 
 /// What the history says of `after`, to which `added` came.
-pub(crate) fn entry(
-    revision: u32,
-    added: Option<&str>,
-    before: &Comparison,
-    after: &Comparison,
-) -> Revision {
+fn entry(revision: u32, added: Option<&str>, before: &Comparison, after: &Comparison) -> Revision {
     let removed = gone(&before.fit.model, &after.fit.model);
     Revision {
         revision,
@@ -194,13 +224,13 @@ pub(crate) fn entry(
 }
 
 /// `revision 0` and so on, to the last number there is.
-pub(crate) fn revision_names(improved: &[ImprovedJoint<'_>]) -> Vec<String> {
+pub(super) fn revision_names(improved: &[ImprovedJoint<'_>]) -> Vec<String> {
     let last = improved.iter().map(|joint| joint.finding.compared.revision).max().unwrap_or(0);
     (0..=last).map(|number| format!("revision {number}")).collect()
 }
 
 /// The revisions of a joint, each as a model.
-pub(crate) fn models<'a>(
+pub(super) fn models<'a>(
     improved: &ImprovedJoint<'a>,
     names: &'a [String],
 ) -> Vec<ComparedJoint<'a>> {

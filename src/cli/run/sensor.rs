@@ -30,9 +30,8 @@ fn far_off(joint: &Joint, what: &str, of: fn(&Trial) -> &[f64]) -> Option<String
     let share = far.len() as f64 / count as f64;
     (high > low && !far.is_empty() && share <= SELDOM).then(|| {
         format!(
-            "joint `{}`: the {what} goes to {} in {} of {count} samples, far beyond its usual range of {} to \
+            "the {what} goes to {} in {} of {count} samples, far beyond its usual range of {} to \
              {}: if such a number marks missing values, leave these cells empty",
-            joint.name,
             to_digits(far[0], 4),
             far.len(),
             to_digits(low, 3),
@@ -50,11 +49,10 @@ fn spikes(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
 
 /// That there are isolated spikes in the output of a joint, where there are any.
 pub(super) fn spikes_of(joint: &Joint) -> Option<String> {
-    let name = &joint.name;
     match joint.trials.iter().map(spike_count).sum::<usize>() {
         0 => None,
-        1 => Some(format!("joint `{name}`: 1 sample is an isolated spike of the sensor")),
-        count => Some(format!("joint `{name}`: {count} samples are isolated spikes of the sensor")),
+        1 => Some("1 sample is an isolated spike of the sensor".to_owned()),
+        count => Some(format!("{count} samples are isolated spikes of the sensor")),
     }
 }
 
@@ -66,10 +64,9 @@ fn saturated(joint: &Joint) -> Option<String> {
         .collect();
     (!ends.is_empty()).then(|| {
         format!(
-            "joint `{}`: the output stands, without noise, at {}: the range of the sensor or its converter \
+            "the output stands, without noise, at {}: the range of the sensor or its converter \
              ends there; what the joint does beyond is not seen, and the delay of a step there is how late the \
              output comes back",
-            joint.name,
             ends.join(" and at ")
         )
     })
@@ -80,10 +77,9 @@ fn coarse(joint: &Joint) -> Option<String> {
     let found = coarse_resolution(&joint.trials)?;
     let unit = joint.output_unit.as_deref().map_or_else(String::new, |unit| format!(" {unit}"));
     Some(format!(
-        "joint `{}`: the resolution of the output is {}{unit}, a count every {} s at its usual speed: a \
+        "the resolution of the output is {}{unit}, a count every {} s at its usual speed: a \
          reaction is seen up to that much late, and delays are no more accurate than that; a finer sensor, \
          or larger steps of the input, resolve them better",
-        joint.name,
         to_digits(found.count, 4),
         to_digits(found.between_s, 2)
     ))

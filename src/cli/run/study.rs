@@ -5,80 +5,72 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::estimates::{Estimates, estimated};
+use super::revisions::{models, revision_names};
 use super::sensor::spikes_of;
 use super::session::Session;
 use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
-use crate::cli::output::{Contents, Detail};
-use crate::delay::Settings;
+use crate::cli::output::Contents;
+use crate::delay::{Automatic, Settings};
 use crate::experiment::{Experiment, Joint, Other};
 use crate::fit::Mended;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::study::{OtherResult, others_of};
 
-/// Logs, the delays in them, and what came of the joints.
-pub(crate) struct Study<'a, T> {
+/// Logs and the delays in them.
+pub(crate) struct Study<'a> {
     session: Session<'a>,
     pub(crate) estimates: Estimates,
+    /// Of the joints that are not asked for.
+    of_others: Estimates,
     pub(crate) settings: Settings,
-    pub(crate) result: T,
 }
 
-/// What work on the joints begins with.
-#[derive(Clone, Copy)]
-pub(crate) struct StudyContext<'a> {
-    session: &'a Session<'a>,
-    pub(crate) joints: &'a [Joint],
-    pub(crate) estimates: &'a Estimates,
-    /// The joints that are not asked for.
-    pub(crate) others: &'a [Other<'a>],
-    pub(crate) settings: &'a Settings,
-}
-
-impl<'a, T: Send> Study<'a, T> {
-    /// Estimates the delays by `settings`, shows them, and does `work` with them.
-    pub(crate) fn of(
-        session: Session<'a>,
-        settings: &Settings,
-        work: impl FnOnce(StudyContext<'_>) -> T + Send,
-    ) -> anyhow::Result<Self> {
+impl<'a> Study<'a> {
+    /// Estimates the delays by `settings`, and shows them.
+    pub(crate) fn of(session: Session<'a>, settings: &Settings) -> anyhow::Result<Self> {
         let settings = session.in_samples(settings);
-        let (estimates, result) = session.in_threads(|| {
-            let estimates = session.estimates(&settings);
-            let result = {
-                let of_others = session.estimates_of_others(&settings);
-                let others = others_of(&session.experiment.others, &of_others);
-                let context = StudyContext {
-                    others: &others,
-                    ..StudyContext::of(&session, &estimates, &settings)
-                };
-                context.show(&[], &[], None)?;
-                work(context)
-            };
-            anyhow::Ok((estimates, result))
-        })??;
-        Ok(Self { session, estimates, settings, result })
+        let asked = std::slice::from_ref(&settings);
+        let [estimates, of_others] = session.in_threads(|| {
+            let others = &session.experiment.others;
+            [
+                session.estimates(asked, Automatic::default()),
+                session.estimates_of(others, asked, Automatic::default()),
+            ]
+            .map(|mut all| all.pop().unwrap_or_default())
+        })?;
+        let study = Self { session, estimates, of_others, settings };
+        study.show(&[], &[], None)?;
+        Ok(study)
     }
-}
 
-impl<'a> StudyContext<'a> {
-    fn of(session: &'a Session<'a>, estimates: &'a Estimates, settings: &'a Settings) -> Self {
-        let joints = &session.experiment.joints;
-        Self { session, joints, estimates, others: &[], settings }
+    /// Does `work` with a bar that counts the fits of `what`, and with the joints that are not asked for.
+    pub(crate) fn work<T: Send>(
+        &self,
+        what: &'static str,
+        work: impl FnOnce(&Bar, &[Other<'_>]) -> T + Send,
+    ) -> anyhow::Result<T> {
+        let others = others_of(&self.session.experiment.others, &self.of_others);
+        self.session.in_threads(|| work(&Bar::new(self.verbosity(), what, "fits", 0), &others))
     }
 
     /// The logs.
-    pub(crate) fn experiment(&self) -> &'a Experiment {
+    pub(crate) fn experiment(&self) -> &Experiment {
         &self.session.experiment
     }
 
-    /// A bar that counts the fits of what is being done.
-    pub(crate) fn bar(&self, what: &'static str) -> Bar {
-        Bar::new(self.verbosity(), what, "fits", 0)
+    /// The joints of the logs.
+    pub(crate) fn joints(&self) -> &[Joint] {
+        &self.session.experiment.joints
     }
 
     pub(crate) fn verbosity(&self) -> Verbosity {
         self.session.verbosity()
+    }
+
+    /// Results that are shown beside the delays.
+    pub(crate) fn beside(&self) -> &[OtherResult] {
+        &self.session.beside
     }
 
     /// Whether a viewer shows it.
@@ -107,42 +99,10 @@ impl<'a> StudyContext<'a> {
         revisions: &[ImprovedJoint<'_>],
         take: impl FnOnce(&Contents<'_>) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
-        let Self { session: Session { experiment, command, .. }, estimates, settings, .. } = *self;
-        take(&Contents {
-            command,
-            joints: &estimated(experiment, estimates),
-            settings,
-            also: &self.session.beside,
-            sources: &experiment.sources,
-            reading: &experiment.options,
-            models,
-            revisions,
-            detail: Detail::Auto,
-        })
-    }
-}
-
-impl<'a, T, E> Study<'a, Result<T, E>> {
-    /// The study, where its work has not failed.
-    pub(crate) fn transpose(self) -> Result<Study<'a, T>, E> {
-        let Self { session, estimates, settings, result } = self;
-        Ok(Study { session, estimates, settings, result: result? })
-    }
-}
-
-impl<T> Study<'_, T> {
-    /// The logs.
-    pub(crate) fn experiment(&self) -> &Experiment {
-        &self.session.experiment
-    }
-
-    pub(crate) fn verbosity(&self) -> Verbosity {
-        self.session.verbosity()
-    }
-
-    /// Results that are shown beside the delays.
-    pub(crate) fn beside(&self) -> &[OtherResult] {
-        &self.session.beside
+        let Session { experiment, command, beside, .. } = &self.session;
+        let joints = estimated(experiment, &self.estimates);
+        let contents = Contents::of_delays(command, experiment, (&joints, &self.settings));
+        take(&Contents { also: beside, models, revisions, ..contents })
     }
 
     /// Records `models` and `revisions` beside the decisions, and shows them.
@@ -152,13 +112,22 @@ impl<T> Study<'_, T> {
         models: &[ComparedJoint<'_>],
         revisions: &[ImprovedJoint<'_>],
     ) -> anyhow::Result<()> {
-        let context = StudyContext::of(&self.session, &self.estimates, &self.settings);
         if let Some(path) = path {
-            let verbosity = self.verbosity();
-            context
-                .with_contents(models, revisions, |contents| contents.record(path, verbosity))?;
+            let record = |contents: &Contents<'_>| contents.record(path, self.verbosity());
+            self.with_contents(models, revisions, record)?;
         }
-        context.show(models, revisions, None)
+        self.show(models, revisions, None)
+    }
+
+    /// Records the revisions of models, each as a model too, and shows them.
+    pub(crate) fn record_revisions(
+        &self,
+        path: Option<&Path>,
+        improved: &[ImprovedJoint<'_>],
+    ) -> anyhow::Result<()> {
+        let names = revision_names(improved);
+        let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
+        self.record(path, &models, improved)
     }
 
     /// Says what failed, and how the logs were read, prints the results, and ends what viewers are sent.
@@ -168,7 +137,7 @@ impl<T> Study<'_, T> {
         text: impl FnOnce() -> String,
         json: impl FnOnce() -> J,
     ) -> anyhow::Result<Completion> {
-        self.session.warn(failures, &notes_on_models(&self.experiment().joints));
+        self.session.warn(failures, &notes_on_models(self.joints()));
         self.session.end(Completion::without(failures), text, json)
     }
 }
@@ -178,12 +147,10 @@ fn notes_on_models(joints: &[Joint]) -> Vec<String> {
     let note = |joint: &Joint| {
         let spikes = spikes_of(joint).map(|spikes| format!("{spikes}, which no error counts"));
         let noise = joint.trials.property::<Mended>().has_noisy_input.then(|| {
-            format!(
-                "joint `{}`: the input has noise or glitches: models take the levels that it holds",
-                joint.name
-            )
+            "the input has noise or glitches: models take the levels that it holds".to_owned()
         });
-        spikes.into_iter().chain(noise)
+        let said = spikes.into_iter().chain(noise);
+        said.map(|note| format!("joint `{}`: {note}", joint.name)).collect::<Vec<_>>()
     };
     joints.iter().flat_map(note).collect()
 }

@@ -73,7 +73,7 @@ impl StreamArgs {
         };
         if let Some(live) = live.as_ref().filter(|live| live.is_served()) {
             let url = live.url();
-            note(verbosity, "serving", &format!("look at it with: rerun --connect {url}"));
+            verbosity.say("serving", format!("look at it with: rerun --connect {url}"));
         }
         Ok(Stream(live.map(Into::into)))
     }
@@ -84,13 +84,6 @@ impl StreamArgs {
             return Err(crate::cli::output::left_out());
         }
         Ok(Stream(()))
-    }
-}
-
-#[cfg(feature = "rrd")]
-fn note(verbosity: Verbosity, kind: &str, text: &str) {
-    if verbosity == Verbosity::Normal {
-        console::message(kind, text);
     }
 }
 
@@ -149,10 +142,10 @@ impl Stream {
             return Ok(Completion::Partial);
         }
         let Some(interrupt) = interrupt else {
-            note(verbosity, "viewer", &format!("{} has the recording", live.url()));
+            verbosity.say("viewer", format!("{} has the recording", live.url()));
             return Ok(completion);
         };
-        note(verbosity, "serving", &format!("{} until Ctrl-C", live.url()));
+        verbosity.say("serving", format!("{} until Ctrl-C", live.url()));
         while !interrupt.sleep(Duration::from_secs(1)) {}
         Ok(completion)
     }

@@ -1,4 +1,4 @@
-/* The joint @JOINT@ behind the functions of FMI 3.0, for co-simulation.
+/* The joint {{ joint | plain }} behind the functions of FMI 3.0, for co-simulation.
  *
  * The types are those of the standard, written out, so that nothing else is needed to
  * compile this file. */
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "@FILE@.h"
+#include "{{ name }}.h"
 
 #if defined _WIN32
 #define EXPORT __declspec(dllexport)
@@ -45,8 +45,8 @@ typedef struct {
     double initial_output;
     double start_time;
     double time;
-    @NAME@_parameters parameters;
-    @NAME@_state model;
+    {{ name }}_parameters parameters;
+    {{ name }}_state model;
 } State;
 
 typedef struct {
@@ -71,27 +71,30 @@ static void begin(Instance *instance)
 {
     State *state = &instance->state;
     memset(state, 0, sizeof *state);
-    state->parameters = @NAME@_defaults();
+    state->parameters = {{ name }}_defaults();
 }
 
 /* At rest, at the output and with the input and the parameters that are set. */
 static void settle(State *state)
 {
     const double others = state->model.others;
-    @NAME@_init(&state->model, &state->parameters, SETTLING_S, state->input, state->initial_output);
+    {{ name }}_init(&state->model, &state->parameters, SETTLING_S, state->input, state->initial_output);
     state->model.others = others;
 }
 
 static double *variable(State *state, fmi3ValueReference reference)
 {
-    @NAME@_parameters *p = &state->parameters;
+    {{ name }}_parameters *p = &state->parameters;
     switch (reference) {
     case TIME: return &state->time;
     case INPUT: return &state->input;
     case OTHERS: return &state->model.others;
     case OUTPUT: return &state->model.measured;
     case INITIAL_OUTPUT: return &state->initial_output;
-@CASES@    default: return NULL;
+{% for p in parameters %}
+    case PARAMETER + {{ loop.index0 }}: return &p->{{ p.name }};
+{% endfor %}
+    default: return NULL;
     }
 }
 
@@ -114,7 +117,7 @@ EXPORT fmi3Instance fmi3InstantiateCoSimulation(
     Instance *instance;
     (void)name; (void)resources; (void)visible; (void)logging; (void)events; (void)early_return;
     (void)intermediate; (void)count; (void)update;
-    if (!token || strcmp(token, "@TOKEN@") != 0) {
+    if (!token || strcmp(token, "{{ token }}") != 0) {
         if (log) {
             log(environment, fmi3Error, "logStatusError", "the instantiation token is that of another model");
         }
@@ -261,7 +264,7 @@ EXPORT fmi3Status fmi3DoStep(
     if (!(step > 0.0)) {
         return fail(instance, "fmi3DoStep: a step takes more than no time");
     }
-    @NAME@_advance(&state->model, state->input, start, start + step, step);
+    {{ name }}_advance(&state->model, state->input, start, start + step, step);
     state->time = now + step;
     if (state->model.lost > 0) {
         return fail(instance, "fmi3DoStep: more changes of the input are on their way than there is room for");

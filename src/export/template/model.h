@@ -1,18 +1,21 @@
 /*
- * The joint @JOINT@, as a model that stands alone.
+ * The joint {{ joint | plain }}, as a model that stands alone.
  *
-@ORIGIN@ *
+{% for line in origin %}
+ * {{ line | plain }}
+{% endfor %}
+ *
  *     dy/dt = gain * s, where s is the input, delay seconds late, behind its effects
  *
  * In C99, without allocation:
  *
- *     @NAME@_parameters parameters = @NAME@_defaults();
- *     @NAME@_state joint;
- *     @NAME@_init(&joint, &parameters, 0.01, input, output);
- *     output = @NAME@_step(&joint, input);      once in every period
+ *     {{ name }}_parameters parameters = {{ name }}_defaults();
+ *     {{ name }}_state joint;
+ *     {{ name }}_init(&joint, &parameters, 0.01, input, output);
+ *     output = {{ name }}_step(&joint, input);      once in every period
  */
-#ifndef TAUSCOPE_@UPPER@_H
-#define TAUSCOPE_@UPPER@_H
+#ifndef TAUSCOPE_{{ name | upper }}_H
+#define TAUSCOPE_{{ name | upper }}_H
 
 #include <stddef.h>
 
@@ -21,24 +24,27 @@ extern "C" {
 #endif
 
 /* Changes of the input that can be on their way at once: at most one comes in a period. */
-#ifndef @UPPER@_MOST_CHANGES
-#define @UPPER@_MOST_CHANGES 1024
+#ifndef {{ name | upper }}_MOST_CHANGES
+#define {{ name | upper }}_MOST_CHANGES 1024
 #endif
 
 /* What may be changed, in this order. */
 typedef struct {
-@PARAMETERS@} @NAME@_parameters;
+{% for p in parameters %}
+    double {{ p.name }}; /* {{ p.described | plain }}; {{ p.value }} */
+{% endfor %}
+} {{ name }}_parameters;
 
 /* A level of the input and the time from which it acts. */
 typedef struct {
     double time;
     double level;
-} @NAME@_arrival;
+} {{ name }}_arrival;
 
 /* The state of the joint between two instants. All but `others` is set by the functions. */
 typedef struct {
-    @NAME@_parameters p;
-    double others;    /* activity of the other joints, 0 to 1: set it before a step@OTHERS@ */
+    {{ name }}_parameters p;
+    double others;    /* activity of the other joints, 0 to 1: set it before a step{% if not uses_others %}; this model has no use for it{% endif %} */
     size_t lost;      /* changes that acted too early, since too many were on their way */
     double period_s;  /* seconds from one step to the next */
     double sample;    /* steps so far */
@@ -47,27 +53,30 @@ typedef struct {
     double level;     /* the input that acts */
     size_t first;     /* the changes on their way: the first, and how many */
     size_t count;
-    @NAME@_arrival coming[@UPPER@_MOST_CHANGES];
+    {{ name }}_arrival coming[{{ name | upper }}_MOST_CHANGES];
     double angle;     /* of the joint, output units */
     double velocity;  /* output units per second */
     double measured;  /* the angle as its sensor shows it */
     double load_adds; /* to the speed, in the last interval */
-@MEMORY@} @NAME@_state;
+{% for name in memory %}
+    double {{ name }};
+{% endfor %}
+} {{ name }}_state;
 
 /* The parameters as they were exported. */
-@NAME@_parameters @NAME@_defaults(void);
+{{ name }}_parameters {{ name }}_defaults(void);
 
 /* At rest in the output `output`, with an input of `input` that has long been held; a step
  * is `period_s` seconds. */
-void @NAME@_init(@NAME@_state *model, const @NAME@_parameters *p, double period_s,
+void {{ name }}_init({{ name }}_state *model, const {{ name }}_parameters *p, double period_s,
                  double input, double output);
 
 /* The output now; then `input` is held for one period. */
-double @NAME@_step(@NAME@_state *model, double input);
+double {{ name }}_step({{ name }}_state *model, double input);
 
 /* Holds `input` from `start` to `end`, seconds since the first sample; `dt` is the time
  * between them. The output at the end is `model->measured`. */
-void @NAME@_advance(@NAME@_state *model, double input, double start, double end, double dt);
+void {{ name }}_advance({{ name }}_state *model, double input, double start, double end, double dt);
 
 #ifdef __cplusplus
 }

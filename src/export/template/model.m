@@ -1,17 +1,23 @@
-function varargout = @NAME@(command, varargin)
-%@UPPER@ The joint @JOINT@, as a model that stands alone.
-@ORIGIN@%
+function varargout = {{ name }}(command, varargin)
+%{{ name | upper }} The joint {{ joint }}, as a model that stands alone.
+{% for line in origin %}
+%   {{ line }}
+{% endfor %}
+%
 %   dy/dt = gain * s, where s is the input, delay seconds late, behind its effects
 %
-%   y = @NAME@('simulate', u, period_s, y0)   the output for each sample of u, from y0 on
-%   y = @NAME@('simulate', u, period_s, y0, p, others)
+%   y = {{ name }}('simulate', u, period_s, y0)   the output for each sample of u, from y0 on
+%   y = {{ name }}('simulate', u, period_s, y0, p, others)
 %
-%   s = @NAME@('init', period_s, u0, y0)      the joint at rest in y0, with u0 long held
-%   s = @NAME@('init', period_s, u0, y0, p)
-%   [y, s] = @NAME@('step', s, u)             the output now; then u is held for one period
+%   s = {{ name }}('init', period_s, u0, y0)      the joint at rest in y0, with u0 long held
+%   s = {{ name }}('init', period_s, u0, y0, p)
+%   [y, s] = {{ name }}('step', s, u)             the output now; then u is held for one period
 %
-%   p = @NAME@('parameters')                  what may be changed:
-@PARAMETERS@%
+%   p = {{ name }}('parameters')                  what may be changed:
+{% for p in parameters %}
+%     p.{{ p.name }}: {{ p.described }}; {{ p.value }}
+{% endfor %}
+%
 %   s.others is the activity of the other joints, 0 to 1: set it before a step.
   switch command
     case 'simulate'
@@ -23,13 +29,16 @@ function varargout = @NAME@(command, varargin)
     case 'parameters'
       varargout{1} = defaults();
     otherwise
-      error('@NAME@:command', 'no command is called ''%s''', command);
+      error('{{ name }}:command', 'no command is called ''%s''', command);
   end
 end
 
 function p = defaults()
   p = struct();
-@DEFAULTS@end
+{% for p in parameters %}
+  p.{{ p.name }} = {{ p.value }};
+{% endfor %}
+end
 
 function output = simulate(input, period_s, start, p, others)
   if nargin < 4 || isempty(p)
@@ -66,13 +75,40 @@ function s = init(period_s, input, output, p)
   s.velocity = 0;
   s.measured = 0;
   s.load_adds = 0;
-@MEMORY@  at = moment(s, input, 0, period_s);
-@SETTLE_DRIVE@  at = moment(s, 0, 0, period_s);
-@SETTLE_LIMITS@  s.angle = at.signal;
+{% for name in memory %}
+  s.{{ name }} = 0;
+{% endfor %}
+  at = moment(s, input, 0, period_s);
+{% for e in drive %}
+{% if e.settle.lines %}
+  s = effect_{{ e.id }}_settle(s, at);
+{% endif %}
+  [at.signal, s] = effect_{{ e.id }}(s, at);
+{% endfor %}
+  at = moment(s, 0, 0, period_s);
+{% for e in limits %}
+{% if e.settle.lines %}
+  s = effect_{{ e.id }}_settle(s, at);
+{% endif %}
+  [at.signal, s] = effect_{{ e.id }}(s, at);
+{% endfor %}
+  s.angle = at.signal;
   at = moment(s, s.angle, 0, period_s);
-@SETTLE_SENSOR@  play = s.angle - at.signal;
+{% for e in sensor %}
+{% if e.settle.lines %}
+  s = effect_{{ e.id }}_settle(s, at);
+{% endif %}
+  [at.signal, s] = effect_{{ e.id }}(s, at);
+{% endfor %}
+  play = s.angle - at.signal;
   at = moment(s, output, 0, period_s);
-@SETTLE_SENSOR@  s.angle = output + play;
+{% for e in sensor %}
+{% if e.settle.lines %}
+  s = effect_{{ e.id }}_settle(s, at);
+{% endif %}
+  [at.signal, s] = effect_{{ e.id }}(s, at);
+{% endfor %}
+  s.angle = output + play;
   s = measure(s, 0, period_s);
 end
 
@@ -115,7 +151,14 @@ end
 % earlier one takes its place.
 function s = command_level(s, level, now_s)
   delay = s.p.delay;
-@TRANSPORT@  arrives = now_s + max(delay, 0);
+{% if transport %}
+  at = struct('before', s.before, 'after', level, 'held', now_s - s.since, ...
+              'time', s.p.start_s + now_s);
+{% for e in transport %}
+  delay = delay + effect_{{ e.id }}(s, at);
+{% endfor %}
+{% endif %}
+  arrives = now_s + max(delay, 0);
   kept = s.times < arrives;
   s.times = [s.times(kept), arrives];
   s.levels = [s.levels(kept), level];
@@ -129,16 +172,41 @@ function s = pass(s, input, time, dt)
     return;
   end
   at = moment(s, input, time, dt);
-@DRIVE@  at.signal = s.p.gain * at.signal;
-@LOAD@  s.velocity = at.signal;
+{% for e in drive %}
+  [at.signal, s] = effect_{{ e.id }}(s, at);
+{% endfor %}
+  at.signal = s.p.gain * at.signal;
+{% if load %}
+  commanded = at.signal;
+  at.position = at.position + 0.5 * dt * (commanded + s.load_adds);
+  at.time = at.time + 0.5 * dt;
+{% for e in load %}
+  [at.signal, s] = effect_{{ e.id }}(s, at);
+{% endfor %}
+  s.load_adds = at.signal - commanded;
+{% endif %}
+  s.velocity = at.signal;
   s.angle = s.angle + s.velocity * dt;
-@LIMITS@  s = measure(s, time, dt);
+{% if limits %}
+  at = moment(s, s.angle, time, dt);
+{% for e in limits %}
+  [at.signal, s] = effect_{{ e.id }}(s, at);
+{% endfor %}
+  if at.signal ~= s.angle
+    s.velocity = 0;
+  end
+  s.angle = at.signal;
+{% endif %}
+  s = measure(s, time, dt);
 end
 
 % Moves the sensor on to the present angle.
 function s = measure(s, time, dt)
   at = moment(s, s.angle, time, dt);
-@SENSOR@  s.measured = at.signal;
+{% for e in sensor %}
+  [at.signal, s] = effect_{{ e.id }}(s, at);
+{% endfor %}
+  s.measured = at.signal;
 end
 
 % What an effect sees of the joint.
@@ -172,4 +240,22 @@ end
 function y = real_pow(x, n)
   y = pick(x >= 0 || n == floor(n), real(x ^ n), NaN);
 end
-@EFFECTS@
+{% for e in effects %}
+
+% {{ e.id }}: {{ e.summary }}
+%   {{ e.equation }}
+function [{{ e.step.result }}, s] = effect_{{ e.id }}(s, at)
+{% for line in e.step.lines %}
+  {{ line }}
+{% endfor %}
+end
+{% if e.settle.lines %}
+
+function s = effect_{{ e.id }}_settle(s, at)
+{% for line in e.settle.lines %}
+  {{ line }}
+{% endfor %}
+end
+{% endif %}
+{% endfor %}
+

@@ -1,6 +1,9 @@
-"""The joint @JOINT@, as a model that stands alone.
+"""The joint {{ joint | plain }}, as a model that stands alone.
 
-@ORIGIN@
+{% for line in origin %}
+{{ line | plain }}
+{% endfor %}
+
     dy/dt = gain * s, where s is the input, delay seconds late, behind its effects
 
 A whole record at once, or sample by sample:
@@ -21,7 +24,11 @@ import numpy as np
 class Parameters:
     """What may be changed."""
 
-@PARAMETERS@
+{% for p in parameters %}
+    #: {{ p.described }}
+    {{ p.name }}: float = {{ p.value }}
+{% endfor %}
+
 
 class _Moment:
     """What an effect sees of the joint."""
@@ -66,7 +73,10 @@ class Model:
         self.since = np.float64(0.0)
         self.coming = deque()
         self.angle = self.velocity = self.measured = self.load_adds = np.float64(0.0)
-@MEMORY@        with np.errstate(all="ignore"):
+{% for name in memory %}
+        self.{{ name }} = np.float64(0.0)
+{% endfor %}
+        with np.errstate(all="ignore"):
             self._settle(self.level, np.float64(output))
 
     def step(self, input):
@@ -84,12 +94,36 @@ class Model:
     def _settle(self, input, output):
         dt = self.period_s
         at = _Moment(self, input, 0.0, dt)
-@SETTLE_DRIVE@        at = _Moment(self, self.angle, 0.0, dt)
-@SETTLE_LIMITS@        self.angle = at.signal
+{% for e in drive %}
+{% if e.settle.lines %}
+        self._effect_{{ e.id }}_settle(at)
+{% endif %}
+        at.signal = self._effect_{{ e.id }}(at)
+{% endfor %}
         at = _Moment(self, self.angle, 0.0, dt)
-@SETTLE_SENSOR@        play = self.angle - at.signal
+{% for e in limits %}
+{% if e.settle.lines %}
+        self._effect_{{ e.id }}_settle(at)
+{% endif %}
+        at.signal = self._effect_{{ e.id }}(at)
+{% endfor %}
+        self.angle = at.signal
+        at = _Moment(self, self.angle, 0.0, dt)
+{% for e in sensor %}
+{% if e.settle.lines %}
+        self._effect_{{ e.id }}_settle(at)
+{% endif %}
+        at.signal = self._effect_{{ e.id }}(at)
+{% endfor %}
+        play = self.angle - at.signal
         at = _Moment(self, output, 0.0, dt)
-@SETTLE_SENSOR@        self.angle = output + play
+{% for e in sensor %}
+{% if e.settle.lines %}
+        self._effect_{{ e.id }}_settle(at)
+{% endif %}
+        at.signal = self._effect_{{ e.id }}(at)
+{% endfor %}
+        self.angle = output + play
         self._measure(0.0, dt)
 
     def _advance(self, input, start, end):
@@ -113,7 +147,13 @@ class Model:
         A change that would act before an earlier one takes its place.
         """
         delay = self.p.delay
-@TRANSPORT@        arrives = now + max(delay, 0.0)
+{% if transport %}
+        at = _Change(self.before, level, now - self.since, self.p.start_s + now)
+{% for e in transport %}
+        delay = delay + self._effect_{{ e.id }}(at)
+{% endfor %}
+{% endif %}
+        arrives = now + max(delay, 0.0)
         while self.coming and self.coming[-1][0] >= arrives:
             self.coming.pop()
         self.coming.append((arrives, level))
@@ -124,16 +164,56 @@ class Model:
         if not dt > 0.0:
             return
         at = _Moment(self, input, time, dt)
-@DRIVE@        at.signal = self.p.gain * at.signal
-@LOAD@        self.velocity = at.signal
+{% for e in drive %}
+        at.signal = self._effect_{{ e.id }}(at)
+{% endfor %}
+        at.signal = self.p.gain * at.signal
+{% if load %}
+        commanded = at.signal
+        at.position = at.position + 0.5 * dt * (commanded + self.load_adds)
+        at.time = at.time + 0.5 * dt
+{% for e in load %}
+        at.signal = self._effect_{{ e.id }}(at)
+{% endfor %}
+        self.load_adds = at.signal - commanded
+{% endif %}
+        self.velocity = at.signal
         self.angle = self.angle + self.velocity * dt
-@LIMITS@        self._measure(time, dt)
+{% if limits %}
+        at = _Moment(self, self.angle, time, dt)
+{% for e in limits %}
+        at.signal = self._effect_{{ e.id }}(at)
+{% endfor %}
+        if at.signal != self.angle:
+            self.velocity = np.float64(0.0)
+        self.angle = at.signal
+{% endif %}
+        self._measure(time, dt)
 
     def _measure(self, time, dt):
         """Moves the sensor on to the present angle."""
         at = _Moment(self, self.angle, time, dt)
-@SENSOR@        self.measured = at.signal
-@EFFECTS@
+{% for e in sensor %}
+        at.signal = self._effect_{{ e.id }}(at)
+{% endfor %}
+        self.measured = at.signal
+{% for e in effects %}
+
+    def _effect_{{ e.id }}(self, at):
+        """{{ e.summary | plain }}: {{ e.equation | plain }}"""
+{% for line in e.step.lines %}
+        {{ line }}
+{% endfor %}
+        return {{ e.step.result }}
+{% if e.settle.lines %}
+
+    def _effect_{{ e.id }}_settle(self, at):
+{% for line in e.settle.lines %}
+        {{ line }}
+{% endfor %}
+{% endif %}
+{% endfor %}
+
 
 def simulate(input, period_s, output=0.0, others=None, parameters=None):
     """The output for each sample of ``input``, an array of NumPy.

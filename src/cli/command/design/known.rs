@@ -12,7 +12,7 @@ use crate::units::SamplePeriod;
 use anyhow::{Context as _, anyhow, bail};
 
 use super::args::Args;
-use crate::cli::args::read_model;
+use crate::cli::args::{read, read_model};
 use crate::cli::run::Estimates;
 
 /// Samples per second where nothing is known.
@@ -42,7 +42,8 @@ pub(crate) const PROTOCOL: Protocol =
 impl Known {
     pub(crate) fn new(args: &Args) -> anyhow::Result<Self> {
         let file = args.model.as_deref().map(read_model).transpose()?.unwrap_or_default();
-        let experiment = read(args)?;
+        let logs = Some(&args.data).filter(|data| !data.is_empty());
+        let experiment = logs.map(|data| read(data, &args.reading.options()?)).transpose()?;
         let first = experiment.iter().flat_map(|e| &e.joints).flat_map(|joint| &joint.trials);
         let logged = first.map(Trial::period).next();
         let given = args
@@ -55,7 +56,7 @@ impl Known {
         let names = names(args, &file, experiment.as_ref())?;
         check_length(args, (&file, &names), period)?;
         check_gains(&file, &names)?;
-        let read = experiment.iter().flat_map(|experiment| &experiment.joints);
+        let joints = experiment.iter().flat_map(|experiment| &experiment.joints);
         let centred = |joint: &Joint| {
             let logged = Logged::of(joint);
             let has_model = file.joint(&joint.name).is_some();
@@ -71,7 +72,7 @@ impl Known {
             };
             (played, logged)
         };
-        let (joints, logged) = read.map(centred).unzip();
+        let (joints, logged) = joints.map(centred).unzip();
         Ok(Self { file, experiment, names, joints, logged, period })
     }
 
@@ -176,14 +177,6 @@ fn check_gains(file: &ModelFile, names: &[String]) -> anyhow::Result<()> {
 fn at_most(logged: SamplePeriod) -> SamplePeriod {
     let usual = SamplePeriod::from_seconds(1.0 / RATE_HZ);
     usual.filter(|usual| usual.seconds() > logged.seconds()).unwrap_or(logged)
-}
-
-/// The logs, where there are any.
-fn read(args: &Args) -> anyhow::Result<Option<Experiment>> {
-    if args.data.is_empty() {
-        return Ok(None);
-    }
-    args.reading.read(&args.data).map(Some)
 }
 
 /// The joints that are driven.

@@ -13,10 +13,10 @@ use anyhow::bail;
 use crate::experiment::ReadOptions;
 use crate::report::{DesignJson, DesignedJoint, design_text, write_input, write_preview};
 
-use crate::cli::console::{Bar, Verbosity, message, warn};
+use crate::cli::console::{Bar, warn};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, read_failures, said};
-use crate::cli::output::{PreviewContents, check_places, check_recordings, write_file};
+use crate::cli::output::{Outputs, PreviewContents, Recorded, check_recordings, write_file};
 
 use known::Known;
 
@@ -33,49 +33,40 @@ impl Args {
             reading: read.map_or(&usual, |experiment| &experiment.options),
             model: self.model.as_deref(),
         };
-        contents.record(path, self.run.verbosity())
-    }
-
-    /// Says which file was written.
-    fn say_written(&self, kind: &str, path: &Path) {
-        if self.run.verbosity() == Verbosity::Normal {
-            message(kind, &path.display().to_string());
-        }
+        Recorded::Preview(contents).record(path, self.run.verbosity())
     }
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let outputs: Vec<_> = args.output.iter().chain(&args.preview).map(PathBuf::as_path).collect();
-    let inputs = args.data.iter().chain(&args.model).filter_map(|path| path.canonicalize().ok());
-    // What it writes has the form of a log, and may be made anew.
-    check_places(&outputs, &inputs.collect::<Vec<_>>())?;
+    let inputs: Vec<PathBuf> = args.data.iter().chain(&args.model).cloned().collect();
+    Outputs { logs: outputs, ..Outputs::default() }.check(&inputs)?;
     if args.preview.as_deref().is_some_and(is_recording) {
         check_recordings()?;
     }
     let (known, joints, failures) = args.run.in_threads(|| {
         let known = Known::new(args)?;
-        if args.run.verbosity() == Verbosity::Normal {
-            let notes = known.experiment.iter().flat_map(|experiment| &experiment.notes);
-            notes.for_each(|note| message("note", note));
+        for note in known.experiment.iter().flat_map(|experiment| &experiment.notes) {
+            args.run.verbosity().say("note", note);
         }
         let (joints, failures) = designed(args, &known)?;
         anyhow::Ok((known, joints, failures))
     })??;
     if let Some(path) = &args.output {
         write_file(path, |file| Ok(write_input(&joints, file)?))?;
-        args.say_written("input", path);
+        args.run.verbosity().say("input", path.display().to_string());
     }
     match args.preview.as_deref() {
         Some(path) if is_recording(path) => args.record(&known, &joints, path)?,
         Some(path) => {
             write_file(path, |file| Ok(write_preview(&joints, file)?))?;
-            args.say_written("preview", path);
+            args.run.verbosity().say("preview", path.display().to_string());
         }
         None => {}
     }
     warn(&failures);
     let json = || DesignJson::new(args.seed, &joints, &failures);
-    args.run.print(|| design_text(&joints), json)?;
+    args.run.format.print(|| design_text(&joints), json)?;
     Ok(Completion::without(&failures))
 }
 

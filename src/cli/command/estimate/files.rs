@@ -1,6 +1,5 @@
 //! The files that `tauscope estimate` writes.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
@@ -9,14 +8,34 @@ use crate::report::{Language, Lookup};
 use crate::report::{decision_table, delay_table, level_table, write_delays, write_review_sheet};
 
 use super::args::OutputArgs;
-use super::estimated::Estimated;
 use crate::cli::console::Verbosity;
 use crate::cli::output::{
-    Contents, CsvText, FileKind, check_beside_parts, check_recorded, check_tables, write_csv,
-    write_file, write_parquet, write_table,
+    Contents, CsvText, FileKind, Outputs, write_bytes, write_csv, write_file, write_parquet,
+    write_table,
 };
 use crate::cli::viewer::Stream;
-use crate::study::{Review, ReviewError};
+use crate::delay::Settings;
+use crate::experiment::Experiment;
+use crate::report::{Against, EstimatedJoint};
+use crate::study::{FileError, OtherResult, Review};
+
+/// The joints that have an estimate with some settings.
+pub(super) type Run<'a> = (&'a Settings, &'a [EstimatedJoint<'a>]);
+
+/// What was read and what came out.
+#[derive(Clone, Copy)]
+pub(super) struct Estimated<'a> {
+    pub(super) experiment: &'a Experiment,
+    /// The answer: what came out by the first method.
+    pub(super) joints: &'a [EstimatedJoint<'a>],
+    pub(super) settings: &'a Settings,
+    /// What came out by each method.
+    pub(super) runs: &'a [Run<'a>],
+    /// What is shown beside the answer.
+    pub(super) others: &'a [OtherResult],
+    /// How it differs from the answer.
+    pub(super) against: &'a [Against<'a>],
+}
 
 /// The files that were asked for, found to be writable before the work starts.
 pub(crate) struct Files<'a> {
@@ -31,17 +50,15 @@ impl<'a> Files<'a> {
         inputs: &[PathBuf],
         text: CsvText,
     ) -> anyhow::Result<Self> {
-        let tables = [&args.decisions, &args.delays, &args.table, &args.review_sheet];
-        let others = [&args.export].into_iter().chain(tables);
-        let others: Vec<&Path> = others.flatten().map(PathBuf::as_path).collect();
-        check_recorded(args.recording.as_deref(), &others, inputs)?;
+        let given = |path: &'a Option<PathBuf>| path.as_deref();
+        let tables = [&args.decisions, &args.delays, &args.table].into_iter().filter_map(given);
+        let files = [&args.export, &args.review_sheet].into_iter().filter_map(given);
+        let (tables, files) = (tables.collect(), files.collect());
+        let recording = args.recording.as_deref();
+        Outputs { recording, tables, files, ..Outputs::default() }.check(inputs)?;
         if let Some(sheet) = &args.review_sheet {
             check_sheet(sheet)?;
         }
-        if let Some(recording) = &args.recording {
-            check_beside_parts(recording, &others)?;
-        }
-        check_tables(args.decisions.iter().chain(&args.delays).chain(&args.table))?;
         args.export.as_deref().map(named_lookup).transpose()?;
         Ok(Self { args, text })
     }
@@ -87,19 +104,11 @@ impl<'a> Files<'a> {
         if let Some(path) = self.args.export.as_ref().filter(|_| !lookup(result).is_empty()) {
             let (language, name) = named_lookup(path)?;
             let source = language.source(&lookup(result), name)?;
-            write_file(path, |file| Ok(file.write_all(source.as_bytes())?))?;
+            write_bytes(path, source)?;
         }
-        let contents = Contents {
-            command: "estimate",
-            joints: result.joints,
-            settings: result.settings,
-            also: result.others,
-            sources: &result.experiment.sources,
-            reading: &result.experiment.options,
-            models: &[],
-            revisions: &[],
-            detail: self.args.detail,
-        };
+        let delays = (result.joints, result.settings);
+        let contents = Contents::of_delays("estimate", result.experiment, delays);
+        let contents = Contents { also: result.others, detail: self.args.detail, ..contents };
         if let Some(path) = &self.args.recording {
             contents.record(path, verbosity)?;
         }
@@ -139,7 +148,7 @@ fn check_sheet(sheet: &Path) -> anyhow::Result<()> {
         && match Review::read(sheet) {
             Ok(review) => !review.is_empty(),
             // One that was misspelt was written by a person, too; another table is no sheet.
-            Err(error) => matches!(error, ReviewError::Cell { .. }),
+            Err(error) => matches!(error, FileError::Wrong { place, .. } if !place.is_empty()),
         };
     if is_filled_in {
         let sheet = sheet.display();

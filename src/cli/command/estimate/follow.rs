@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use super::args::{Args, FollowArgs};
 use crate::cli::args::{Format, OwnSettings};
-use crate::cli::console::{self, Interrupt, Verbosity, message};
+use crate::cli::console::{self, Interrupt, message};
 use crate::cli::failure::said;
 use crate::cli::output::Contents;
 use crate::cli::viewer::Stream;
@@ -82,113 +82,86 @@ fn watch(
 struct Followed {
     path: PathBuf,
     options: ReadOptions,
-    /// Bytes of the log that were read.
-    read: u64,
-    /// The last of them, by which the log is known again.
-    tail: Vec<u8>,
-    copy: Copied,
-}
-
-/// What has come of a log: of a text its whole lines, else all of it.
-struct Copied {
-    /// Holds it, in a file with the log's name.
-    _folder: tempfile::TempDir,
-    file: PathBuf,
-    /// Whether something was written to the file.
-    is_begun: bool,
+    /// What was read of the log.
+    seen: Vec<u8>,
+    /// Bytes of it that are in the copy: of a text its whole lines, else all of it.
+    whole: usize,
     /// What ends a line of the log: nothing where it is no text.
     line_end: &'static [u8],
-    /// What has come behind the last whole line.
-    rest: Vec<u8>,
-}
-
-impl Copied {
-    fn of(path: &Path) -> anyhow::Result<Self> {
-        let folder = tempfile::tempdir().context("no temporary folder can be made")?;
-        let file = folder.path().join(path.file_name().unwrap_or_default());
-        Ok(Self { _folder: folder, file, is_begun: false, line_end: b"", rest: Vec::new() })
-    }
-
-    /// Takes in what has come; whether that made a line whole, or the log has none.
-    fn push(&mut self, bytes: &[u8]) -> anyhow::Result<bool> {
-        self.rest.extend_from_slice(bytes);
-        if !self.is_begun {
-            self.line_end = line_end_of(&self.file, &self.rest);
-        }
-        let whole = match self.line_end.len() {
-            0 => self.rest.len(),
-            // A line feed of UTF-16 has two bytes, and begins at an even one.
-            width => {
-                let end = self.rest.chunks(width).rposition(|letter| letter == self.line_end);
-                end.map_or(0, |end| (end + 1) * width)
-            }
-        };
-        if whole == 0 {
-            return Ok(false);
-        }
-        let mut copy = File::options().create(true).append(true).open(&self.file)?;
-        copy.write_all(self.rest.get(..whole).unwrap_or_default())?;
-        self.rest.drain(..whole);
-        self.is_begun = true;
-        Ok(true)
-    }
-
-    fn is_text(&self) -> bool {
-        !self.line_end.is_empty()
-    }
+    /// Holds the copy, a file with the log's name.
+    _folder: tempfile::TempDir,
+    copy: PathBuf,
 }
 
 impl Followed {
     fn of(path: &Path, args: &Args) -> anyhow::Result<Self> {
-        let (options, copy) = (args.data.options()?, Copied::of(path)?);
-        Ok(Self { path: path.to_owned(), options, read: 0, tail: Vec::new(), copy })
+        let folder = tempfile::tempdir().context("no temporary folder can be made")?;
+        let copy = folder.path().join(path.file_name().unwrap_or_default());
+        let (path, options, seen) = (path.to_owned(), args.data.options()?, Vec::new());
+        Ok(Self { path, options, seen, whole: 0, line_end: b"", _folder: folder, copy })
     }
 
     /// Takes in what has come since; whether that made a line of a text whole. A log that is not there
     /// yet may come.
     fn catch_up(&mut self) -> anyhow::Result<bool> {
-        self.news()?.map_or(Ok(false), |bytes| self.copy.push(&bytes))
+        if !self.has_grown()? {
+            return Ok(false);
+        }
+        if self.whole == 0 {
+            self.line_end = line_end_of(&self.copy, &self.seen);
+        }
+        let whole = match self.line_end.len() {
+            0 => self.seen.len(),
+            // A line feed of UTF-16 has two bytes, and begins at an even one.
+            width => {
+                let end = self.seen.chunks(width).rposition(|letter| letter == self.line_end);
+                end.map_or(0, |end| (end + 1) * width)
+            }
+        };
+        let news = self.seen.get(self.whole..whole).filter(|news| !news.is_empty());
+        let Some(news) = news else { return Ok(false) };
+        File::options().create(true).append(true).open(&self.copy)?.write_all(news)?;
+        self.whole = whole;
+        Ok(true)
     }
 
-    /// What was appended since the last look; nothing else is read.
-    fn news(&mut self) -> anyhow::Result<Option<Vec<u8>>> {
+    /// Reads what was appended since the last look, and nothing else but the end of what was there before;
+    /// whether there is any.
+    fn has_grown(&mut self) -> anyhow::Result<bool> {
         let name = self.path.display();
+        let unread = || format!("{name}: cannot be read");
+        let read = self.seen.len() as u64;
         // To open a pipe would wait for who writes into it.
-        if self.read > 0 && self.path.metadata().is_ok_and(|found| !found.is_file()) {
+        if read > 0 && self.path.metadata().is_ok_and(|found| !found.is_file()) {
             bail!("{name}: it is no file any more; run the command again");
         }
         let mut file = match File::open(&self.path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound && self.read == 0 => {
-                return Ok(None);
-            }
-            opened => opened.with_context(|| format!("{name}: cannot be read"))?,
+            Err(error) if error.kind() == io::ErrorKind::NotFound && read == 0 => return Ok(false),
+            opened => opened.with_context(unread)?,
         };
-        let length = file.metadata().with_context(|| format!("{name}: cannot be read"))?.len();
-        if length < self.read {
+        let length = file.metadata().with_context(unread)?.len();
+        if length < read {
             bail!("{name}: it became shorter while it was followed; run the command again");
         }
-        let start = self.read - self.tail.len() as u64;
-        let mut bytes = Vec::new();
+        let tail = self.seen.split_off(self.seen.len().saturating_sub(TAIL));
+        let start = self.seen.len() as u64;
         file.seek(SeekFrom::Start(start))
-            .and_then(|_| file.take(length - start).read_to_end(&mut bytes))
-            .with_context(|| format!("{name}: cannot be read"))?;
+            .and_then(|_| file.take(length - start).read_to_end(&mut self.seen))
+            .with_context(unread)?;
         // Another log under the name would be read from its middle on.
-        let Some(news) = bytes.strip_prefix(&*self.tail) else {
+        let known = usize::try_from(start).ok().and_then(|start| self.seen.get(start..));
+        if !known.is_some_and(|known| known.starts_with(&tail)) {
             bail!("{name}: another log took its place while it was followed; run the command again")
-        };
-        let news = news.to_vec();
-        self.read += news.len() as u64;
-        bytes.drain(..bytes.len().saturating_sub(TAIL));
-        self.tail = bytes;
-        Ok((!news.is_empty()).then_some(news))
+        }
+        Ok(self.seen.len() as u64 > read)
     }
 
     /// What its whole lines say, or all of it where it has none; joints that say nothing yet are left out.
     fn experiment(&self) -> Experiment {
         let mut options = self.options.clone();
         // What is reported of a text stands: nothing may depend on rows that are still to come.
-        options.repair.as_it_stands |= self.copy.is_text();
-        let mut experiment = Experiment::read(std::slice::from_ref(&self.copy.file), &options);
+        options.repair.as_it_stands |= !self.line_end.is_empty();
+        let mut experiment = Experiment::read(std::slice::from_ref(&self.copy), &options);
         for source in &mut experiment.sources {
             source.path.clone_from(&self.path);
         }
@@ -197,7 +170,7 @@ impl Followed {
 
     /// An error on a copy, as one on the log.
     fn named(&self, error: &str) -> String {
-        error.replace(&self.copy.file.display().to_string(), &self.path.display().to_string())
+        error.replace(&self.copy.display().to_string(), &self.path.display().to_string())
     }
 }
 
@@ -247,18 +220,8 @@ impl Reported {
         if joints.is_empty() {
             return Ok(());
         }
-        let contents = Contents {
-            command: "estimate",
-            also: &[],
-            joints: &joints,
-            settings,
-            sources: &experiment.sources,
-            reading: &experiment.options,
-            models: &[],
-            revisions: &[],
-            detail: args.output.detail,
-        };
-        stream.send(&contents, None)
+        let contents = Contents::of_delays("estimate", &experiment, (&joints, settings));
+        stream.send(&Contents { detail: args.output.detail, ..contents }, None)
     }
 
     fn report_joint(
@@ -292,9 +255,9 @@ impl Reported {
     fn say_failures(&mut self, args: &Args, experiment: &Experiment, log: &Followed) {
         let failures = experiment.failures.iter();
         let failures: Vec<_> = failures.map(|f| log.named(&said(&f.error))).collect();
-        if args.output.run.verbosity() == Verbosity::Normal && failures != self.failures {
+        if failures != self.failures {
             for failure in &failures {
-                message("waiting", failure);
+                args.output.run.verbosity().say("waiting", failure);
             }
         }
         self.failures = failures;
@@ -368,7 +331,7 @@ mod tests {
         assert!(log.catch_up().unwrap());
         let mut samples = 0_u32;
         for rows in [20_000, 1, 0, 3] {
-            let before = log.read;
+            let before = log.seen.len();
             let rows_of = samples..samples + rows;
             let lines: Vec<_> = rows_of.map(|k| format!("{k},{},{k}.5\n", k / 50)).collect();
             let text = lines.concat();
@@ -376,10 +339,10 @@ mod tests {
             let (whole, rest) = text.split_at(text.len().saturating_sub(3));
             file.write_all(whole.as_bytes()).unwrap();
             assert_eq!(log.catch_up().unwrap(), rows > 1);
-            assert_eq!(log.read - before, whole.len() as u64);
+            assert_eq!(log.seen.len() - before, whole.len());
             file.write_all(rest.as_bytes()).unwrap();
             assert_eq!(log.catch_up().unwrap(), rows > 0);
-            assert_eq!(log.read - before, text.len() as u64);
+            assert_eq!(log.seen.len() - before, text.len());
             samples += rows;
             assert_eq!(log.experiment().joints[0].trials[0].len(), samples as usize);
         }
@@ -395,7 +358,7 @@ mod tests {
         file.write_all(b"b\nc").unwrap();
         assert!(log.catch_up().unwrap());
         assert!(!log.catch_up().unwrap(), "nothing came");
-        assert_eq!(std::fs::read(&log.copy.file).unwrap(), b"ab\nc");
+        assert_eq!(std::fs::read(&log.copy).unwrap(), b"ab\nc");
         let failures = log.experiment().failures;
         let told = log.named(&failures[0].error.to_string());
         assert!(told.starts_with(&path.display().to_string()), "{told}");

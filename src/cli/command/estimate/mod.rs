@@ -1,7 +1,6 @@
 //! `tauscope estimate`: read, estimate, write, print.
 
 mod args;
-mod estimated;
 mod files;
 mod follow;
 
@@ -13,8 +12,7 @@ use crate::delay::{CandidateLines, Settings};
 use crate::report::{
     EstimateJson, against_table, against_text, delay_levels_text, estimate_table, steps_table,
 };
-use estimated::{Estimated, Run};
-use files::Files;
+use files::{Estimated, Files, Run};
 
 pub(crate) use args::Args;
 
@@ -35,18 +33,15 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let stream = args.output.stream.open(verbosity)?;
     let followed =
         args.follow.is_on.then(|| follow::follow(args, &settings, &stream)).transpose()?;
-    let session = Session::begin("estimate", &args.data, &args.output.run, stream)?;
+    let options = args.data.options()?;
+    let session = Session::begin("estimate", &args.data, &options, (&args.output.run, stream))?;
     let session = session.reviewed(review);
     let experiment = &session.experiment;
     let settings: Vec<_> = settings.iter().map(|one| session.in_samples(one)).collect();
-    let work = || session.estimates_by_each(&settings, args.algorithm.automatic());
-    let results = session.in_threads(work)?;
-    let others = others(
-        &session,
-        (&args.against, &args.data),
-        (&settings, args.algorithm.automatic()),
-        &results,
-    )?;
+    let automatic = args.algorithm.automatic();
+    let results = session.in_threads(|| session.estimates(&settings, automatic))?;
+    let asked = (settings.as_slice(), automatic);
+    let others = others(&session, (&args.against, &args.data), asked, &results)?;
     let mut failures = results.first().map_or_else(Vec::new, |first| failures(experiment, first));
     let joints: Vec<_> = results.iter().map(|results| estimated(experiment, results)).collect();
     let runs: Vec<Run<'_>> =

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 
-use super::target::{OutputParts, Target};
 use crate::cli::args::{
     AgainstArgs, AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, ReviewArgs, RunArgs,
 };
@@ -106,15 +105,5 @@ impl OutputArgs {
     pub(super) fn heading(&self) -> Heading<'_> {
         let Self { title, author, date, .. } = self;
         Heading { title: title.as_deref(), author: author.as_deref(), date: date.as_deref() }
-    }
-
-    /// Where the results go; nowhere where no file is named.
-    pub(super) fn target(&self) -> anyhow::Result<Option<Target>> {
-        let parts = OutputParts {
-            embedded: self.embed,
-            recorded: !self.no_recording,
-            reviewed: self.interactive,
-        };
-        self.report.as_deref().map(|path| Target::of(path, parts)).transpose()
     }
 }

@@ -6,25 +6,21 @@ use std::path::PathBuf;
 use super::args::Args;
 use super::target::Target;
 use crate::cli::args::{DataArgs, Format};
-use crate::cli::console::{self, Verbosity};
-use crate::cli::run::{StudyContext, estimated};
+use crate::cli::console;
+use crate::cli::run::{Study, estimated};
 use crate::cli::typed::quoted;
 use crate::report::{Report, estimate_table, extent_table, improve_text};
 
 /// Prints what was measured and its delays, as soon as they are known: models take longer.
-pub(super) fn show_delays(args: &Args, context: StudyContext<'_>) -> anyhow::Result<()> {
+pub(super) fn show_delays(args: &Args, study: &Study<'_>) -> anyhow::Result<()> {
     if args.output.run.format == Format::Json {
         return Ok(());
     }
-    let joints = estimated(context.experiment(), context.estimates);
-    let extent = extent_table(context.joints);
-    console::print(&format!("{extent}\n{}\n", estimate_table(&joints, context.settings)))?;
-    if context.verbosity() == Verbosity::Normal {
-        console::message(
-            "improving",
-            "looks for what a model lacks; Ctrl-C ends it with what was found",
-        );
-    }
+    let joints = estimated(study.experiment(), &study.estimates);
+    let extent = extent_table(study.joints());
+    console::print(&format!("{extent}\n{}\n", estimate_table(&joints, &study.settings)))?;
+    let said = "looks for what a model lacks; Ctrl-C ends it with what was found";
+    study.verbosity().say("improving", said);
     Ok(())
 }
 

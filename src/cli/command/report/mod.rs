@@ -10,7 +10,7 @@ use std::path::Path;
 use crate::batch::Threads;
 use crate::delay::Automatic;
 use crate::experiment::{Joint, Source};
-use crate::explain::{Change, Explanation, Improvement, Options, Revision, Verdict};
+use crate::explain::{Improvement, Options, Revision, Verdict};
 use crate::model::{LogHash, ModelFile};
 use crate::report::{
     EstimatedJoint, ImprovedJoint, RecordingFile, Report, ReportJson, report_text, review_page,
@@ -19,15 +19,16 @@ use crate::study::{Known, Mode, OfJoints, explain_unknown_joints, improve_joints
 use anyhow::{Context as _, bail};
 pub(crate) use args::Args;
 use args::ModelArgs;
-use target::{Target, file_name, write_text};
+use target::{Target, file_name};
 
-use crate::cli::args::{name_of, note_missing, read_model};
+use crate::cli::args::{add_arguments, name_of, note_missing, read_model};
 use crate::cli::console::{Bar, Interrupt, STOPPING, Verbosity, message};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, said};
+use crate::cli::output::write_bytes;
 use crate::cli::run::{
-    self, Progress, Session, Study, StudyContext, add_arguments, compared, estimate_at, estimated,
-    improved, log_hashes, others, revised,
+    self, Progress, Session, Start, Study, as_it_is, compared, estimated, log_hashes, others,
+    revised,
 };
 use crate::cli::typed::quoted;
 
@@ -38,7 +39,7 @@ const EMBEDDED: u64 = 8 * 1024 * 1024;
 pub(crate) const BESIDE_THE_LOG: &str = ".";
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
-    report(args, args.output.target()?.as_ref(), Shown::Sentences)
+    report(args, Target::of(&args.output)?.as_ref(), Shown::Sentences)
 }
 
 /// `tauscope LOG`: shows in the terminal what a report says. The report, with the recording, is
@@ -57,7 +58,7 @@ pub(crate) fn first_look(args: &mut Args) -> anyhow::Result<Completion> {
             logs => bail!("-o: of {} logs the report needs a name: `-o FILE.html`", logs.len()),
         }
     }
-    let target = args.output.target()?;
+    let target = Target::of(&args.output)?;
     report(args, target.as_ref(), Shown::Everything)
 }
 
@@ -83,22 +84,20 @@ fn report(args: &Args, target: Option<&Target>, shown: Shown) -> anyhow::Result<
     }
     let review = args.review.read()?;
     let stream = args.output.stream.open(args.output.run.verbosity())?;
-    let session = Session::with_others("report", &args.data, &args.output.run, stream)?;
-    let session = session.reviewed(review);
+    let reading = args.data.options_with_others()?;
+    let session = Session::begin("report", &args.data, &reading, (&args.output.run, stream))?;
+    let mut session = session.reviewed(review);
     let asked = (std::slice::from_ref(&settings), Automatic::default());
-    let others = others(&session, (&args.against, &args.data), asked, &[])?;
-    let session = session.with_results(others);
-    let study = Study::of(session, &settings, |context| {
-        if shown == Shown::Everything {
-            first_look::show_delays(args, context)?;
-        }
-        anyhow::Ok(args.model.improved(&file, context, &options))
-    })?;
-    let study = study.transpose()?;
-    if study.result.is_some() {
-        note_missing(&file, &study.experiment().joints, study.verbosity());
+    session.beside = others(&session, (&args.against, &args.data), asked, &[])?;
+    let study = Study::of(session, &settings)?;
+    if shown == Shown::Everything {
+        first_look::show_delays(args, &study)?;
     }
-    Reported { args, file: &file, study: &study, shown }.report(target)
+    let models = args.model.improved(&file, &study, &options)?;
+    if models.is_some() {
+        note_missing(&file, study.joints(), study.verbosity());
+    }
+    Reported { args, file: &file, study: &study, shown }.report(models.as_ref(), target)
 }
 
 impl ModelArgs {
@@ -113,34 +112,34 @@ impl ModelArgs {
     }
 
     /// The model of each joint with what it lacks; none where no model is asked for.
-    fn improved(
+    fn improved<'a>(
         &self,
         file: &ModelFile,
-        context: StudyContext<'_>,
+        study: &'a Study<'_>,
         options: &Options,
-    ) -> Option<Improved> {
-        let (joints, estimates) = (context.joints, context.estimates);
+    ) -> anyhow::Result<Option<Improved<'a>>> {
+        let (joints, estimates) = (study.joints(), &study.estimates);
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
         let protocol = self.protocol.with(Mode::FitOrIntegrator);
-        if self.improve {
-            let bar = context.bar("improving");
-            let interrupt = Some(Interrupt::watch(STOPPING));
-            let progress = Progress::new(file, joints, context.verbosity(), interrupt);
-            let done = |index, revision: &Revision| progress.done(index, revision);
-            let protocol = protocol.watched(&bar).beside(context.others);
-            let improved =
-                improve_joints(joints, estimates, starts, protocol, options, done, &Threads);
-            return Some((improved, progress.stopped()));
-        }
-        self.model.as_ref()?;
-        let bar = context.bar("explaining");
-        let protocol = protocol.watched(&bar).beside(context.others);
-        let known = |joint: &Joint| known(file, joint, &context.experiment().sources);
-        let explained =
-            explain_unknown_joints(joints, estimates, starts, known, protocol, options, &Threads);
-        let one = |found: Option<Result<_, _>>| Some(found?.map(as_it_is));
-        let stopped = vec![false; joints.len()];
-        Some((explained.into_iter().map(one).collect(), stopped))
+        let interrupt = self.improve.then(|| Interrupt::watch(STOPPING));
+        let progress = Progress::new(file, joints, study.verbosity(), interrupt);
+        let done = |index, revision: &Revision| progress.done(index, revision);
+        let models = if self.improve {
+            study.work("improving", |bar, others| {
+                let protocol = protocol.watched(bar).beside(others);
+                improve_joints(joints, estimates, starts, protocol, options, done, &Threads)
+            })?
+        } else if self.model.is_some() {
+            let known = |joint: &Joint| known(file, joint, &study.experiment().sources);
+            let explained = study.work("explaining", |bar, others| {
+                let watched = protocol.watched(bar).beside(others);
+                explain_unknown_joints(joints, estimates, starts, known, watched, options, &Threads)
+            })?;
+            explained.into_iter().map(|found| Some(found?.map(as_it_is))).collect()
+        } else {
+            return Ok(None);
+        };
+        Ok(Some((models, progress)))
     }
 }
 
@@ -156,27 +155,24 @@ fn known(file: &ModelFile, joint: &Joint, sources: &[Source]) -> Option<Known> {
     Some(Known { rmse, verdict: Verdict::by_id(fitted.verdict.as_deref()?)? })
 }
 
-/// A model and what it lacks, as the only revision.
-fn as_it_is(explanation: Explanation) -> Improvement {
-    let Explanation { base, verdict, ranking, attribution } = explanation;
-    let revisions = vec![Revision { change: Change::Start, comparison: base, ranking }];
-    Improvement { revisions, verdict, attribution }
-}
-
-/// The models of all joints, and which of them somebody stopped.
-type Improved = (OfJoints<Improvement>, Vec<bool>);
+/// The models of all joints, and who watched them.
+type Improved<'a> = (OfJoints<Improvement>, Progress<'a>);
 
 /// What is asked, and what came of it.
 struct Reported<'a> {
     args: &'a Args,
     file: &'a ModelFile,
-    study: &'a Study<'a, Option<Improved>>,
+    study: &'a Study<'a>,
     shown: Shown,
 }
 
 impl Reported<'_> {
     /// Writes the report of what was found.
-    fn report(&self, target: Option<&Target>) -> anyhow::Result<Completion> {
+    fn report(
+        &self,
+        found: Option<&Improved<'_>>,
+        target: Option<&Target>,
+    ) -> anyhow::Result<Completion> {
         let Self { args, file, study, .. } = *self;
         let experiment = study.experiment();
         let name = name_of(args.model.model.as_deref());
@@ -190,23 +186,20 @@ impl Reported<'_> {
             model.map_or_else(|| "model.toml".to_owned(), |path| path.display().to_string());
         let protocol = &args.model.protocol;
         let arguments = add_arguments(&args.data, protocol, &model, &experiment.joints);
+        let estimates = &study.estimates;
+        let start = Start { file, model: &name, arguments: &arguments, estimates };
         let mut models = Vec::new();
-        let joints_of_models = experiment.joints.iter().zip(&arguments);
-        let results =
-            study.result.iter().flat_map(|(results, stopped)| results.iter().zip(stopped));
-        for ((joint, arguments), (index, (result, stopped))) in
-            joints_of_models.zip(results.enumerate())
-        {
-            match result {
-                Some(Ok(found)) => {
-                    let delays = estimate_at(&study.estimates, index);
-                    let improved = improved(file, &name, joint, (found, delays), arguments);
-                    models.extend(improved.map(|it| if *stopped { it.stopped() } else { it }));
+        if let Some((results, progress)) = found {
+            for (index, (joint, result)) in study.joints().iter().zip(results).enumerate() {
+                match result {
+                    Some(Ok(found)) => {
+                        models.extend(progress.improved(start, index, joint, found));
+                    }
+                    Some(Err(error)) => {
+                        failures.push(format!("joint `{}`: no model: {}", joint.name, said(error)));
+                    }
+                    None => {}
                 }
-                Some(Err(error)) => {
-                    failures.push(format!("joint `{}`: no model: {}", joint.name, said(error)));
-                }
-                None => {}
             }
         }
         self.write(&joints, &models, &failures, target)
@@ -246,11 +239,9 @@ impl Reported<'_> {
             notes: &notes,
             failures,
         };
-        if study.verbosity() == Verbosity::Normal {
-            // Those on the logs are said at the end, as by every command.
-            for note in notes.iter().skip(experiment.notes.len()) {
-                message("note", note);
-            }
+        // Those on the logs are said at the end, as by every command.
+        for note in notes.iter().skip(experiment.notes.len()) {
+            study.verbosity().say("note", note);
         }
         if let Some(target) = target {
             write_files(&report, target, study.verbosity())?;
@@ -273,10 +264,8 @@ impl Reported<'_> {
         models: &[ImprovedJoint<'_>],
         target: Option<&Target>,
     ) -> anyhow::Result<Option<Vec<u8>>> {
-        let names = run::revision_names(models);
-        let compared: Vec<_> = models.iter().flat_map(|joint| run::models(joint, &names)).collect();
         let path = target.and_then(|target| target.recording.as_deref());
-        self.study.record(path, &compared, models)?;
+        self.study.record_revisions(path, models)?;
         let Some(path) = path.filter(|_| self.args.output.embed) else {
             return Ok(None);
         };
@@ -292,7 +281,9 @@ impl Reported<'_> {
 
     /// The model file with the fitted models in it.
     fn revised(&self, models: &[ImprovedJoint<'_>]) -> anyhow::Result<ModelFile> {
-        let mut file = revised(self.file, models, &self.study.experiment().sources)?;
+        let sources = &self.study.experiment().sources;
+        let judged = |joint: &ImprovedJoint<'_>| Some(joint.finding.verdict);
+        let mut file = revised(self.file, models, sources, judged)?;
         for joint in models.iter().filter(|joint| joint.revisions.len() == 1) {
             let compared = &joint.finding.compared;
             file = file.refitted(&compared.joint.name, &compared.comparison.fit.model)?;
@@ -307,14 +298,12 @@ fn write_files(report: &Report<'_>, target: &Target, verbosity: Verbosity) -> an
         let _bar = Bar::spinner(verbosity, "writing the report");
         target.write(&report.document()?)?;
         if let Some(path) = &target.review {
-            write_text(path, &review_page(report)?)?;
+            write_bytes(path, review_page(report)?)?;
         }
     }
-    if verbosity == Verbosity::Normal {
-        message("report", &target.path.display().to_string());
-        if let Some(path) = &target.review {
-            message("review", &format!("{}; open it in a browser", path.display()));
-        }
+    verbosity.say("report", target.path.display().to_string());
+    if let Some(path) = &target.review {
+        verbosity.say("review", format!("{}; open it in a browser", path.display()));
     }
     Ok(())
 }

@@ -2,12 +2,12 @@
 
 use std::ffi::OsStr;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 
-use crate::cli::output::{check_outputs, write_file};
+use super::args::OutputArgs;
+use crate::cli::output::{Outputs, write_bytes};
 use crate::report::Document;
 
 /// Where the report and its recording go.
@@ -25,45 +25,33 @@ enum Kind {
     Markdown,
 }
 
-/// What is made beside the report itself.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct OutputParts {
-    /// The recording is put into the page.
-    pub(super) embedded: bool,
-    /// There is a recording.
-    pub(super) recorded: bool,
-    /// There is a page to review the decisions on.
-    pub(super) reviewed: bool,
-}
-
 impl Target {
-    /// The files that `path` stands for. Into the page goes the recording where it is to be `embedded`.
-    pub(super) fn of(
-        path: &Path,
-        OutputParts { embedded, recorded, reviewed }: OutputParts,
-    ) -> anyhow::Result<Self> {
+    /// The files that were asked for; none where the report has no name.
+    pub(super) fn of(args: &OutputArgs) -> anyhow::Result<Option<Self>> {
+        let Some(path) = args.report.as_deref() else { return Ok(None) };
         let kind = match path.extension().and_then(OsStr::to_str) {
             Some("html" | "htm") => Kind::Page,
             Some("md") => Kind::Markdown,
             _ => bail!("{}: a report is called FILE.html or FILE.md", path.display()),
         };
         let has_recordings = cfg!(feature = "rrd");
-        if embedded && kind == Kind::Markdown {
+        if args.embed && kind == Kind::Markdown {
             bail!("--embed needs a page: Markdown cannot hold a file; use `-o FILE.html`");
         }
-        if embedded && !has_recordings {
+        if args.embed && !has_recordings {
             bail!("this program was built without recordings: build it with feature `rrd`");
         }
-        let recording = (has_recordings && recorded).then(|| path.with_extension("rrd"));
-        let review = reviewed.then(|| beside(path, "_review.html"));
-        Ok(Self { path: path.to_owned(), kind, recording, review })
+        let has_recording = has_recordings && !args.no_recording;
+        let recording = has_recording.then(|| path.with_extension("rrd"));
+        let review = args.interactive.then(|| beside(path, "_review.html"));
+        Ok(Some(Self { path: path.to_owned(), kind, recording, review }))
     }
 
     /// Refuses what cannot be written.
     pub(super) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
-        let outputs = [self.path.as_path()].into_iter().chain(self.recording.as_deref());
-        let outputs = outputs.chain(self.review.as_deref());
-        check_outputs(&outputs.collect::<Vec<_>>(), inputs)?;
+        let files = [Some(&self.path), self.recording.as_ref(), self.review.as_ref()];
+        let files = files.into_iter().flatten().map(PathBuf::as_path).collect();
+        Outputs { files, ..Outputs::default() }.check(inputs)?;
         let folder = self.folder();
         if self.kind == Kind::Markdown && folder.exists() && !folder.is_dir() {
             bail!("{}: the drawings need a folder of this name", folder.display());
@@ -101,12 +89,12 @@ impl Target {
                         let place = place.display();
                         bail!("{place}: a link, and drawings are files of their own; remove it");
                     }
-                    write_text(&place, drawing)?;
+                    write_bytes(&place, drawing)?;
                 }
                 markdown.text
             }
         };
-        write_text(&self.path, &text)
+        write_bytes(&self.path, &text)
     }
 }
 
@@ -114,10 +102,6 @@ impl Target {
 fn beside(path: &Path, ending: &str) -> PathBuf {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!("{stem}{ending}"))
-}
-
-pub(super) fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
-    write_file(path, |file| Ok(file.write_all(text.as_bytes())?))
 }
 
 pub(super) fn file_name(path: &Path) -> String {

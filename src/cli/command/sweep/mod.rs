@@ -10,16 +10,17 @@ use crate::delay::{Automatic, EstimateError, Method, Settings};
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::numerics::LowPass;
 use crate::report::{ReportedSweep, StepsShown, SweepJson, sweep_text};
-use crate::study::{SweptJoint, sweep_each};
+use crate::study::{SweptJoint, sweep_joints};
 use crate::units::Length;
 use anyhow::bail;
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{ConditionArgs, DataArgs, Passband, RunArgs, ids_with, number};
+use crate::cli::args::number::{self, OrNone};
+use crate::cli::args::{ConditionArgs, DataArgs, RunArgs, ids_with, low_pass};
 use crate::cli::console::Bar;
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures, said};
-use crate::cli::output::{SweepContents, check_recorded};
+use crate::cli::output::{Outputs, Recorded, SweepContents};
 use crate::cli::run::Session;
 use crate::cli::viewer::StreamArgs;
 use values::{Values, lengths, methods, passbands};
@@ -45,7 +46,7 @@ pub(crate) struct Args {
     beta: Values<Length>,
 
     #[arg(long, help = format!("Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none]; for `{}` alone", ids_with(|spec| !spec.has_intervals)), value_name = "LIST", value_parser = passbands, allow_hyphen_values = true)]
-    passband: Option<Values<Passband>>,
+    passband: Option<Values<OrNone>>,
 
     /// Delays that differ by so many samples more than β or their intervals allow still agree
     #[arg(long, value_name = "SAMPLES", default_value_t = 2.0, value_parser = number::threshold, allow_negative_numbers = true)]
@@ -85,9 +86,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let verbosity = args.output.run.verbosity();
     let grid = args.grid()?;
     let recording = args.output.recording.as_deref();
-    check_recorded(recording, &[], &args.data.files())?;
+    Outputs { recording, ..Outputs::default() }.check(&args.data.files())?;
     let stream = args.output.stream.open(verbosity)?;
-    let session = Session::begin("sweep", &args.data, &args.output.run, stream)?;
+    let session =
+        Session::begin("sweep", &args.data, &args.data.options()?, (&args.output.run, stream))?;
     let experiment = &session.experiment;
     let joints = &experiment.joints;
     if recording.is_some() && joints.len() > MOST_RECORDED {
@@ -107,7 +109,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         session.own().of_joint(joint, &(settings.clone(), Automatic::default())).0
     };
     let of_joint = |joint: &Joint| grid.with_settings(|settings| own(joint, settings));
-    let work = || sweep_each(joints, of_joint, args.tolerance, || bar.step(), &Threads);
+    let work = || sweep_joints(joints, of_joint, args.tolerance, || bar.step(), &Threads);
     let results = session.in_threads(work)?;
     drop(bar);
     let failures = failures(experiment, &grid, &results);
@@ -127,7 +129,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         reading: &experiment.options,
     };
     if let Some(path) = recording {
-        contents.record(path, verbosity)?;
+        Recorded::Sweep(&contents).record(path, verbosity)?;
     }
     session.stream.send_sweep(&contents)?;
     let shown = if args.output.steps { StepsShown::All } else { StepsShown::Worst };
@@ -159,28 +161,24 @@ fn fitting<'a>(grid: &Grid, trials: impl Iterator<Item = &'a Trial>) -> (Grid, V
 
 /// A message on each file, joint and setting that failed.
 fn failures(experiment: &Experiment, grid: &Grid, results: &[JointResult]) -> Vec<String> {
+    let all = grid.runs().len();
     let of_joint = |(joint, result): (&Joint, &JointResult)| {
         let name = &joint.name;
-        match result {
-            Err(error) => vec![joint_left_out(name, error)],
-            Ok(swept) => {
-                let mut different: Vec<&EstimateError> = Vec::new();
-                for (_, error) in &swept.failed {
-                    if !different.contains(&error) {
-                        different.push(error);
-                    }
-                }
-                let count = |error: &EstimateError| {
-                    swept.failed.iter().filter(|(_, other)| other == error).count()
-                };
-                let all = grid.runs().len();
-                let why = |error: &EstimateError| {
-                    let (count, why) = (count(error), said(error));
-                    format!("joint `{name}`, {count} of {all} settings are left out: {why}")
-                };
-                different.into_iter().map(why).collect()
+        let swept = match result {
+            Err(error) => return vec![joint_left_out(name, error)],
+            Ok(swept) => swept,
+        };
+        let mut different: Vec<(&EstimateError, usize)> = Vec::new();
+        for (_, error) in &swept.failed {
+            match different.iter_mut().find(|(known, _)| *known == error) {
+                Some((_, count)) => *count += 1,
+                None => different.push((error, 1)),
             }
         }
+        let why = |(error, count): (&EstimateError, usize)| {
+            format!("joint `{name}`, {count} of {all} settings are left out: {}", said(error))
+        };
+        different.into_iter().map(why).collect()
     };
     let of_joints = experiment.joints.iter().zip(results).flat_map(of_joint);
     read_failures(experiment).into_iter().chain(of_joints).collect()
@@ -192,7 +190,7 @@ impl Args {
         /// More would take days, and no memory holds them.
         const MOST: usize = 20_000;
         let order = self.conditions.filter_order;
-        let usual = [Passband::Hz(2.0), Passband::Hz(5.0), Passband::Hz(10.0), Passband::None];
+        let usual = [OrNone::Number(2.0), OrNone::Number(5.0), OrNone::Number(10.0), OrNone::None];
         let passbands = self.passband.as_ref().map_or(usual.as_slice(), |given| &given.0);
         let base = |method: &Method| {
             let settings = self.conditions.settings(*method);
@@ -207,7 +205,7 @@ impl Args {
         if combinations > MOST {
             bail!("{combinations} combinations of settings are more than {MOST}; try fewer values");
         }
-        let passbands = passbands.iter().map(|passband| passband.low_pass(order)).collect();
+        let passbands = passbands.iter().map(|passband| low_pass(*passband, order)).collect();
         Ok(Grid::new(bases, passbands, alphas, betas))
     }
 }

@@ -4,8 +4,8 @@ use std::fmt;
 
 use crate::delay::Method;
 
-use crate::cli::args::number::{at_least_one, length};
-use crate::cli::args::{Passband, passband};
+use crate::cli::args::number::{OrNone, at_least_one, length};
+use crate::cli::args::passband;
 use crate::experiment::{did_you_mean, nearest_name};
 use crate::units::Length;
 
@@ -47,13 +47,10 @@ pub(crate) fn lengths(text: &str) -> Result<Values<Length>, String> {
 }
 
 /// Cutoffs in Hz, and `none`.
-pub(crate) fn passbands(text: &str) -> Result<Values<Passband>, String> {
+pub(crate) fn passbands(text: &str) -> Result<Values<OrNone>, String> {
     let expected = "expected frequencies in Hz, or `none`, as in 2,5,none or 1..10 or 1..2:0.5";
     let one = |text: &str| passband(text).ok().ok_or_else(|| expected.to_owned());
-    let hz = |text: &str| match one(text)? {
-        Passband::Hz(hz) => Ok(hz),
-        Passband::None => Err(expected.to_owned()),
-    };
+    let hz = |text: &str| one(text)?.number().ok_or_else(|| expected.to_owned());
     listed(text, |part| match Range::of(part) {
         None => Ok(vec![one(part)?]),
         Some(range) => {
@@ -62,7 +59,7 @@ pub(crate) fn passbands(text: &str) -> Result<Values<Passband>, String> {
             // The last value belongs to the range, however its multiple is rounded.
             let end = last + 1e-9 * step;
             let values = (0_u32..).map(|n| first + f64::from(n) * step);
-            let values = values.take_while(|value| *value <= end).map(Passband::Hz);
+            let values = values.take_while(|value| *value <= end).map(OrNone::Number);
             range.checked(values.take(MOST + 1).collect())
         }
     })
@@ -139,10 +136,10 @@ mod tests {
         assert_eq!(lengths("2..9:3"), whole(&[2, 5, 8]));
         let mixed = vec![Length::Seconds(0.05), Length::Seconds(0.1), Length::Samples(3)];
         assert_eq!(lengths("0.05s,0.1s,3"), Ok(Values(mixed)));
-        let hz = |values: &[f64]| values.iter().map(|hz| Passband::Hz(*hz)).collect::<Vec<_>>();
+        let hz = |values: &[f64]| values.iter().map(|hz| OrNone::Number(*hz)).collect::<Vec<_>>();
         assert_eq!(passbands("1..2:0.5"), Ok(Values(hz(&[1.0, 1.5, 2.0]))));
         let last = passbands("5,none").map(|found| found.0.last().copied());
-        assert_eq!(last, Ok(Some(Passband::None)));
+        assert_eq!(last, Ok(Some(OrNone::None)));
         assert_eq!(methods("hinge,two-line"), Ok(Values(vec![Method::HINGE, Method::TWO_LINE])));
     }
 

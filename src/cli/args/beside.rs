@@ -1,10 +1,20 @@
-//! What a person said of the decisions: `--review`.
+//! What is held beside decisions: other results (`--against`), and what a person said (`--review`).
 
 use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 
 use crate::study::Review;
+
+/// Results to compare with.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct AgainstArgs {
+    /// Show where decisions differ from those of another result: the JSON of an earlier
+    /// `estimate --format json`, its table of `--decisions`, or another log of the experiment,
+    /// which is estimated with the same settings. May be repeated
+    #[arg(long, value_name = "FILE")]
+    pub(crate) against: Vec<PathBuf>,
+}
 
 /// A review of the decisions.
 #[derive(ClapArgs, Debug)]

@@ -1,0 +1,354 @@
+//! `tauscope doctor`: what is there to look at recordings with, and what is missing.
+
+use std::env;
+use std::fmt::Write as _;
+use std::io::{self, IsTerminal as _, Read as _};
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use clap::Args as ClapArgs;
+use serde::Serialize;
+
+use crate::cli::args::Format;
+use crate::cli::console::{self, Tone};
+use crate::cli::exit::Completion;
+use crate::cli::viewer::{NEWEST, PORT, VERSION, installed, is_listening, on_path};
+use crate::report::Header;
+
+/// Say what is missing to make recordings and to look at them
+///
+/// It looks for the Rerun viewer and its version, for a screen, and at this program and the
+/// terminal; each line that is not `ok` names the remedy. Exit status 1 when something is
+/// missing.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct Args {
+    /// How results are printed
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// JSON, schema `tauscope/doctor/1`.
+#[derive(Serialize)]
+struct DoctorJson<'a> {
+    #[serde(flatten)]
+    header: Header,
+    /// Nothing is missing.
+    complete: bool,
+    checks: &'a [Check],
+}
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let checks = [
+        ("program", program()),
+        ("viewer", viewer()),
+        ("running", running()),
+        ("importer", importer()),
+        ("screen", screen()),
+        ("graphics", graphics()),
+        ("threads", threads()),
+        ("folder", folder()),
+        ("terminal", terminal()),
+        ("letters", letters()),
+    ];
+    let checks = checks.map(|(name, found)| Check { name, found });
+    let complete = checks.iter().all(|check| check.found.state != State::Missing);
+    let header = Header::of("tauscope/doctor/1");
+    let json = DoctorJson { header, complete, checks: &checks };
+    args.format.print(|| text(&checks), || json)?;
+    Ok(if complete { Completion::Whole } else { Completion::Partial })
+}
+
+fn text(checks: &[Check]) -> String {
+    let mut text = String::new();
+    let width = checks.iter().map(|check| check.name.len()).max().unwrap_or(0);
+    for Check { name, found: Found { state, found, remedy } } in checks {
+        let (word, tone) = match state {
+            State::Ok => ("ok", Tone::Good),
+            State::Note => ("note", Tone::Notice),
+            State::Missing => ("missing", Tone::Bad),
+        };
+        let word = console::toned(tone, &format!("{word:<7}"));
+        writeln!(text, "{word}  {name:<width$}  {found}").unwrap_or_default();
+        if let Some(remedy) = remedy {
+            writeln!(text, "{:9}{:width$}  → {remedy}", "", "").unwrap_or_default();
+        }
+    }
+    text
+}
+
+/// How well a thing is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum State {
+    /// As it should be.
+    Ok,
+    /// Work goes on without it.
+    Note,
+    /// Something cannot be done without it.
+    Missing,
+}
+
+/// What was found of one thing, and what to do where it is not as it should be.
+#[derive(Debug, Serialize)]
+struct Found {
+    state: State,
+    found: String,
+    remedy: Option<String>,
+}
+
+/// What was found, by the name of the thing.
+#[derive(Debug, Serialize)]
+struct Check {
+    name: &'static str,
+    #[serde(flatten)]
+    found: Found,
+}
+
+fn ok(found: impl Into<String>) -> Found {
+    Found { state: State::Ok, found: found.into(), remedy: None }
+}
+
+fn note(found: impl Into<String>, remedy: impl Into<String>) -> Found {
+    Found { state: State::Note, ..missing(found, remedy) }
+}
+
+fn missing(found: impl Into<String>, remedy: impl Into<String>) -> Found {
+    Found { state: State::Missing, found: found.into(), remedy: Some(remedy.into()) }
+}
+
+/// What of this program was built.
+fn program() -> Found {
+    let found = format!("tauscope {}", env!("CARGO_PKG_VERSION"));
+    if cfg!(feature = "rrd") {
+        return ok(format!("{found}, with recordings (feature `rrd`)"));
+    }
+    let found = format!("{found}, without recordings");
+    missing(found, "build it with feature `rrd`, which is on unless switched off")
+}
+
+fn is_set(name: &str) -> bool {
+    env::var_os(name).is_some_and(|value| !value.is_empty())
+}
+
+fn screen() -> Found {
+    if !cfg!(target_os = "linux") {
+        return ok("the system's own");
+    }
+    for name in ["WAYLAND_DISPLAY", "DISPLAY"] {
+        if is_set(name) {
+            let value = env::var_os(name).unwrap_or_default();
+            return ok(format!("{name}={}", value.to_string_lossy()));
+        }
+    }
+    missing(
+        "neither WAYLAND_DISPLAY nor DISPLAY is set: the viewer has no screen here",
+        "copy recordings to a machine with a screen, or run `rerun --web-viewer FILE.rrd` and \
+         look from there",
+    )
+}
+
+fn graphics() -> Found {
+    if !cfg!(target_os = "linux") {
+        return ok("the system's own");
+    }
+    if let Some(device) = first_in("/dev/dri", "renderD") {
+        return ok(format!("/dev/dri/{device}"));
+    }
+    let drivers = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
+    if drivers.iter().any(|folder| first_in(folder, "").is_some()) {
+        let found = "no device; a Vulkan driver draws in software";
+        return note(found, "the viewer works, but slowly");
+    }
+    note(
+        "neither a device nor a Vulkan driver",
+        "the viewer in a browser (`rerun --web-viewer FILE.rrd`) needs none here; for its own \
+         window install a driver, as in `apt install mesa-vulkan-drivers`",
+    )
+}
+
+/// The first name in `folder` that starts like `prefix`.
+fn first_in(folder: &str, prefix: &str) -> Option<String> {
+    let entries = Path::new(folder).read_dir().ok()?.filter_map(Result::ok);
+    let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.filter(|name| name.starts_with(prefix)).min()
+}
+
+fn threads() -> Found {
+    match std::thread::available_parallelism() {
+        Ok(number) => ok(number.to_string()),
+        Err(error) => note(error.to_string(), "say how many with `--threads N`"),
+    }
+}
+
+/// Whether results can be written where the program is.
+fn folder() -> Found {
+    let here = env::current_dir().unwrap_or_default();
+    let here = here.display();
+    match tempfile::Builder::new().prefix(".tauscope-").tempfile_in(".") {
+        Ok(_) => ok(format!("{here} can be written to")),
+        Err(error) => note(
+            format!("{here} cannot be written to: {error}"),
+            "give outputs a path elsewhere, as in `-o /tmp/log.rrd`",
+        ),
+    }
+}
+
+fn terminal() -> Found {
+    let said = |is: bool| if is { "a terminal" } else { "no terminal" };
+    let (out, err) = (io::stdout().is_terminal(), io::stderr().is_terminal());
+    let colors = if console::has_colors() { "with colours" } else { "without colours" };
+    let found = format!("output goes to {}, {colors}; messages to {}", said(out), said(err));
+    if err {
+        return ok(found);
+    }
+    note(found, "progress is shown where messages go to a terminal")
+}
+
+/// Whether the terminal is likely to show tables and Greek letters.
+fn letters() -> Found {
+    if cfg!(windows) {
+        return ok("the system's own");
+    }
+    let set = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find(|name| is_set(name));
+    let value = set.and_then(|name| env::var(name).ok()).unwrap_or_default();
+    let plain = value.to_lowercase().replace('-', "");
+    if plain.contains("utf8") {
+        return ok(format!("{}={value}", set.unwrap_or_default()));
+    }
+    let found = match set {
+        Some(name) => format!("{name}={value} is not UTF-8"),
+        None => "none of LC_ALL, LC_CTYPE, LANG is set".to_owned(),
+    };
+    note(found, "where tables look broken, try: export LC_ALL=C.UTF-8")
+}
+
+/// Longest time that a program may take to report its version.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// What puts the right viewer on a machine.
+fn remedy() -> String {
+    format!("pip install rerun-sdk=={VERSION}")
+}
+
+fn importer() -> Found {
+    if let Some(place) = installed() {
+        return ok(format!("{}: `rerun LOG.csv` opens a log", place.display()));
+    }
+    let found = "`rerun LOG.csv` does not open logs";
+    note(found, "`tauscope importer --install` lets it")
+}
+
+fn viewer() -> Found {
+    if let Some(path) = on_path("rerun", env::var_os("PATH").as_deref()) {
+        let place = path.display();
+        let answer = output(Command::new(&path).arg("--version").env("RERUN_ANALYTICS", "0"));
+        return match answer.as_deref().and_then(version_in) {
+            None => {
+                let found = format!("{place} does not report its version");
+                missing(found, remedy())
+            }
+            Some(version) => judged(version, &format!("rerun {version}, {place}")),
+        };
+    }
+    let ask = "import importlib.metadata as m; print(m.version('rerun-sdk'))";
+    for python in ["python3", "python"] {
+        let answer = output(Command::new(python).args(["-c", ask]));
+        if let Some(version) = answer.as_deref().and_then(version_in) {
+            let found = format!("rerun-sdk {version} of {python}, not on PATH");
+            let check = judged(version, &found);
+            let remedy = format!("start it with: {python} -m rerun FILE.rrd");
+            return Found { remedy: check.remedy.or(Some(remedy)), ..check };
+        }
+    }
+    missing("no `rerun` on PATH, no package `rerun-sdk` of python3", remedy())
+}
+
+/// Whether `version` fits: an older minor version does not.
+fn judged(version: &str, found: &str) -> Found {
+    if [VERSION, NEWEST].contains(&version) {
+        return ok(found);
+    }
+    let made = format!("recordings are made for {VERSION} and were looked at in {NEWEST}");
+    let found = format!("{found}; {made}");
+    if minor(version) >= minor(VERSION) { note(found, remedy()) } else { missing(found, remedy()) }
+}
+
+/// The first two numbers of a version.
+fn minor(version: &str) -> Option<(u32, u32)> {
+    let mut numbers = version.split('.').map(|number| number.parse().ok());
+    numbers.next().flatten().zip(numbers.next().flatten())
+}
+
+fn running() -> Found {
+    if is_listening(SocketAddr::from((Ipv4Addr::LOCALHOST, PORT))) {
+        return ok(format!("something listens on port {PORT}, where viewers do"));
+    }
+    let found = format!("no viewer listens on port {PORT}");
+    note(found, "`--spawn` starts one; `--connect` needs one: start it with: rerun")
+}
+
+/// What a command prints, if it ends well and in time.
+fn output(command: &mut Command) -> Option<String> {
+    let quiet = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut child = quiet.spawn().ok()?;
+    if !ends_well(&mut child) {
+        child.kill().unwrap_or_default();
+        child.wait().ok()?;
+        return None;
+    }
+    let mut text = String::new();
+    child.stdout?.read_to_string(&mut text).ok()?;
+    Some(text)
+}
+
+/// Whether `child` ends with success before patience does.
+fn ends_well(child: &mut Child) -> bool {
+    let end = Instant::now() + PATIENCE;
+    while Instant::now() < end {
+        match child.try_wait() {
+            Ok(Some(status)) => return status.success(),
+            Ok(None) => std::thread::sleep(Duration::from_millis(20)),
+            Err(_) => return false,
+        }
+    }
+    false
+}
+
+/// The first word of `text` that looks like a version.
+fn version_in(text: &str) -> Option<&str> {
+    let is_version = |word: &&str| {
+        word.split('.').count() >= 3 && word.starts_with(|first: char| first.is_ascii_digit())
+    };
+    text.split_whitespace().find(is_version)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_thing_has_a_line_and_what_is_missing_a_remedy() {
+        let found = [("threads", ok("2")), ("viewer", missing("none", "install it"))];
+        let checks = found.map(|(name, found)| Check { name, found });
+        let text = anstream::adapter::strip_str(&text(&checks)).to_string();
+        let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
+        assert_eq!(
+            lines,
+            ["ok       threads  2", "missing  viewer   none", "                  → install it"]
+        );
+    }
+
+    #[test]
+    fn a_version_is_found_and_judged_by_its_minor_number() {
+        assert_eq!(version_in("rerun-cli 0.36.3 (base) [rustc 1.95.0"), Some("0.36.3"));
+        assert_eq!(version_in("no version"), None);
+        let state = |version| judged(version, "").state;
+        assert_eq!(state(VERSION), State::Ok);
+        assert_eq!(state(NEWEST), State::Ok);
+        assert_eq!(state("0.36.9"), State::Note);
+        assert_eq!(state("0.99.0"), State::Note);
+        assert_eq!(state("0.35.0"), State::Missing);
+    }
+}
