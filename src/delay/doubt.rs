@@ -202,7 +202,7 @@ impl Decision {
     fn nearest(&self, range: f64) -> Option<(Condition, f64)> {
         let margin = |check: Check| Some((check.condition, self.margin(&check, range)?));
         let by_margin = |a: &(Condition, f64), b: &(Condition, f64)| a.1.total_cmp(&b.1);
-        let of = |outcome| self.checks.iter().filter(move |check| check.outcome == outcome);
+        let of = |outcome| self.checks.into_iter().filter(move |check| check.outcome == outcome);
         match self.program_verdict() {
             Verdict::Accepted => of(Outcome::Passed).filter_map(margin).min_by(by_margin),
             Verdict::Rejected(_) => {

@@ -1,14 +1,14 @@
 //! From a trial to its delays: prepared, decided by the method, and every sample filled in.
 
-use std::fmt;
+use std::sync::Arc;
 
 use super::coming_to_rest::ComingToRest;
 use super::input_motion::{InputKind, InputMotion};
-use super::method::{DelayMethod, Shared, implementation};
+use super::method::Method;
+use super::onset_model::OnsetModel;
 use super::prepared::Prepared;
 use super::profile::DelayProfile;
 use super::settings::Settings;
-use super::spec::Method;
 use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::{Record, Trial};
 
@@ -37,11 +37,11 @@ pub fn estimate_joint(
 }
 
 /// Estimates the trials of a joint, which share what the method finds out from all of them.
+#[derive(Debug)]
 pub(crate) struct Estimator {
     /// Those that were asked for, with what the input is taken for.
     settings: Settings,
-    method: &'static dyn DelayMethod,
-    shared: Shared,
+    model: Option<Arc<OnsetModel>>,
     rest: ComingToRest,
     motion: InputMotion,
 }
@@ -63,9 +63,8 @@ impl Estimator {
         if settings.method == Method::AUTO && (settings.paper || settings.grows) {
             settings.method = Method::TWO_LINE;
         }
-        let method = implementation(settings.method);
         let rest = ComingToRest::of(trials, &settings);
-        let shared = settings.method.spec().has_intervals.then(|| {
+        let model = settings.method.spec().has_intervals.then(|| {
             // Onsets are found in what was measured.
             let unsmoothed = Settings { low_pass: None, ..settings.clone() };
             let mut prepared = Prepared::all(trials, &unsmoothed);
@@ -75,9 +74,9 @@ impl Estimator {
             let period = prepared.first().map(|trial| trial.period);
             // A response is looked for in the trials of the first one's period.
             let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
-            method.shared(&prepared, &settings)
+            settings.method.shared(&prepared, &settings)
         });
-        Ok(Self { settings, method, shared: shared.flatten(), rest, motion })
+        Ok(Self { settings, model: model.flatten().map(Arc::new), rest, motion })
     }
 
     /// How the input of the joint moves.
@@ -91,18 +90,12 @@ impl Estimator {
     /// [`EstimateError::Filter`] when the filter does not fit this trial.
     pub(crate) fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
         let settings = self.settings.at(trial.period());
-        let mut prepared = Prepared::lean(trial, &settings)?;
+        let mut prepared = Prepared::of(trial, &settings)?;
         self.rest.bound(&mut prepared, &settings);
-        let decisions = self.method.decide(&prepared, &self.shared, &settings);
+        let decisions = settings.method.decide(&prepared, self.model.as_deref(), &settings);
         let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
         let (label, smoothed) = (trial.label().to_owned(), prepared.smoothed);
-        let (onset_model, tracking) = (self.shared.clone(), self.rest.tracking());
+        let (onset_model, tracking) = (self.model.clone(), self.rest.tracking());
         Ok(TrialEstimate { label, smoothed, decisions, profile, onset_model, tracking })
-    }
-}
-
-impl fmt::Debug for Estimator {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Estimator").field("settings", &self.settings).finish_non_exhaustive()
     }
 }

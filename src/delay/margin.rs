@@ -43,7 +43,7 @@ impl Decision {
     /// What would have accepted this step: one remedy for each condition that failed, none
     /// for an accepted step. `output` is what the method looked at.
     pub(crate) fn remedies(&self, settings: &Settings, output: &[f64]) -> Vec<Remedy> {
-        self.checks.failed().map(|check| self.remedy(&check, settings, output)).collect()
+        self.failed_checks().map(|check| self.remedy(&check, settings, output)).collect()
     }
 
     fn remedy(&self, check: &Check, settings: &Settings, output: &[f64]) -> Remedy {

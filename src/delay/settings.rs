@@ -2,7 +2,7 @@
 
 use super::in_seconds::InSeconds;
 use super::input_motion::{InputKind, InputMotion};
-use super::spec::Method;
+use super::method::Method;
 use crate::experiment::Record;
 use crate::numerics::LowPass;
 use crate::units::SamplePeriod;
@@ -122,15 +122,14 @@ pub struct Settings {
 pub(crate) const CONFIDENCE: f64 = 0.99;
 
 impl Settings {
-    /// The settings that suit `method`: its own low-pass and confidence, and else those of
-    /// the paper's Algorithm 1, with intervals that hold 95 % of the true delays.
+    /// The settings that suit `method`: its own confidence, and else those of the paper's
+    /// Algorithm 1, with intervals that hold 95 % of the true delays.
     pub fn of(method: Method) -> Self {
-        let spec = method.spec();
         Self {
             method,
             alpha: 10,
             beta: 5,
-            low_pass: spec.low_pass,
+            low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),
             low_pass_required: false,
             min_delay: 0,
             max_delay: None,
@@ -144,11 +143,18 @@ impl Settings {
             input: InputKind::Auto,
             grows: false,
             interpolation: Interpolation::Hold,
-            confidence: spec.confidence,
+            confidence: method.spec().has_intervals.then_some(CONFIDENCE),
             interval: 0.95,
             lines: CandidateLines::All,
             in_seconds: InSeconds::default(),
         }
+    }
+}
+
+impl Default for Settings {
+    /// Those of the onset model.
+    fn default() -> Self {
+        Self::of(Method::AUTO)
     }
 }
 

@@ -1,8 +1,8 @@
 //! The delays of a joint for whoever only wants the delays.
 
 use super::estimate::estimate_joint;
+use super::method::Method;
 use super::settings::{FirstLast, Settings};
-use super::spec::Method;
 use super::trial_estimate::EstimateError;
 use crate::experiment::{Record, Trial};
 

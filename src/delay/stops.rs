@@ -87,13 +87,11 @@ impl Stops {
     pub(super) fn bound(&self, trial: &mut Prepared<'_>) {
         let samples = trial.raw.len();
         let mut before = None;
-        let mut motions = std::mem::take(&mut trial.motions);
-        let mut is_tested = trial.is_tested;
-        for (motion, hold) in motions.iter_mut().zip(hold_ranges(&trial.steps, samples)) {
+        for (motion, hold) in trial.motions.iter_mut().zip(hold_ranges(&trial.steps, samples)) {
             let start = hold.start;
-            let arrival = self.arrival(&trial.measured(hold));
+            let arrival = self.arrival(&trial.raw[hold]);
             if motion.is_none() && (arrival.is_some_and(|after| after > 0) || before.is_some()) {
-                is_tested = true;
+                trial.is_tested = true;
                 let until = arrival.filter(|after| *after > 0).map(|after| start + after);
                 *motion = Some(Box::new(StepMotion {
                     first: before.unwrap_or(0),
@@ -107,7 +105,6 @@ impl Stops {
                 arrival => arrival.map(|after| start + after),
             };
         }
-        (trial.motions, trial.is_tested) = (motions, is_tested);
     }
 
     /// Samples of a hold until its output stands at a stop, where it ends at one.

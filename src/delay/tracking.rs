@@ -118,11 +118,10 @@ impl Tracking {
         let mut arrived = 0;
         let mut previous = trial.steps.first().map_or(0.0, |step| self.rest_at(step.before));
         let ranges = hold_ranges(&trial.steps, trial.raw.len());
-        let mut motions = std::mem::take(&mut trial.motions);
-        for ((step, motion), range) in trial.steps.iter().zip(&mut motions).zip(ranges) {
+        for ((step, motion), range) in trial.steps.iter().zip(&mut trial.motions).zip(ranges) {
             let start = range.start;
             let hold = Hold {
-                output: &trial.measured(range),
+                output: &trial.raw[range],
                 previous,
                 target: self.rest_at(step.after),
                 tolerance: self.tolerance,
@@ -133,7 +132,6 @@ impl Tracking {
             arrived = hold.arrival().map_or(arrived, |arrival| start + arrival);
             previous = hold.target;
         }
-        trial.motions = motions;
         trial.is_tested = true;
     }
 

@@ -1,6 +1,5 @@
 //! A step among all of its trial, and the decision that follows from what was found there.
 
-use crate::delay::checks::Checks;
 use crate::delay::condition::Facts;
 use crate::delay::decision::Decision;
 use crate::delay::interval::FineDelay;
@@ -89,14 +88,13 @@ impl StepContext<'_> {
             best: candidates.best(),
             fine,
         };
-        let checks = Checks::of(&facts.check(self.settings));
         Decision {
             number,
             input_step,
             hold,
             segment,
             candidates,
-            checks,
+            checks: facts.check(self.settings),
             fine,
             onset: None,
             reviewer_verdict: None,
