@@ -47,10 +47,9 @@ use super::method::Method;
 use super::prepared::Prepared;
 use super::settings::{FirstLast, Settings};
 use crate::experiment::{Record, Trial};
-use crate::numerics::LowPass;
-use crate::numerics::NoiseModel;
-use crate::numerics::RunningLine;
-use crate::numerics::{autocovariances, median, quantile, to_digits};
+use crate::numerics::{
+    LowPass, NoiseModel, autocovariances, median, quantile, to_digits, without_line,
+};
 use crate::units::ceil_to_index;
 
 /// Which settings are chosen from the record.
@@ -195,6 +194,8 @@ impl<'a> Observed<'a> {
     /// The delays and holds, and the halves of the times between two reactions in which a
     /// lag is over.
     fn add(&mut self, output: &[f64], decisions: &[Decision]) {
+        /// Samples from which on noise can be distinguished from a line.
+        const FEWEST: usize = 8;
         self.holds.extend(decisions.iter().rev().skip(1).map(|decision| decision.hold as f64));
         let accepted = decisions.iter().filter(|one| one.verdict() == Verdict::Accepted);
         self.delays.extend(accepted.filter_map(|one| one.fine));
@@ -209,10 +210,11 @@ impl<'a> Observed<'a> {
         for (place, end) in places.iter().zip(ends) {
             // In the later half a lag has died away.
             let start = place.midpoint(end);
-            let Some((slope, residuals)) = output.get(start..end).and_then(without_line) else {
+            let Some(quiet) = output.get(start..end).filter(|quiet| quiet.len() >= FEWEST) else {
                 slope_before = None;
                 continue;
             };
+            let (slope, residuals) = without_line(quiet);
             self.bends.extend(slope_before.map(|before| slope - before));
             slope_before = Some(slope);
             self.quiet.push(residuals);
@@ -310,21 +312,6 @@ impl<'a> Observed<'a> {
 fn gain(noise: &NoiseModel, omega: f64) -> f64 {
     // N(ω)/s².
     (2.0 * (0.5 * omega).sin()).powi(4) / noise.memory_gain(omega)
-}
-
-/// The slope of the line through `values`, and their residuals; `None` for too few of them.
-fn without_line(values: &[f64]) -> Option<(f64, Vec<f64>)> {
-    /// Samples from which on noise can be distinguished from a line.
-    const FEWEST: usize = 8;
-    let offset = values.first().filter(|_| values.len() >= FEWEST)?;
-    let mut line = RunningLine::default();
-    for value in values {
-        line.push(value - offset);
-    }
-    let (slope, mean) = (line.slope(), line.mean() + offset);
-    let middle = 0.5 * (values.len() - 1) as f64;
-    let samples = values.iter().enumerate();
-    Some((slope, samples.map(|(k, value)| value - mean - slope * (k as f64 - middle)).collect()))
 }
 
 /// The spectrum of second differences, by Welch's method.

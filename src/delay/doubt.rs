@@ -5,6 +5,7 @@ use std::fmt;
 use super::condition::{Check, Condition, Outcome};
 use super::decision::{Decision, Verdict};
 use super::search::Candidate;
+use crate::numerics::{PairSums, limits};
 
 /// A number this near its limit, as a part of their sum, is near; farther away it is no doubt.
 const NEAR: f64 = 0.25;
@@ -126,14 +127,14 @@ pub fn doubts<'d>(
     decisions: &'d [Decision],
     output: &'d [f64],
 ) -> impl Iterator<Item = (&'d Decision, Doubt)> {
-    let range = range(output);
+    let range = limits(output.iter().copied());
     decisions.iter().map(move |decision| (decision, decision.doubt_within(output, range)))
 }
 
 impl Decision {
     /// How doubtful the program's decision is; `output` is what the method looked at, the whole trial.
     pub fn doubt(&self, output: &[f64]) -> Doubt {
-        self.doubt_within(output, range(output))
+        self.doubt_within(output, limits(output.iter().copied()))
     }
 
     /// The doubt where the range of the output is known.
@@ -169,18 +170,8 @@ impl Decision {
             let line = if k < best.breakpoint { best.before } else { best.after };
             line.at(k as f64)
         };
-        let samples = || (self.segment.first..last).map(|k| (k as f64, fitted(k)));
-        let n = (last - self.segment.first).max(1) as f64;
-        let (sum_x, sum_y) = samples().fold((0.0, 0.0), |(a, b), (x, y)| (a + x, b + y));
-        let (mean_x, mean_y) = (sum_x / n, sum_y / n);
-        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-        for (x, y) in samples().map(|(x, y)| (x - mean_x, y - mean_y)) {
-            xx += x * x;
-            xy += x * y;
-            yy += y * y;
-        }
-        // The squared error of one line through both: Σ(ŷ − ȳ)² less what its slope explains.
-        let bend = (yy - xy * xy / xx.max(f64::MIN_POSITIVE)).max(0.0);
+        // The squared error of one line through both.
+        let bend = PairSums::of((self.segment.first..last).map(|k| (k as f64, fitted(k)))).sse();
         let one_line = best.sse + bend;
         if one_line > 0.0 { bend / one_line } else { 0.0 }
     }
@@ -250,12 +241,6 @@ impl Decision {
         ];
         found.into_iter().filter_map(|(flag, is_on)| is_on.then_some(flag)).collect()
     }
-}
-
-/// Lowest and highest value.
-fn range(output: &[f64]) -> (f64, f64) {
-    let wider = |(low, high): (f64, f64), y: &f64| (low.min(*y), high.max(*y));
-    output.iter().fold((f64::INFINITY, f64::NEG_INFINITY), wider)
 }
 
 /// Whether all samples `from ..= to` are at one end of the range of the output.

@@ -23,8 +23,9 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
-use super::input_noise::{Levels, in_samples, range};
+use super::input_noise::{Levels, in_samples};
 use crate::experiment::{Property, Record, Trial};
+use crate::numerics::{limits, median};
 
 /// How an input is to be taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -169,8 +170,8 @@ fn is_drawn_in_time_of_its_own(input: &[f64]) -> bool {
     let lengths: Vec<f64> = runs.iter().map(|run| run.len() as f64).collect();
     let steps = runs.windows(2).map(|pair| (pair[1][0] - pair[0][0]).abs());
     let steps: Vec<f64> = steps.collect();
-    let median = |values: &[f64]| crate::numerics::quantile(values, 0.5).unwrap_or_default();
-    let (usual, (low, high)) = (median(&lengths), range(input));
+    let median = |values: &[f64]| median(values).unwrap_or_default();
+    let (usual, (low, high)) = (median(&lengths), limits(input.iter().copied()));
     let alike = lengths.iter().filter(|length| (*length - usual).abs() <= ALIKE * usual).count();
     (alike as f64) < MOST_ALIKE * lengths.len() as f64 && median(&steps) >= FAR * (high - low)
 }

@@ -10,6 +10,7 @@ use super::transition::Transition;
 use super::trial_estimate::TrialEstimate;
 use super::typical::{Scatter, StepSample, TypicalDelay};
 use crate::experiment::{Joint, Trial};
+use crate::numerics::limits;
 
 /// Pairs of levels above which the steps of a kind are put together in bins: chosen; seven
 /// levels on both sides of neutral are still a row each.
@@ -288,8 +289,7 @@ fn row(steps: &[KindStep], scatter: Scatter) -> Option<DelayRow> {
 
 /// Mean and limits of a level; exactly that level where there is only one.
 fn spread(steps: &[KindStep], level: impl Fn(&KindStep) -> f64) -> (f64, (f64, f64)) {
-    let low = steps.iter().map(&level).fold(f64::INFINITY, f64::min);
-    let high = steps.iter().map(&level).fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = limits(steps.iter().map(&level));
     let mean = low + steps.iter().map(|step| level(step) - low).sum::<f64>() / steps.len() as f64;
     (mean, (low, high))
 }

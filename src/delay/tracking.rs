@@ -13,7 +13,7 @@ use super::prepared::Prepared;
 use super::settings::Settings;
 use super::steps::{InputStep, hold_ranges, joint_steps};
 use crate::experiment::{Property, Record, Trial};
-use crate::numerics::noise_of_differences;
+use crate::numerics::{PairSums, limits, noise_of_differences};
 
 /// Levels of the input, and holds at whose end the output rests, that show a relation.
 const FEWEST_LEVELS: usize = 3;
@@ -74,8 +74,8 @@ impl Tracking {
     /// with their `steps`; `None` where there is none.
     pub(super) fn of(trials: &[Trial], steps: &[Vec<InputStep>]) -> Option<Self> {
         let holds = steps.iter().map(Vec::len).sum::<usize>();
-        let outputs = || trials.iter().flat_map(|trial| trial.output().iter().copied());
-        let range = outputs().fold(f64::MIN, f64::max) - outputs().fold(f64::MAX, f64::min);
+        let (low, high) = limits(trials.iter().flat_map(Trial::output).copied());
+        let range = high - low;
         let of_trial =
             |(trial, steps): (&Trial, &Vec<InputStep>)| resting_holds(trial.output(), steps, range);
         let rests: Vec<RestingHold> = trials.iter().zip(steps).flat_map(of_trial).collect();
@@ -91,25 +91,14 @@ impl Tracking {
 
     /// The regression line of where the output rests, if it is near to it.
     fn through(rests: &[RestingHold], noise: f64) -> Option<Self> {
-        let n = rests.len() as f64;
-        let mean = |of: fn(&RestingHold) -> f64| rests.iter().map(of).sum::<f64>() / n;
-        let (level, output) = (mean(|rest| rest.level), mean(|rest| rest.output));
-        let (uu, uy) = rests.iter().fold((0.0, 0.0), |(uu, uy), rest| {
-            let from_mean = rest.level - level;
-            (uu + from_mean * from_mean, uy + from_mean * (rest.output - output))
-        });
-        let gain = uy / uu;
-        let offset = output - gain * level;
-        let off = |rest: &RestingHold| (rest.output - offset - gain * rest.level).powi(2);
+        let sums = PairSums::of(rests.iter().map(|rest| (rest.level, rest.output)));
+        let ((gain, offset), r_squared) = (sums.line(), sums.r_squared());
         // Two parameters: n − 2 degrees of freedom.
-        let off = (rests.iter().map(off).sum::<f64>() / (n - 2.0)).sqrt();
-        let ends = |of: fn(f64, f64) -> f64, start| rests.iter().map(|r| r.output).fold(start, of);
-        let travel = ends(f64::max, f64::MIN) - ends(f64::min, f64::MAX);
+        let off = (sums.sse() / (rests.len() as f64 - 2.0)).sqrt();
+        let (low, high) = limits(rests.iter().map(|rest| rest.output));
+        let travel = high - low;
         let tolerance = (3.0 * off).max(4.0 * noise).max(0.005 * travel);
         let is_near = gain.is_finite() && gain != 0.0 && off <= OFF * travel;
-        // The residual about the line, as a part of the variation about the mean.
-        let square = |rest: &RestingHold| (rest.output - output).powi(2);
-        let r_squared = 1.0 - (n - 2.0) * off * off / rests.iter().map(square).sum::<f64>();
         is_near.then_some(Self { offset, gain, tolerance, r_squared })
     }
 

@@ -10,7 +10,7 @@ use super::record::{Samples, Whitened, averaged};
 use super::response::NUMERATORS;
 use super::result::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown};
 use super::search::{Fitted, grid, least, profiles, with_one_lag};
-use super::uncertainty::{Assessed, PARTS, errors};
+use super::uncertainty::{Assessed, PARTS};
 use super::windows::{Estimated, Known, same_in_all};
 use crate::delay::settings::Settings;
 use crate::experiment::Trial;
@@ -188,7 +188,7 @@ fn noise(record: &Record, rows: &[Vec<Range<usize>>]) -> (Vec<f64>, Option<Fitte
             .filter_map(|profile| least(profile))
             .min_by(|a, b| a.error.total_cmp(&b.error));
         let Some(best) = best.filter(|best| best.error.is_finite()) else { break };
-        let residuals = errors(&plain, best);
+        let residuals = best.design(&plain).residuals();
         let samples: usize = residuals.iter().map(Vec::len).sum();
         let memory = MEMORY.min(samples / 20);
         let memory = Autoregression::of(&autocovariances(&residuals, memory), samples);

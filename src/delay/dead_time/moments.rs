@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::record::{Whitened, driven};
+use super::record::Whitened;
 use super::response::{Lags, NUMERATORS, Numerators};
 use crate::numerics::{NormalEquations, dot};
 
@@ -183,18 +183,13 @@ impl Moments {
     /// The equations of all columns behind `numerators`; the constant is projected out.
     fn equations(&self, numerators: &Numerators) -> Option<NormalEquations> {
         let Driven { products, sums, with_changes } = self.driven(numerators)?;
-        let size = self.columns + 1;
-        let mut all = vec![0.0; size * size];
-        for i in 0..self.columns {
-            for j in i..self.columns {
-                // Σ(x − x̄)(z − z̄) = Σxz − ΣxΣz/n.
-                let product = products[i * self.columns + j];
-                all[i * size + j] = product - sums[i] * sums[j] / self.rows;
-            }
-            all[i * size + self.columns] = with_changes[i] - sums[i] * self.change / self.rows;
-        }
-        all[size * size - 1] = self.without_input();
-        Some(NormalEquations::from_products(size, all))
+        let target = self.columns;
+        // Σ(x − x̄)(z − z̄) = Σxz − ΣxΣz/n.
+        Some(NormalEquations::from_products(target + 1, |i, j| match (i == target, j == target) {
+            (true, _) => self.without_input(),
+            (_, true) => with_changes[i] - sums[i] * self.change / self.rows,
+            _ => products[i * target + j] - sums[i] * sums[j] / self.rows,
+        }))
     }
 
     /// The sums of the columns behind `numerators`; none of a dead time that was not asked for.
@@ -239,29 +234,3 @@ struct Driven {
 
 /// Part of a column's square that its spread about its mean is at least, to be more than rounding.
 const SAYS_NOTHING: f64 = 1e-12;
-
-/// The squared error of the best curve behind one dead time and lags, and a constant.
-pub(super) fn error_of(trials: &[Whitened], numerators: &Numerators, lags: Lags) -> f64 {
-    let columns = trials.first().map_or(0, Whitened::lagged_columns);
-    let lagged: Vec<_> = trials.iter().map(|trial| (trial, trial.lagged(lags))).collect();
-    let rows = || {
-        lagged
-            .iter()
-            .flat_map(|(trial, columns)| trial.rows.iter().map(move |r| (trial, columns, r)))
-    };
-    let samples: usize = rows().map(|(_, _, rows)| rows.len()).sum();
-    let mut all = vec![1.0; samples];
-    all.reserve(samples * (columns + 1));
-    for index in 0..columns {
-        for (_, columns, rows) in rows() {
-            let column = columns.get(index).map_or(&[][..], Vec::as_slice);
-            all.extend(rows.clone().map(|k| driven(column, numerators, k)));
-        }
-    }
-    for (trial, _, rows) in rows() {
-        all.extend(&trial.changes[rows.clone()]);
-    }
-    let mut equations = NormalEquations::of(&all, samples, &[]);
-    (0..=columns).for_each(|column| equations.eliminate(column));
-    equations.error()
-}

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::curve::Curve;
 use super::response::{AHEAD, Lags, NUMERATORS, Numerators};
 use crate::experiment::Trial;
+use crate::numerics::{NormalEquations, product, residuals_of};
 
 /// Shortest period that is worked at: faster logs are averaged over as many samples. A dead
 /// time is found between samples, so that this is no limit to it.
@@ -127,8 +128,58 @@ fn whiten(values: &[f64], filter: &[f64]) -> Vec<f64> {
     (0..values.len()).map(value).collect()
 }
 
+/// A column, in the rows of each part of the record.
+pub(super) type Rows = Vec<Vec<f64>>;
+
+/// The regression behind one dead time and lags, over all rows.
+pub(super) struct Design {
+    /// A constant, and what the input stands for.
+    pub(super) columns: Vec<Rows>,
+    /// The changes of the output.
+    pub(super) changes: Rows,
+}
+
+impl Design {
+    pub(super) fn of(trials: &[Whitened], numerators: &Numerators, lags: Lags) -> Self {
+        let parts = || {
+            trials.iter().enumerate().flat_map(|(n, trial)| trial.rows.iter().map(move |r| (n, r)))
+        };
+        let changes: Rows =
+            parts().map(|(n, rows)| trials[n].changes[rows.clone()].to_vec()).collect();
+        let mut columns: Vec<Rows> =
+            vec![changes.iter().map(|rows| vec![1.0; rows.len()]).collect()];
+        let lagged: Vec<_> = trials.iter().map(|trial| trial.lagged(lags)).collect();
+        for index in 0..lagged.first().map_or(0, Vec::len) {
+            let column = |(n, rows): (usize, &Range<usize>)| {
+                rows.clone().map(|k| driven(&lagged[n][index], numerators, k)).collect()
+            };
+            columns.push(parts().map(column).collect());
+        }
+        Self { columns, changes }
+    }
+
+    /// The squared error.
+    pub(super) fn error(&self) -> f64 {
+        let all: Vec<&Rows> = self.columns.iter().chain([&self.changes]).collect();
+        let mut equations =
+            NormalEquations::from_products(all.len(), |i, j| product(all[i], all[j]));
+        (0..self.columns.len()).for_each(|column| equations.eliminate(column));
+        equations.error()
+    }
+
+    /// What `values` are beside the columns; `None` of what is no number.
+    pub(super) fn residuals_of(&self, values: &Rows) -> Option<Rows> {
+        residuals_of(values, &self.columns.iter().collect::<Vec<_>>())
+    }
+
+    /// The residuals of the changes.
+    pub(super) fn residuals(&self) -> Rows {
+        self.residuals_of(&self.changes).unwrap_or_else(|| self.changes.clone())
+    }
+}
+
 /// What `numerators` make of a lagged column, at sample `k`.
-pub(super) fn driven(column: &[f64], numerators: &Numerators, k: usize) -> f64 {
+fn driven(column: &[f64], numerators: &Numerators, k: usize) -> f64 {
     let past = (k + 1).checked_sub(numerators.first + NUMERATORS);
     let past = past.and_then(|from| column.get(from..from + NUMERATORS)).unwrap_or_default();
     past.iter().rev().zip(numerators.values).map(|(value, n)| value * n).sum()

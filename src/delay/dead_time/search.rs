@@ -1,7 +1,7 @@
 //! The dead time and the lags that leave the least error.
 
-use super::moments::{Moments, error_of};
-use super::record::Whitened;
+use super::moments::Moments;
+use super::record::{Design, Whitened};
 use super::response::{Lags, NO_LAG, Numerators, Structure};
 
 /// A structure with its dead time and lags, in samples, and its squared error.
@@ -11,6 +11,14 @@ pub(super) struct Fitted {
     pub(super) delay: f64,
     pub(super) lags: Lags,
     pub(super) error: f64,
+}
+
+impl Fitted {
+    /// The regression that it is the best of.
+    pub(super) fn design(&self, trials: &[Whitened]) -> Design {
+        let numerators = Numerators::of(self.structure, self.delay, self.lags);
+        Design::of(trials, &numerators, self.lags)
+    }
 }
 
 /// Dead times tried, per sample.
@@ -168,8 +176,8 @@ fn least_of_parabola(middle: f64, around: [f64; 6]) -> (f64, f64) {
 
 /// `fitted` with other lags.
 pub(super) fn at_lags(trials: &[Whitened], fitted: Fitted, lags: Lags) -> Fitted {
-    let numerators = Numerators::of(fitted.structure, fitted.delay, lags);
-    Fitted { lags, error: error_of(trials, &numerators, lags), ..fitted }
+    let fitted = Fitted { lags, ..fitted };
+    Fitted { error: fitted.design(trials).error(), ..fitted }
 }
 
 #[cfg(test)]

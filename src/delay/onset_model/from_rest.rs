@@ -22,7 +22,7 @@
 use std::ops::Range;
 
 use crate::delay::interval::FineDelay;
-use crate::numerics::{autocovariances, student_quantile};
+use crate::numerics::{autocovariances, student_quantile, without_line};
 use crate::units::ceil_to_index;
 
 /// The order of the lag, at most. Chosen on simulated cylinders: with 4 intervals hold too little where
@@ -107,19 +107,15 @@ struct Window {
 
 impl Window {
     fn of(values: &[f64]) -> Self {
-        let middle = middle(values.len());
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let times = || (0..values.len()).map(|k| k as f64 - middle);
-        let with: f64 = times().zip(values).map(|(x, y)| x * (y - mean)).sum();
-        let slope = with / times().map(|x| x * x).sum::<f64>();
-        let residuals: Vec<f64> = times().zip(values).map(|(x, y)| y - mean - slope * x).collect();
+        let (_, residuals) = without_line(values);
         let sse = residuals.iter().map(|r| r * r).sum();
         Self { residuals, sse }
     }
 
     /// The size of `shape`, which is zero before `first`, beside the line, and the squared error.
     fn with(&self, first: usize, shape: impl Iterator<Item = f64>) -> (f64, f64) {
-        let (middle, length) = (middle(self.residuals.len()), self.residuals.len() as f64);
+        let length = self.residuals.len() as f64;
+        let middle = (length - 1.0) / 2.0;
         let (mut sum, mut with_time, mut square, mut product) = (0.0, 0.0, 0.0, 0.0);
         for ((k, residual), h) in self.residuals.iter().enumerate().skip(first).zip(shape) {
             sum += h;
@@ -137,11 +133,6 @@ impl Window {
         let size = product / own;
         (size, (self.sse - size * product).max(0.0))
     }
-}
-
-/// The middle of the indices of so many samples.
-fn middle(samples: usize) -> f64 {
-    (samples as f64 - 1.0) / 2.0
 }
 
 /// The shapes that are tried, each at every part of a sample.

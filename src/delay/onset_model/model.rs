@@ -15,7 +15,7 @@ use crate::delay::interval::FineDelay;
 use crate::delay::motion::StepMotion;
 use crate::delay::prepared::Prepared;
 use crate::delay::settings::{FirstLast, Settings};
-use crate::numerics::{median, student_quantile};
+use crate::numerics::{limits, median, student_quantile};
 use crate::units::{SamplePeriod, ceil_to_index, floor_to_index};
 
 /// Samples from which the shape is found, and those from which its misfit is (chosen: more change
@@ -400,10 +400,9 @@ impl Search {
         }
         let hold = median(&runs.iter().flat_map(holds).collect::<Vec<f64>>())?;
         let outputs = runs.iter().map(|run| run.output.as_slice());
-        let values = || outputs.clone().flatten().copied();
-        let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
+        let (low, high) = limits(outputs.clone().flatten().copied());
         // An output that was computed has no noise but its rounding.
-        let noise = sensor_noise(&outputs).max(ROUNDING * range);
+        let noise = sensor_noise(&outputs).max(ROUNDING * (high - low));
         let changes = runs.iter().flat_map(|run| &run.steps).map(|step| step.change().abs());
         let change = median(&changes.collect::<Vec<f64>>())?;
         let mut search = Self { runs, reach: 0, noise, hold, change, families };
