@@ -12,7 +12,7 @@
 //! onsets, of other sizes. The weight `w` of a size is as well as it is known, at most what is usual:
 //! of onsets that are near each other only the sum of their sizes is.
 
-use super::windows::{Onset, Run};
+use super::windows::{Onsets, Run, all};
 use crate::numerics::{Regression, dot, fisher_tail, median};
 
 /// How far the sizes of onsets go with the steps of the input.
@@ -30,14 +30,16 @@ impl Follows {
     /// Gains.
     const GAINS: usize = 2;
 
-    pub(super) fn of(runs: &[Run], found: &[Vec<Option<Onset>>]) -> Self {
-        let onsets = runs.iter().zip(found).flat_map(|(run, found)| run.steps.iter().zip(found));
-        let known = found.iter().flatten().flatten().map(|onset| onset.information);
+    pub(super) fn of(runs: &[Run], onsets: &[Onsets]) -> Self {
+        let known = all(runs, onsets).map(|(.., onset)| onset.information);
         let usual = median(&known.collect::<Vec<f64>>()).unwrap_or(1.0).max(f64::MIN_POSITIVE);
         // Each times the root of its weight.
         let (mut sizes, mut above, mut below) = (Vec::new(), Vec::new(), Vec::new());
-        for (step, onset) in onsets.filter(|(step, _)| !step.rests) {
-            let Some(onset) = onset else { continue };
+        for (run, index, onset) in all(runs, onsets) {
+            let step = run.steps[index];
+            if step.rests {
+                continue;
+            }
             let root = (onset.information / usual).min(1.0).sqrt();
             sizes.push(root * onset.size);
             above.push(root * (step.after.max(0.0) - step.before.max(0.0)));

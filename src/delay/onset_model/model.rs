@@ -10,7 +10,7 @@ use super::reaction::p_value;
 use super::search::{Candidate, FEW, Search};
 use super::shape::{Family, Shape};
 use super::uncertainty::{Residual, choice, sensor_noise};
-use super::windows::{Fit, Onset, Pass, Run, Step};
+use super::windows::{Onset, Pass, Run, Step, all};
 use crate::delay::interval::FineDelay;
 use crate::delay::motion::StepMotion;
 use crate::delay::prepared::Prepared;
@@ -192,7 +192,7 @@ impl OnsetModel {
         search.reach = reach_of(hold, every, part, search.longest_reach());
         let found = search.evaluate(shape, search.starting(typical), typical, PASSES);
         let residual = Residual::of(&search, &found);
-        let follows = Follows::of(&search.runs, &found.onsets.found);
+        let follows = Follows::of(&search.runs, &found.onsets);
         let choice = choice(&candidates, residual.memory);
         let shared = (shared * shared * residual.memory + choice * choice).sqrt();
         let (reach, noise) = (search.reach, search.noise);
@@ -213,31 +213,28 @@ impl OnsetModel {
         };
         model.measure(&search, &found);
         let clear = |onset: &Option<Onset>| onset.filter(|it| it.is_clear).map(|it| it.position);
-        Some((model, found.onsets.found.iter().flatten().map(clear).collect()))
+        let onsets = found.onsets.iter().flat_map(|of_run| &of_run.found);
+        Some((model, onsets.map(clear).collect()))
     }
 
     /// How wide the intervals are, unless most onsets are not clear, and on which side of their steps
     /// they lie.
     fn measure(&mut self, search: &Search, found: &Candidate) {
         const CONFIDENCE: f64 = 0.95;
-        let (fit, pass) = (search.fit(&self.shape), search.pass(self.shape, self.typical));
-        let by = (fit.as_ref(), &pass);
-        let (mut widths, mut early, mut late, mut all) = (Vec::new(), 0.0, 0.0, 0);
-        for (run, found) in search.runs.iter().zip(&found.onsets.found) {
-            all += found.len();
-            for (index, onset) in found.iter().enumerate() {
-                let Some(onset) = onset.as_ref().filter(|onset| onset.is_clear) else { continue };
-                let (low, high) = self.sides(by, run, (index, onset), CONFIDENCE);
-                widths.push(low + high);
-                let next = run.steps.get(index + 1).map_or(f64::INFINITY, |next| next.at);
-                // A step may have been made any time after the sample before it.
-                early += f64::from(u8::from(onset.position + high < run.steps[index].at - 1.0));
-                late += f64::from(u8::from(onset.position - low > next));
-            }
+        let pass = search.pass(self.shape, self.typical);
+        let (mut widths, mut early, mut late) = (Vec::new(), 0.0, 0.0);
+        let clear = all(&search.runs, &found.onsets).filter(|(.., onset)| onset.is_clear);
+        for (run, index, onset) in clear {
+            let (low, high) = self.sides(&pass, run, (index, onset), CONFIDENCE);
+            widths.push(low + high);
+            let next = run.steps.get(index + 1).map_or(f64::INFINITY, |next| next.at);
+            // A step may have been made any time after the sample before it.
+            early += f64::from(u8::from(onset.position + high < run.steps[index].at - 1.0));
+            late += f64::from(u8::from(onset.position - low > next));
         }
         let clear = (widths.len() as f64).max(1.0);
         (self.early, self.late) = (early / clear, late / clear);
-        if 2 * widths.len() >= all {
+        if 2 * widths.len() >= search.steps() {
             self.width = median(&widths).unwrap_or(f64::INFINITY);
         }
     }
@@ -261,19 +258,19 @@ impl OnsetModel {
     /// How far the interval of an onset reaches to both sides, samples.
     fn sides(
         &self,
-        (fit, pass): (&dyn Fit, &Pass<'_>),
+        pass: &Pass,
         run: &Run,
         (index, onset): (usize, &Onset),
         confidence: f64,
     ) -> (f64, f64) {
         /// Samples of all windows that count beside those of one.
         const POOLED: f64 = 20.0;
-        let freedom = (onset.samples() as f64 - fit.parameters() as f64).max(1.0);
+        let freedom = (onset.samples() as f64 - pass.response.parameters() as f64).max(1.0);
         let all = self.residual.deviation.max(self.noise).powi(2);
         let variance = (onset.sse + POOLED * all) / (freedom + POOLED);
         let t = student_quantile(f64::midpoint(1.0, confidence), freedom + POOLED);
         let limit = onset.sse + variance.max(f64::MIN_POSITIVE) * self.residual.memory * t * t;
-        let (low, high) = fit.extent(run, index, onset, pass, limit);
+        let (low, high) = pass.extent(run, index, onset, limit);
         (low.hypot(t * self.shared), high.hypot(t * self.shared))
     }
 
@@ -294,28 +291,32 @@ impl OnsetModel {
         search.reach = ceil_to_index(self.reach as f64 * factor);
         let typical = self.typical * factor;
         let found = search.evaluate(scaled.shape, search.starting(typical), typical, PASSES);
-        let (fit, pass) = (search.fit(&scaled.shape), search.pass(scaled.shape, typical));
-        let by = (fit.as_ref(), &pass);
-        let onsets = found.onsets.found.first().into_iter().flatten().enumerate();
+        let pass = search.pass(scaled.shape, typical);
+        let onsets = found.onsets.iter().flat_map(|of_run| &of_run.found).enumerate();
         onsets
             .map(|(index, onset)| {
-                Some(scaled.step_onset(by, &search.runs[0], (index, onset.as_ref()?), confidence))
+                Some(scaled.step_onset(
+                    &pass,
+                    &search.runs[0],
+                    (index, onset.as_ref()?),
+                    confidence,
+                ))
             })
             .collect()
     }
 
     fn step_onset(
         &self,
-        (fit, pass): (&dyn Fit, &Pass<'_>),
+        pass: &Pass,
         run: &Run,
         (index, onset): (usize, &Onset),
         confidence: f64,
     ) -> StepOnset {
-        let (low, high) = self.sides((fit, pass), run, (index, onset), confidence);
+        let (low, high) = self.sides(pass, run, (index, onset), confidence);
         let delay = onset.position - run.steps[index].at;
         let explained = 1.0 - onset.sse / onset.sse_without.max(f64::MIN_POSITIVE);
         let samples = onset.samples() as f64;
-        let others = fit.parameters() as f64 - 2.0;
+        let others = pass.response.parameters() as f64 - 2.0;
         let p_value = p_value(explained, (samples - others) / self.residual.memory, samples);
         StepOnset {
             fine: FineDelay { delay, low: delay - low, high: delay + high, confidence },

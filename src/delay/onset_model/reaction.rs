@@ -7,10 +7,10 @@
 
 use std::f64::consts::PI;
 
-use super::dynamics::{Before, Dynamics};
+use super::dynamics::{Before, Dynamics, Response as _};
 use super::response::bend;
 use super::uncertainty;
-use super::windows::MARGIN;
+use super::windows::{MARGIN, best};
 use crate::numerics::fisher_tail;
 use crate::units::floor_to_index;
 
@@ -35,10 +35,10 @@ impl Bends {
     pub(in crate::delay) fn best(&self, values: &[f64]) -> Option<Bend> {
         let last = values.len().checked_sub(1 + MARGIN).filter(|last| *last >= MARGIN)?;
         let window = self.0.window(values, f64::INFINITY, Before::Any)?;
-        let (position, jump) = self.0.best(&window, MARGIN as f64, last as f64);
-        let fitted = self.0.fitted(&window, position);
+        let (position, jump) = best(window.as_ref(), MARGIN as f64, last as f64);
+        let fitted = window.fitted(position);
         Some(Bend {
-            explained: 1.0 - jump.sse / window.sse_without.max(f64::MIN_POSITIVE),
+            explained: 1.0 - jump.sse / window.sse_without().max(f64::MIN_POSITIVE),
             residuals: values.iter().zip(fitted).map(|(y, fitted)| y - fitted).collect(),
         })
     }
