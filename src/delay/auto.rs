@@ -40,12 +40,11 @@
 use std::f64::consts::{PI, TAU};
 
 use super::decision::{Decision, Verdict};
-use super::in_seconds::InSeconds;
 use super::input_motion::InputMotion;
 use super::interval::FineDelay;
 use super::method::Method;
 use super::prepared::Prepared;
-use super::settings::{FirstLast, Settings};
+use super::settings::{FirstLast, InSeconds, Settings};
 use crate::experiment::{Record, Trial};
 use crate::numerics::{
     LowPass, NoiseModel, autocovariances, median, quantile, to_digits, without_line,

@@ -1,6 +1,5 @@
 //! What is asked for: a method, and its settings.
 
-use super::in_seconds::InSeconds;
 use super::input_motion::{InputKind, InputMotion};
 use super::method::Method;
 use crate::experiment::Record;
@@ -55,6 +54,31 @@ pub enum CandidateLines {
     /// The best one, and of the others their number, the second-best error and how far those lie
     /// that fit nearly as well, where the method compares many: enough for all but a drawing.
     Best,
+}
+
+/// The settings that were given in seconds; the others are numbers of samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InSeconds {
+    /// α.
+    pub alpha: Option<f64>,
+    /// β.
+    pub beta: Option<f64>,
+    /// `τ_min`.
+    pub min_delay: Option<f64>,
+    /// The longest delay that is looked for.
+    pub max_delay: Option<f64>,
+}
+
+impl InSeconds {
+    /// Each with its name.
+    fn named(self) -> [(&'static str, Option<f64>); 4] {
+        [
+            ("α in seconds", self.alpha),
+            ("β in seconds", self.beta),
+            ("the shortest hold in seconds", self.min_delay),
+            ("the longest delay in seconds", self.max_delay),
+        ]
+    }
 }
 
 /// A method and its settings; the default is the onset model. The paper's search is that of
