@@ -12,7 +12,7 @@
 //! `Σ e²` has its minimum at the delay, and the levels of other steps explain little.
 
 use super::input_motion::InputMotion;
-use super::strokes::are_strokes;
+use super::steps::are_strokes;
 use crate::experiment::{Record, Trial};
 use crate::numerics::{Regression, median};
 

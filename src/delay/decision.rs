@@ -5,7 +5,6 @@ use std::fmt;
 use super::condition::{Check, Condition, Outcome, nothing_happened};
 use super::interval::FineDelay;
 use super::onset_model::StepOnset;
-use super::reviewer_verdict::ReviewerVerdict;
 use super::search::{Candidate, Candidates};
 use super::segment::Segment;
 use super::steps::InputStep;
@@ -34,6 +33,19 @@ pub struct Decision {
     pub onset: Option<Box<StepOnset>>,
     /// What a reviewer said of it.
     pub reviewer_verdict: Option<Box<ReviewerVerdict>>,
+}
+
+/// What a reviewer says of a decision: it overrides the conditions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReviewerVerdict {
+    /// Whether its delay counts.
+    pub accepted: bool,
+    /// The delay in samples, where the reviewer says it; else the method's own.
+    pub delay: Option<f64>,
+    /// Why.
+    pub note: String,
+    /// Who.
+    pub reviewer: String,
 }
 
 /// The best breakpoint of a segment, accepted or not.

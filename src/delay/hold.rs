@@ -56,6 +56,19 @@ impl Property for LevelTolerance {
     }
 }
 
+/// Groups of values, which are in the order of their levels: each level within `tolerance` of the
+/// first of its group.
+pub(super) fn alike<T>(sorted: &[T], level: impl Fn(&T) -> f64, tolerance: f64) -> Vec<&[T]> {
+    let (mut groups, mut rest) = (Vec::new(), sorted);
+    while let Some(least) = rest.first() {
+        let limit = level(least) + tolerance;
+        let (same, others) = rest.split_at(rest.partition_point(|it| level(it) <= limit).max(1));
+        groups.push(same);
+        rest = others;
+    }
+    groups
+}
+
 /// The holds of a trial in their order: from each change of more than `tolerance` to the next.
 pub(super) fn holds(trial: &Trial, tolerance: f64) -> Vec<Hold> {
     let steps = input_steps(trial.input(), tolerance);

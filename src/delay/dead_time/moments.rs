@@ -97,19 +97,11 @@ impl Moments {
         self.change += changes.iter().sum::<f64>();
         self.squared_change += dot(changes, changes);
         let (columns, from) = (self.columns, self.from);
-        let late = |column: &'_ [f64], by: usize| -> (usize, usize) {
-            (start.saturating_sub(by), end.saturating_sub(by).min(column.len()))
-        };
         let delays = self.sums.len() / columns.max(1);
-        let at = |column: &[f64], k: usize, by: usize| {
-            k.checked_sub(1 + by).and_then(|k| column.get(k)).copied().unwrap_or(0.0)
-        };
         for (j, column) in lagged.iter().enumerate() {
-            let (first, last) = late(column, from);
-            let mut sum: f64 = column[first..last].iter().sum();
+            let mut sum: f64 = late(column, &(start..end), from).iter().sum();
             for delay in 0..delays {
-                let (first, last) = late(column, from + delay);
-                let values = &column[first..last];
+                let values = late(column, &(start..end), from + delay);
                 self.with_changes[delay * columns + j] += dot(values, changes);
                 self.sums[delay * columns + j] += sum;
                 // A sample later the window gains one row in front and loses one behind.
@@ -136,14 +128,8 @@ impl Moments {
     ) {
         let (columns, from) = (self.columns, self.from);
         let square = columns * columns;
-        let first = |values: &'_ [f64], by: usize| -> (usize, usize) {
-            (start.saturating_sub(by), end.saturating_sub(by).min(values.len()))
-        };
-        let ((a, b), (c, d)) = (first(one, from), first(other, from + further));
-        let mut product = dot(&one[a..b], &other[c..d]);
-        let at = |values: &[f64], k: usize, by: usize| {
-            k.checked_sub(1 + by).and_then(|k| values.get(k)).copied().unwrap_or(0.0)
-        };
+        let rows = start..end;
+        let mut product = dot(late(one, &rows, from), late(other, &rows, from + further));
         let delays = self.sums.len() / columns.max(1);
         for delay in 0..delays {
             self.products[(delay * NUMERATORS + further) * square + i * columns + j] += product;
@@ -220,6 +206,17 @@ impl Moments {
         let all = |values: &[f64]| (0..columns).map(|i| weighted(values, i)).collect();
         Some(Driven { products, sums: all(&self.sums), with_changes: all(&self.with_changes) })
     }
+}
+
+/// The values of a column so many samples before `rows`.
+fn late<'a>(column: &'a [f64], rows: &Range<usize>, by: usize) -> &'a [f64] {
+    let first = rows.start.saturating_sub(by);
+    &column[first..rows.end.saturating_sub(by).min(column.len())]
+}
+
+/// The value of a column `by` samples before that ahead of row `k`; 0 before the first.
+fn at(column: &[f64], k: usize, by: usize) -> f64 {
+    k.checked_sub(1 + by).and_then(|k| column.get(k)).copied().unwrap_or(0.0)
 }
 
 /// Sums over the rows of the columns behind a dead time.

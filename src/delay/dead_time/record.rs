@@ -17,6 +17,7 @@ pub(super) struct Samples {
     /// Samples of the log in one of these.
     pub(super) averaged: usize,
     pub(super) period_s: f64,
+    pub(super) input: Vec<f64>,
     pub(super) output: Vec<f64>,
     /// The coefficients of a spline per part of the curve, each a little [ahead](AHEAD).
     pub(super) columns: Vec<Vec<f64>>,
@@ -26,13 +27,13 @@ impl Samples {
     pub(super) fn of(trial: &Trial, curve: &Curve) -> Self {
         let period_s = trial.period().seconds();
         let averaged = averaged(period_s);
-        let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / averaged as f64;
-        let output = trial.output().chunks_exact(averaged);
-        let output = output.map(|chunk| mean(&mut chunk.iter().copied())).collect();
+        let means = |signal: &[f64], of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            let mean = |chunk: &[f64]| chunk.iter().map(|u| of(*u)).sum::<f64>() / averaged as f64;
+            signal.chunks_exact(averaged).map(mean).collect()
+        };
+        let (input, output) = (means(trial.input(), &|u| u), means(trial.output(), &|y| y));
         let column = |index: usize| {
-            let chunks = trial.input().chunks_exact(averaged);
-            let mut values: Vec<f64> =
-                chunks.map(|chunk| mean(&mut chunk.iter().map(|u| curve.at(index, *u)))).collect();
+            let mut values = means(trial.input(), &|u| curve.at(index, u));
             spline(&mut values);
             // The last one is held.
             let last = values.last().copied().unwrap_or(0.0);
@@ -40,7 +41,7 @@ impl Samples {
             values.split_off(AHEAD)
         };
         let columns = (0..curve.columns()).map(column).collect();
-        Self { averaged, period_s: period_s * averaged as f64, output, columns }
+        Self { averaged, period_s: period_s * averaged as f64, input, output, columns }
     }
 }
 
