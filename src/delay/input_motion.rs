@@ -105,17 +105,6 @@ impl InputMotion {
     }
 }
 
-impl InputKind {
-    /// Whether the input of a joint is taken as moving all the time.
-    pub fn is_continuous(self, record: &Record) -> bool {
-        match self {
-            Self::Auto => InputMotion::of(record).is_continuous(),
-            Self::Steps => false,
-            Self::Continuous => true,
-        }
-    }
-}
-
 /// Sums over one trial.
 struct Moved {
     samples: f64,
@@ -274,6 +263,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
+    use crate::delay::Settings;
     use crate::units::{SamplePeriod, ceil_to_index};
 
     const LEVELS: [f64; 7] = [0.0, 1.0, -2.0, 0.5, 2.0, -1.0, -0.5];
@@ -406,10 +396,9 @@ mod tests {
     fn an_input_that_never_moves_is_no_joystick() {
         let found = motion(0.01, |_| 7.5);
         assert!(!found.is_continuous() && found.travel_in_steps.is_none());
-        assert!(
-            InputKind::Continuous.is_continuous(&Record::from([]))
-                && !InputKind::Auto.is_continuous(&Record::from([]))
-        );
+        let asked = |input| Settings { input, ..Settings::default() };
+        assert!(asked(InputKind::Continuous).takes_as_continuous(&found));
+        assert!(!asked(InputKind::Auto).takes_as_continuous(&found));
     }
 
     #[test]

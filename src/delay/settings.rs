@@ -2,7 +2,6 @@
 
 use super::input_motion::{InputKind, InputMotion};
 use super::method::Method;
-use crate::experiment::Record;
 use crate::numerics::LowPass;
 use crate::units::SamplePeriod;
 
@@ -225,20 +224,11 @@ impl Settings {
         self.low_pass.filter(|low_pass| self.low_pass_required || fits(low_pass))
     }
 
-    /// Whether the input of these `trials` of a joint is taken as moving all the time. One whose
-    /// smallest step is given has steps.
-    pub(crate) fn takes_as_continuous(&self, trials: &Record) -> bool {
-        self.takes_as_continuous_if(|| InputMotion::of(trials).is_continuous())
-    }
-
-    /// Whether an input that moves so is taken as moving all the time.
-    pub(crate) fn takes_motion_as_continuous(&self, motion: &InputMotion) -> bool {
-        self.takes_as_continuous_if(|| motion.is_continuous())
-    }
-
-    fn takes_as_continuous_if(&self, moves: impl FnOnce() -> bool) -> bool {
+    /// Whether an input that moves so is taken as moving all the time. One whose smallest step is
+    /// given has steps.
+    pub(crate) fn takes_as_continuous(&self, motion: &InputMotion) -> bool {
         match self.input {
-            InputKind::Auto => self.min_step <= 0.0 && moves(),
+            InputKind::Auto => self.min_step <= 0.0 && motion.is_continuous(),
             InputKind::Steps => false,
             InputKind::Continuous => true,
         }
@@ -246,7 +236,7 @@ impl Settings {
 
     /// These settings with the kind of input that moves so.
     pub(super) fn with_input(&self, motion: &InputMotion) -> Self {
-        let is_continuous = self.takes_motion_as_continuous(motion);
+        let is_continuous = self.takes_as_continuous(motion);
         let input = if is_continuous { InputKind::Continuous } else { InputKind::Steps };
         Self { input, ..self.clone() }
     }

@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use super::input_motion::edge_samples;
+use super::input_motion::{InputMotion, edge_samples};
 use super::input_noise::Levels;
 use super::settings::{FirstLast, Settings};
 use crate::experiment::{Property, Record, Trial};
@@ -61,7 +61,7 @@ pub(super) fn hold_ranges(
 /// The steps of each of the `trials` of a joint, as `settings` ask for: none of an input that
 /// moves all the time.
 pub(crate) fn joint_steps(trials: &Record, settings: &Settings) -> Vec<Vec<InputStep>> {
-    if settings.takes_as_continuous(trials) {
+    if settings.takes_as_continuous(&InputMotion::of(trials)) {
         return trials.iter().map(|_| Vec::new()).collect();
     }
     trials.iter().map(|trial| trial_steps(trial, settings)).collect()

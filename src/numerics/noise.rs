@@ -28,8 +28,6 @@ pub(crate) struct NoiseModel {
     coefficients: Vec<f64>,
     /// `1 − Σ a_i`: what whitening makes of 1.
     pub(crate) level: f64,
-    /// `Σ i·a_i`: whitening makes `level·k + shift` of `k`.
-    pub(crate) shift: f64,
 }
 
 impl NoiseModel {
@@ -39,8 +37,7 @@ impl NoiseModel {
 
     fn new(coefficients: Vec<f64>) -> Self {
         let level = 1.0 - coefficients.iter().sum::<f64>();
-        let shift = coefficients.iter().zip(1..).map(|(a, i)| f64::from(i) * a).sum();
-        Self { coefficients, level, shift }
+        Self { coefficients, level }
     }
 
     /// Noise about a line, which does not wander.
