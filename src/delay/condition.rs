@@ -72,9 +72,7 @@ impl Condition {
             Self::Reviewer => "rejected by a reviewer",
         }
     }
-}
 
-impl Condition {
     /// What is so where it is met, in few words.
     #[cfg(feature = "rrd")]
     pub(crate) fn when_met(self) -> &'static str {
@@ -91,9 +89,7 @@ impl Condition {
             Self::Reviewer => "no reviewer's word",
         }
     }
-}
 
-impl Condition {
     /// What it asks for, in a sentence without its end.
     pub fn asks(self) -> &'static str {
         match self {

@@ -181,9 +181,6 @@ struct Hold {
 ///
 /// Every sample enters and leaves the window once: its extremes stand in front of two queues.
 fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
-    if tolerance <= 0.0 {
-        return exact_holds(input, shortest);
-    }
     let (mut holds, mut start) = (Vec::new(), 0);
     let (mut lowest, mut highest) = (VecDeque::new(), VecDeque::new());
     for end in 0..=input.len() {
@@ -204,20 +201,6 @@ fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
         while highest.pop_back_if(|back| input[*back] <= *value).is_some() {}
         lowest.push_back(end);
         highest.push_back(end);
-    }
-    holds
-}
-
-/// [`holds`] of levels without noise: the same value again and again.
-fn exact_holds(input: &[f64], shortest: usize) -> Vec<Hold> {
-    let (mut holds, mut start) = (Vec::new(), 0);
-    #[expect(clippy::float_cmp, reason = "levels are exact")]
-    for run in input.chunk_by(|a, b| a == b) {
-        let end = start + run.len();
-        if run.len() >= shortest || start == 0 {
-            holds.push(Hold { start, end, first: run[0], last: run[0] });
-        }
-        start = end;
     }
     holds
 }

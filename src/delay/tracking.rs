@@ -47,12 +47,6 @@ impl Property for Option<Tracking> {
     }
 }
 
-/// A hold of the input at whose end the output rests.
-struct RestingHold {
-    level: f64,
-    output: f64,
-}
-
 impl Tracking {
     /// The output at rest while the input is zero, output units; 0 where it is nearer to that than
     /// is known.
@@ -78,8 +72,8 @@ impl Tracking {
         let range = high - low;
         let of_trial =
             |(trial, steps): (&Trial, &Vec<InputStep>)| resting_holds(trial.output(), steps, range);
-        let rests: Vec<RestingHold> = trials.iter().zip(steps).flat_map(of_trial).collect();
-        let mut levels: Vec<f64> = rests.iter().map(|rest| rest.level).collect();
+        let rests: Vec<(f64, f64)> = trials.iter().zip(steps).flat_map(of_trial).collect();
+        let mut levels: Vec<f64> = rests.iter().map(|(level, _)| *level).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
         let enough = rests.len() >= FEWEST_RESTS && rests.len() as f64 >= RESTING * holds as f64;
@@ -90,12 +84,12 @@ impl Tracking {
     }
 
     /// The regression line of where the output rests, if it is near to it.
-    fn through(rests: &[RestingHold], noise: f64) -> Option<Self> {
-        let sums = PairSums::of(rests.iter().map(|rest| (rest.level, rest.output)));
+    fn through(rests: &[(f64, f64)], noise: f64) -> Option<Self> {
+        let sums = PairSums::of(rests.iter().copied());
         let ((gain, offset), r_squared) = (sums.line(), sums.r_squared());
         // Two parameters: n − 2 degrees of freedom.
         let off = (sums.sse() / (rests.len() as f64 - 2.0)).sqrt();
-        let (low, high) = limits(rests.iter().map(|rest| rest.output));
+        let (low, high) = limits(rests.iter().map(|(_, output)| *output));
         let travel = high - low;
         let tolerance = (3.0 * off).max(4.0 * noise).max(0.005 * travel);
         let is_near = gain.is_finite() && gain != 0.0 && off <= OFF * travel;
@@ -171,8 +165,9 @@ impl Hold<'_> {
     }
 }
 
-/// The holds at whose end `output` rests; `range` is that of the whole record.
-fn resting_holds(output: &[f64], steps: &[InputStep], range: f64) -> Vec<RestingHold> {
+/// The level of each hold at whose end `output` rests, and where; `range` is that of the whole
+/// record.
+fn resting_holds(output: &[f64], steps: &[InputStep], range: f64) -> Vec<(f64, f64)> {
     /// Part of a hold at its end, and samples of it at least, over which the output rests, and
     /// part of the range by which it may move meanwhile.
     const PARTS: usize = 5;
@@ -187,7 +182,7 @@ fn resting_holds(output: &[f64], steps: &[InputStep], range: f64) -> Vec<Resting
         let (first, last) = tail.split_at(tail.len() / 2);
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
         let rests = (mean(last) - mean(first)).abs() <= STILL * range;
-        rests.then(|| RestingHold { level: step.after, output: mean(tail) })
+        rests.then(|| (step.after, mean(tail)))
     };
     steps.iter().zip(hold_ranges(steps, output.len())).filter_map(resting).collect()
 }

@@ -6,7 +6,7 @@ use super::curve::Curve;
 use super::excitation::one_frequency;
 use super::feedback::feedback;
 use super::profile::Profile;
-use super::record::{Samples, Whitened, averaged};
+use super::record::{Samples, Whitened, averaged, whitening};
 use super::response::NUMERATORS;
 use super::result::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown};
 use super::search::{Fitted, grid, least, profiles, with_one_lag};
@@ -14,7 +14,7 @@ use super::uncertainty::{Assessed, PARTS};
 use super::windows::{Estimated, Known, same_in_all};
 use crate::delay::settings::Settings;
 use crate::experiment::Trial;
-use crate::numerics::{Autoregression, autocovariances, student_quantile};
+use crate::numerics::{autocovariances, student_quantile};
 use crate::units::ceil_to_index;
 
 /// Longest dead time that is looked for unasked, seconds: hydraulic joints have up to half of it.
@@ -189,9 +189,7 @@ fn noise(record: &Record, rows: &[Vec<Range<usize>>]) -> (Vec<f64>, Option<Fitte
         let residuals = best.design(&plain).residuals();
         let samples: usize = residuals.iter().map(Vec::len).sum();
         let memory = MEMORY.min(samples / 20);
-        let memory = Autoregression::of(&autocovariances(&residuals, memory), samples);
-        // w_k = e_k − Σ a_i e_(k−i).
-        filter = std::iter::once(1.0).chain(memory.coefficients.iter().map(|a| -a)).collect();
+        filter = whitening(&autocovariances(&residuals, memory), samples);
     }
     (filter, best.filter(|best| best.error.is_finite()))
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::curve::Curve;
 use super::response::{AHEAD, Lags, NUMERATORS, Numerators};
 use crate::experiment::Trial;
-use crate::numerics::{NormalEquations, product, residuals_of};
+use crate::numerics::{Autoregression, NormalEquations, product, residuals_of};
 
 /// Shortest period that is worked at: faster logs are averaged over as many samples. A dead
 /// time is found between samples, so that this is no limit to it.
@@ -86,11 +86,8 @@ pub(super) struct Whitened {
 impl Whitened {
     /// With the coefficients `1, a_1, …`; the input is taken to have been held before.
     pub(super) fn of(samples: &Samples, filter: &[f64], rows: &[Range<usize>]) -> Self {
-        let output = &samples.output;
-        let changes = output.iter().zip(output.iter().skip(1)).map(|(from, to)| to - from);
-        let changes: Vec<f64> = std::iter::once(0.0).chain(changes).collect();
         Self {
-            changes: whiten(&changes, filter),
+            changes: whiten(&changes(&samples.output), filter),
             columns: samples.columns.iter().map(|column| whiten(column, filter)).collect(),
             rows: rows.to_vec(),
         }
@@ -120,7 +117,20 @@ impl Whitened {
     }
 }
 
-fn whiten(values: &[f64], filter: &[f64]) -> Vec<f64> {
+/// The changes from each value to the next, none to the first.
+pub(super) fn changes(values: &[f64]) -> Vec<f64> {
+    let changes = values.windows(2).map(|pair| pair[1] - pair[0]);
+    std::iter::once(0.0).take(values.len()).chain(changes).collect()
+}
+
+/// What is new in a signal of such autocovariances: `w_k = e_k − Σ a_i e_(k−i)`, as a filter.
+pub(super) fn whitening(covariances: &[f64], samples: usize) -> Vec<f64> {
+    let memory = Autoregression::of(covariances, samples);
+    std::iter::once(1.0).chain(memory.coefficients.iter().map(|a| -a)).collect()
+}
+
+/// `values` behind a filter; the first was held before.
+pub(super) fn whiten(values: &[f64], filter: &[f64]) -> Vec<f64> {
     let first = values.first().copied().unwrap_or(0.0);
     let at = |k: usize, back: usize| {
         k.checked_sub(back).and_then(|k| values.get(k)).copied().unwrap_or(first)

@@ -23,7 +23,7 @@ pub(super) fn judge(decisions: &mut [Decision], trial: &Prepared<'_>, confidence
     let bends = Bends::within(longest(decisions));
     let best = |decision: &Decision| bends.best(window(decision, trial));
     let found: Vec<Option<Bend>> = decisions.iter().map(best).collect();
-    let memory = memory(found.iter().flatten());
+    let memory = memory(found.iter().flatten().map(|bend| bend.residuals.as_slice()));
     for (decision, bend) in decisions.iter_mut().zip(found) {
         decision.test_reaction(bend.map(|bend| bend.p_value(memory)), confidence);
     }
@@ -50,7 +50,8 @@ pub(super) fn judge_until_one_reacts(
         let Some(bend) = Bends::within(values.len() + 1).best(values) else { continue };
         found.push(bend);
         let latest = &found[found.len().saturating_sub(LATEST)..];
-        let p_value = latest.last().map(|bend| bend.p_value(memory(latest.iter())));
+        let memory = memory(latest.iter().map(|bend| bend.residuals.as_slice()));
+        let p_value = latest.last().map(|bend| bend.p_value(memory));
         if p_value.is_some_and(|p_value| p_value < PLAIN) {
             break;
         }

@@ -9,7 +9,6 @@ use std::f64::consts::PI;
 
 use super::dynamics::{Before, Dynamics, Response as _};
 use super::response::bend;
-use super::uncertainty;
 use super::windows::{MARGIN, best};
 use crate::numerics::fisher_tail;
 use crate::units::floor_to_index;
@@ -22,7 +21,8 @@ pub(in crate::delay) struct Bends(Dynamics<2>);
 pub(in crate::delay) struct Bend {
     /// The part of the squared error of one line that it removes.
     explained: f64,
-    residuals: Vec<f64>,
+    /// What it leaves over.
+    pub(in crate::delay) residuals: Vec<f64>,
 }
 
 impl Bends {
@@ -50,11 +50,6 @@ impl Bend {
         let samples = self.residuals.len() as f64;
         p_value(self.explained, (samples - 2.0) / memory, samples)
     }
-}
-
-/// By how much the memory of what bends leave over enlarges variances.
-pub(in crate::delay) fn memory<'a>(bends: impl Iterator<Item = &'a Bend> + Clone) -> f64 {
-    uncertainty::memory(bends.map(|bend| bend.residuals.as_slice()))
 }
 
 /// The probability that noise alone gains the `share` of its power with a bend in a window of so many

@@ -76,7 +76,7 @@ impl Residual {
 }
 
 /// By how much the memory of residuals enlarges variances.
-pub(super) fn memory<'a>(windows: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
+pub(in crate::delay) fn memory<'a>(windows: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
     /// Samples over which residuals may go together, and the part of a window that these may be.
     const REACHES: [usize; 6] = [2, 5, 10, 20, 40, 100];
     const PART: usize = 3;
