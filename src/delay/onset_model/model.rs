@@ -15,6 +15,7 @@ use crate::delay::interval::FineDelay;
 use crate::delay::motion::StepMotion;
 use crate::delay::prepared::Prepared;
 use crate::delay::settings::{FirstLast, Settings};
+use crate::delay::steps::InputStep;
 use crate::numerics::{limits, median, student_quantile};
 use crate::units::{SamplePeriod, ceil_to_index, floor_to_index};
 
@@ -350,7 +351,7 @@ impl OnsetModel {
     /// Root mean square of what the shape leaves over, in that of the sensor's noise; none of a sensor
     /// that shows no noise.
     pub fn misfit(&self) -> f64 {
-        misfit(self.residual.deviation, self.noise)
+        if self.noise > 0.0 { self.residual.deviation / self.noise } else { 1.0 }
     }
 
     /// The part of the changes of speed, or of level, that goes with the changes of the input: an R²
@@ -377,11 +378,6 @@ impl OnsetModel {
 fn apart(one: &[Option<f64>], other: &[Option<f64>]) -> f64 {
     let both = one.iter().zip(other).filter_map(|(one, other)| Some((*other)? - (*one)?));
     median(&both.collect::<Vec<f64>>()).unwrap_or(0.0).abs()
-}
-
-/// What is left over in parts of the noise.
-fn misfit(deviation: f64, noise: f64) -> f64 {
-    if noise > 0.0 { deviation / noise } else { 1.0 }
 }
 
 impl Search {
@@ -474,34 +470,29 @@ fn beginning(runs: &[Run], enough: usize) -> Vec<Run> {
 /// each.
 fn run_of(trial: &Prepared<'_>, longest: Option<usize>, families: &[Family]) -> Run {
     let samples = trial.raw.len();
-    let output = trial.raw.to_vec();
-    let motions = trial.motions.iter().map(|motion| motion.as_deref());
-    let motions = motions.chain(std::iter::repeat(None));
     // A bump test of an output that settles is its way to a level.
     let is_bounded = trial.steps.len() > FEW || !families.contains(&Family::Settling);
-    let bounds = |motion: Option<&StepMotion>| motion.copied().filter(|_| is_bounded);
-    // What was filled in while nothing was logged says nothing.
-    let logged = |at: usize| {
+    let step = |(step, motion): (&InputStep, &Option<Box<StepMotion>>)| {
+        let at = step.sample - 1;
+        // What was filled in while nothing was logged says nothing.
         let before = trial.unlogged.iter().rev().find(|gap| gap.end <= at);
         let behind = trial.unlogged.iter().find(|gap| gap.start > at);
-        (before.map_or(0, |gap| gap.end), behind.map_or(samples, |gap| gap.start))
+        let bounds = motion.as_ref().filter(|_| is_bounded);
+        let first = before.map_or(0, |gap| gap.end).max(bounds.map_or(0, |it| it.first));
+        let end = behind.map_or(samples, |gap| gap.start);
+        let end = end.min(bounds.map_or(samples, |it| it.end));
+        let asked = longest.map_or(usize::MAX, |longest| at.saturating_add(longest));
+        let latest = motion.as_ref().map_or(samples, |motion| motion.latest).min(asked);
+        Step {
+            at: at as f64,
+            before: step.before,
+            after: step.after,
+            first: first as f64,
+            end: end as f64,
+            latest: latest as f64,
+            rests: motion.as_ref().and_then(|motion| motion.rest).is_some_and(|rest| rest.lasts()),
+        }
     };
-    let extent = |at: usize, motion: Option<&StepMotion>| {
-        let (first, end) = logged(at);
-        bounds(motion).map_or((first, end), |it| (it.first.max(first), it.end.min(end)))
-    };
-    let steps = trial.steps.iter().zip(motions).map(|(step, motion)| Step {
-        at: step.sample as f64 - 1.0,
-        before: step.before,
-        after: step.after,
-        first: extent(step.sample - 1, motion).0 as f64,
-        end: extent(step.sample - 1, motion).1 as f64,
-        latest: {
-            let plainly = motion.map_or(samples, |motion| motion.latest);
-            let asked = longest.map(|longest| (step.sample - 1).saturating_add(longest));
-            plainly.min(asked.unwrap_or(usize::MAX)) as f64
-        },
-        rests: motion.and_then(|motion| motion.rest).is_some_and(|rest| rest.lasts()),
-    });
-    Run { output, steps: steps.collect() }
+    let steps = trial.steps.iter().zip(&trial.motions).map(step).collect();
+    Run { output: trial.raw.to_vec(), steps }
 }
