@@ -290,10 +290,14 @@ impl Search {
         kept.map(|it| self.refined(it, ROUNDS)).collect()
     }
 
+    /// How far the onsets of a candidate go with the input.
+    fn r2(&self, candidate: &Candidate) -> f64 {
+        Follows::of(&self.runs, &candidate.onsets).r2
+    }
+
     fn keep_those_that_follow(&self, all: &mut Vec<Candidate>) {
-        let r2 = |candidate: &Candidate| Follows::of(&self.runs, &candidate.onsets).r2;
-        let most = all.iter().map(r2).fold(0.0, f64::max);
-        all.retain(|candidate| r2(candidate) > most - WORSE);
+        let most = all.iter().map(|it| self.r2(it)).fold(0.0, f64::max);
+        all.retain(|it| self.r2(it) > most - WORSE);
     }
 
     /// Broken lines about the common delay that shows best, or whose onsets go best with the input
@@ -315,14 +319,13 @@ impl Search {
             let other = bend(0.0);
             return if other.score < best.score { other } else { best };
         }
-        let r2 = |candidate: &Candidate| Follows::of(&self.runs, &candidate.onsets).r2;
-        let mut explained = r2(&best);
+        let mut explained = self.r2(&best);
         for (delay, gain) in tops.into_iter().take(TOPS).skip(1) {
             if gain < SHOWS * most || explained > WELL {
                 break;
             }
             let other = bend(delay);
-            let its = r2(&other);
+            let its = self.r2(&other);
             if its > explained + MORE {
                 (best, explained) = (other, its);
             }
