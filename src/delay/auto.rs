@@ -47,7 +47,7 @@ use super::prepared::Prepared;
 use super::settings::{FirstLast, InSeconds, Settings};
 use crate::experiment::{Record, Trial};
 use crate::numerics::{
-    LowPass, NoiseModel, autocovariances, median, quantile, to_digits, without_line,
+    LowPass, NoiseModel, RunningLine, autocovariances, median, quantile, to_digits,
 };
 use crate::units::ceil_to_index;
 
@@ -193,8 +193,6 @@ impl<'a> Observed<'a> {
     /// The delays and holds, and the halves of the times between two reactions in which a
     /// lag is over.
     fn add(&mut self, output: &[f64], decisions: &[Decision]) {
-        /// Samples from which on noise can be distinguished from a line.
-        const FEWEST: usize = 8;
         self.holds.extend(decisions.iter().rev().skip(1).map(|decision| decision.hold as f64));
         let accepted = decisions.iter().filter(|one| one.verdict() == Verdict::Accepted);
         self.delays.extend(accepted.filter_map(|one| one.fine));
@@ -209,11 +207,10 @@ impl<'a> Observed<'a> {
         for (place, end) in places.iter().zip(ends) {
             // In the later half a lag has died away.
             let start = place.midpoint(end);
-            let Some(quiet) = output.get(start..end).filter(|quiet| quiet.len() >= FEWEST) else {
+            let Some((slope, residuals)) = output.get(start..end).and_then(without_line) else {
                 slope_before = None;
                 continue;
             };
-            let (slope, residuals) = without_line(quiet);
             self.bends.extend(slope_before.map(|before| slope - before));
             slope_before = Some(slope);
             self.quiet.push(residuals);
@@ -311,6 +308,21 @@ impl<'a> Observed<'a> {
 fn gain(noise: &NoiseModel, omega: f64) -> f64 {
     // N(ω)/s².
     (2.0 * (0.5 * omega).sin()).powi(4) / noise.memory_gain(omega)
+}
+
+/// The slope of the line through `values`, and their residuals; `None` for too few of them.
+fn without_line(values: &[f64]) -> Option<(f64, Vec<f64>)> {
+    /// Samples from which on noise can be distinguished from a line.
+    const FEWEST: usize = 8;
+    let offset = values.first().filter(|_| values.len() >= FEWEST)?;
+    let mut line = RunningLine::default();
+    for value in values {
+        line.push(value - offset);
+    }
+    let (slope, mean) = (line.slope(), line.mean() + offset);
+    let middle = 0.5 * (values.len() - 1) as f64;
+    let samples = values.iter().enumerate();
+    Some((slope, samples.map(|(k, value)| value - mean - slope * (k as f64 - middle)).collect()))
 }
 
 /// The spectrum of second differences, by Welch's method.

@@ -5,7 +5,7 @@ use std::fmt;
 use super::condition::{Check, Condition, Outcome};
 use super::decision::{Decision, Verdict};
 use super::search::Candidate;
-use crate::numerics::{PairSums, limits};
+use crate::numerics::limits;
 
 /// A number this near its limit, as a part of their sum, is near; farther away it is no doubt.
 const NEAR: f64 = 0.25;
@@ -170,8 +170,18 @@ impl Decision {
             let line = if k < best.breakpoint { best.before } else { best.after };
             line.at(k as f64)
         };
-        // The squared error of one line through both.
-        let bend = PairSums::of((self.segment.first..last).map(|k| (k as f64, fitted(k)))).sse();
+        let samples = || (self.segment.first..last).map(|k| (k as f64, fitted(k)));
+        let n = (last - self.segment.first).max(1) as f64;
+        let (sum_x, sum_y) = samples().fold((0.0, 0.0), |(a, b), (x, y)| (a + x, b + y));
+        let (mean_x, mean_y) = (sum_x / n, sum_y / n);
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        for (x, y) in samples().map(|(x, y)| (x - mean_x, y - mean_y)) {
+            xx += x * x;
+            xy += x * y;
+            yy += y * y;
+        }
+        // The squared error of one line through both: Σ(ŷ − ȳ)² less what its slope explains.
+        let bend = (yy - xy * xy / xx.max(f64::MIN_POSITIVE)).max(0.0);
         let one_line = best.sse + bend;
         if one_line > 0.0 { bend / one_line } else { 0.0 }
     }

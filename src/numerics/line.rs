@@ -75,16 +75,6 @@ impl RunningLine {
     }
 }
 
-/// The slope of the line through `values`, per value, and what they are beside it.
-pub(crate) fn without_line(values: &[f64]) -> (f64, Vec<f64>) {
-    let middle = (values.len() as f64 - 1.0) / 2.0;
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let times = || (0..values.len()).map(|k| k as f64 - middle);
-    let with: f64 = times().zip(values).map(|(x, y)| x * (y - mean)).sum();
-    let slope = with / times().map(|x| x * x).sum::<f64>();
-    (slope, times().zip(values).map(|(x, y)| y - mean - slope * x).collect())
-}
-
 /// Means, variances and covariance of pairs, updated one by one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PairSums {

@@ -22,7 +22,7 @@ pub(crate) mod testing;
 pub(crate) use autoregression::Autoregression;
 pub use filter::{FilterError, LowPass, MAX_ORDER};
 pub use line::Line;
-pub(crate) use line::{PairSums, RunningLine, without_line};
+pub(crate) use line::{PairSums, RunningLine};
 pub(crate) use moments::{autocovariances, column_products, dot};
 pub(crate) use noise::NoiseModel;
 pub(crate) use normal_equations::NormalEquations;

@@ -1,6 +1,6 @@
 //! Small least squares by normal equations, solved column by column.
 
-use super::moments::dot;
+use super::moments::with_each;
 use super::rank::PIVOT;
 
 /// The products of all columns with each other, the last of them the target; eliminated
@@ -17,7 +17,15 @@ impl NormalEquations {
     /// Of `columns` of `length` samples each, one behind the other.
     pub(crate) fn of(columns: &[f64], length: usize) -> Self {
         let columns: Vec<&[f64]> = columns.chunks_exact(length.max(1)).collect();
-        Self::from_products(columns.len(), |i, j| dot(columns[i], columns[j]))
+        let size = columns.len();
+        let mut products = vec![0.0; size * size];
+        for (i, row) in products.chunks_exact_mut(size.max(1)).enumerate() {
+            // Four products in one pass read the column once.
+            for (others, slots) in columns[i..].chunks(4).zip(row[i..].chunks_mut(4)) {
+                slots.copy_from_slice(&with_each(columns[i], others)[..others.len()]);
+            }
+        }
+        Self::from_products(size, |i, j| products[i * size + j])
     }
 
     /// Of so many columns, from the `product` of two of them.

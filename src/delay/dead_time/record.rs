@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::curve::Curve;
 use super::response::{AHEAD, Lags, NUMERATORS, Numerators};
 use crate::experiment::Trial;
-use crate::numerics::{Autoregression, NormalEquations, product, residuals_of};
+use crate::numerics::{Autoregression, NormalEquations, residuals_of};
 
 /// Shortest period that is worked at: faster logs are averaged over as many samples. A dead
 /// time is found between samples, so that this is no limit to it.
@@ -171,9 +171,9 @@ impl Design {
 
     /// The squared error.
     pub(super) fn error(&self) -> f64 {
-        let all: Vec<&Rows> = self.columns.iter().chain([&self.changes]).collect();
-        let mut equations =
-            NormalEquations::from_products(all.len(), |i, j| product(all[i], all[j]));
+        let samples: usize = self.changes.iter().map(Vec::len).sum();
+        let all = self.columns.iter().chain([&self.changes]).flatten().flatten();
+        let mut equations = NormalEquations::of(&all.copied().collect::<Vec<f64>>(), samples);
         (0..self.columns.len()).for_each(|column| equations.eliminate(column));
         equations.error()
     }

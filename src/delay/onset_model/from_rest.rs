@@ -22,7 +22,7 @@
 use std::ops::Range;
 
 use crate::delay::interval::FineDelay;
-use crate::numerics::{autocovariances, student_quantile, without_line};
+use crate::numerics::{autocovariances, student_quantile};
 use crate::units::ceil_to_index;
 
 /// The order of the lag, at most. Chosen on simulated cylinders: with 4 intervals hold too little where
@@ -107,7 +107,12 @@ struct Window {
 
 impl Window {
     fn of(values: &[f64]) -> Self {
-        let (_, residuals) = without_line(values);
+        let middle = (values.len() as f64 - 1.0) / 2.0;
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let times = || (0..values.len()).map(|k| k as f64 - middle);
+        let with: f64 = times().zip(values).map(|(x, y)| x * (y - mean)).sum();
+        let slope = with / times().map(|x| x * x).sum::<f64>();
+        let residuals: Vec<f64> = times().zip(values).map(|(x, y)| y - mean - slope * x).collect();
         let sse = residuals.iter().map(|r| r * r).sum();
         Self { residuals, sse }
     }
