@@ -6,9 +6,8 @@
 
 use std::sync::Arc;
 
-use super::neutral::Neutral;
-use super::transition::Transition;
-use super::trial_estimate::TrialEstimate;
+use super::estimate::TrialEstimate;
+use super::neutral::{Neutral, Transition};
 use crate::experiment::{Joint, Trial};
 use crate::numerics::{RankTest, holm, mann_whitney, median, spearman};
 

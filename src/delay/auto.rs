@@ -40,18 +40,15 @@
 use std::f64::consts::{PI, TAU};
 
 use super::decision::{Decision, Verdict};
-use super::in_seconds::InSeconds;
 use super::input_motion::InputMotion;
 use super::interval::FineDelay;
-use super::method::implementation;
+use super::method::Method;
 use super::prepared::Prepared;
-use super::settings::{FirstLast, Settings};
-use super::spec::Method;
+use super::settings::{FirstLast, InSeconds, Settings};
 use crate::experiment::{Record, Trial};
-use crate::numerics::LowPass;
-use crate::numerics::NoiseModel;
-use crate::numerics::RunningLine;
-use crate::numerics::{autocovariances, median, quantile, to_digits};
+use crate::numerics::{
+    LowPass, NoiseModel, RunningLine, autocovariances, median, quantile, to_digits,
+};
 use crate::units::ceil_to_index;
 
 /// Which settings are chosen from the record.
@@ -122,9 +119,7 @@ pub fn choose(trials: &Record, settings: &Settings, automatic: Automatic) -> (Se
         chosen = chosen.with_alpha(ceil_to_index(delay).max(1).into());
     }
     if automatic.passband {
-        let smooths = settings.method.spec().low_pass.is_some();
-        let low_pass = || record.low_pass(settings.low_pass, statistics.motion_ends_hz);
-        chosen.low_pass = if smooths { low_pass() } else { None };
+        chosen.low_pass = record.low_pass(settings.low_pass, statistics.motion_ends_hz);
     }
     if automatic.beta {
         let beta = if chosen.low_pass.is_some() { 1 } else { record.blur() };
@@ -185,10 +180,10 @@ impl<'a> Observed<'a> {
         let prepared = Prepared::all(trials, &hinge);
         let alike = prepared.into_iter().filter(|trial| Some(trial.period) == period);
         let alike: Vec<Prepared<'_>> = alike.filter(|trial| !trial.steps.is_empty()).collect();
-        let method = implementation(Method::HINGE);
-        let shared = method.shared(&alike, &hinge);
+        let model = Method::HINGE.shared(&alike, &hinge);
         for trial in &alike {
-            record.add(&trial.raw, &method.decide(trial, &shared, &hinge));
+            let decisions = Method::HINGE.decide(trial, model.as_ref(), &hinge);
+            record.add(&trial.raw, &decisions);
         }
         record.noise = NoiseModel::of(&record.quiet, LINE);
         record.innovations = record.innovations();

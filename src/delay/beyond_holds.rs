@@ -12,7 +12,7 @@
 //! `Σ e²` has its minimum at the delay, and the levels of other steps explain little.
 
 use super::input_motion::InputMotion;
-use super::strokes::are_strokes;
+use super::steps::are_strokes;
 use crate::experiment::{Record, Trial};
 use crate::numerics::{Regression, median};
 
@@ -64,14 +64,10 @@ pub(crate) fn delay_beyond_holds(trials: &Record) -> Option<f64> {
 
 /// Samples for which each level of the input is held.
 fn holds(trial: &Trial) -> Vec<f64> {
-    let mut holds = Vec::new();
-    let mut since = 0;
-    for (index, pair) in trial.input().windows(2).enumerate() {
-        if pair[0].to_bits() != pair[1].to_bits() {
-            holds.push((index + 1 - since) as f64);
-            since = index + 1;
-        }
-    }
+    let runs = trial.input().chunk_by(|a, b| a.to_bits() == b.to_bits());
+    let mut holds: Vec<f64> = runs.map(|run| run.len() as f64).collect();
+    // The last one may have gone on.
+    holds.pop();
     holds
 }
 

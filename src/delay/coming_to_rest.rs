@@ -9,6 +9,7 @@ use super::tracking::Tracking;
 use crate::experiment::Record;
 
 /// How the output of a joint comes to rest; the first of these that its record shows.
+#[derive(Debug)]
 pub(super) enum ComingToRest {
     /// It goes where the input says, and stays.
     Tracks(Tracking),

@@ -2,11 +2,9 @@
 
 use std::fmt;
 
-use super::checks::Checks;
 use super::condition::{Check, Condition, Outcome, nothing_happened};
 use super::interval::FineDelay;
 use super::onset_model::StepOnset;
-use super::reviewer_verdict::ReviewerVerdict;
 use super::search::{Candidate, Candidates};
 use super::segment::Segment;
 use super::steps::InputStep;
@@ -28,13 +26,26 @@ pub struct Decision {
     /// method compares none.
     pub candidates: Candidates,
     /// Every condition, in the order of [`Condition::ALL`].
-    pub checks: Checks,
+    pub checks: [Check; Condition::ALL.len()],
     /// The delay between samples, where the method gives it.
     pub fine: Option<FineDelay>,
     /// The onset, where the method fits the joint's response.
     pub onset: Option<Box<StepOnset>>,
     /// What a reviewer said of it.
     pub reviewer_verdict: Option<Box<ReviewerVerdict>>,
+}
+
+/// What a reviewer says of a decision: it overrides the conditions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReviewerVerdict {
+    /// Whether its delay counts.
+    pub accepted: bool,
+    /// The delay in samples, where the reviewer says it; else the method's own.
+    pub delay: Option<f64>,
+    /// Why.
+    pub note: String,
+    /// Who.
+    pub reviewer: String,
 }
 
 /// The best breakpoint of a segment, accepted or not.
@@ -91,19 +102,30 @@ impl Decision {
         self.failed().next().map_or(Verdict::Accepted, Verdict::Rejected)
     }
 
+    /// The checks of all conditions that failed.
+    pub(crate) fn failed_checks(&self) -> impl Iterator<Item = Check> + '_ {
+        self.checks.into_iter().filter(|check| check.outcome == Outcome::Failed)
+    }
+
     /// All conditions that failed.
     pub fn failed(&self) -> impl Iterator<Item = Condition> + '_ {
-        self.checks.failed().map(|check| check.condition)
+        self.failed_checks().map(|check| check.condition)
     }
 
     /// Puts the result of a test against noise among the checks.
     pub(super) fn test_reaction(&mut self, p_value: Option<f64>, confidence: f64) {
-        self.checks.put(nothing_happened(p_value, confidence));
+        self.put(nothing_happened(p_value, confidence));
     }
 
     /// Puts that a condition failed among the checks, with the number that was compared and its limit.
     pub(super) fn fail(&mut self, condition: Condition, value: Option<f64>, limit: Option<f64>) {
-        self.checks.put(Check { condition, value, limit, outcome: Outcome::Failed });
+        self.put(Check { condition, value, limit, outcome: Outcome::Failed });
+    }
+
+    /// Puts a check in the place of that of its condition.
+    fn put(&mut self, found: Check) {
+        let own = self.checks.iter_mut().filter(|check| check.condition == found.condition);
+        own.for_each(|check| *check = found);
     }
 
     /// The delay in samples, if it was accepted.

@@ -5,6 +5,7 @@ use std::fmt;
 use super::condition::{Check, Condition, Outcome};
 use super::decision::{Decision, Verdict};
 use super::search::Candidate;
+use crate::numerics::limits;
 
 /// A number this near its limit, as a part of their sum, is near; farther away it is no doubt.
 const NEAR: f64 = 0.25;
@@ -126,14 +127,14 @@ pub fn doubts<'d>(
     decisions: &'d [Decision],
     output: &'d [f64],
 ) -> impl Iterator<Item = (&'d Decision, Doubt)> {
-    let range = range(output);
+    let range = limits(output.iter().copied());
     decisions.iter().map(move |decision| (decision, decision.doubt_within(output, range)))
 }
 
 impl Decision {
     /// How doubtful the program's decision is; `output` is what the method looked at, the whole trial.
     pub fn doubt(&self, output: &[f64]) -> Doubt {
-        self.doubt_within(output, range(output))
+        self.doubt_within(output, limits(output.iter().copied()))
     }
 
     /// The doubt where the range of the output is known.
@@ -202,7 +203,7 @@ impl Decision {
     fn nearest(&self, range: f64) -> Option<(Condition, f64)> {
         let margin = |check: Check| Some((check.condition, self.margin(&check, range)?));
         let by_margin = |a: &(Condition, f64), b: &(Condition, f64)| a.1.total_cmp(&b.1);
-        let of = |outcome| self.checks.iter().filter(move |check| check.outcome == outcome);
+        let of = |outcome| self.checks.into_iter().filter(move |check| check.outcome == outcome);
         match self.program_verdict() {
             Verdict::Accepted => of(Outcome::Passed).filter_map(margin).min_by(by_margin),
             Verdict::Rejected(_) => {
@@ -250,12 +251,6 @@ impl Decision {
         ];
         found.into_iter().filter_map(|(flag, is_on)| is_on.then_some(flag)).collect()
     }
-}
-
-/// Lowest and highest value.
-fn range(output: &[f64]) -> (f64, f64) {
-    let wider = |(low, high): (f64, f64), y: &f64| (low.min(*y), high.max(*y));
-    output.iter().fold((f64::INFINITY, f64::NEG_INFINITY), wider)
 }
 
 /// Whether all samples `from ..= to` are at one end of the range of the output.

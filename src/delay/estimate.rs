@@ -1,16 +1,80 @@
 //! From a trial to its delays: prepared, decided by the method, and every sample filled in.
 
-use std::fmt;
+use std::sync::Arc;
 
 use super::coming_to_rest::ComingToRest;
+use super::decision::{Decision, ReviewerVerdict};
 use super::input_motion::{InputKind, InputMotion};
-use super::method::{DelayMethod, Shared, implementation};
+use super::method::Method;
+use super::onset_model::OnsetModel;
 use super::prepared::Prepared;
 use super::profile::DelayProfile;
-use super::settings::Settings;
-use super::spec::Method;
-use super::trial_estimate::{EstimateError, TrialEstimate};
+use super::settings::{FirstLast, Interpolation, Settings, SettingsError};
+use super::tracking::Tracking;
 use crate::experiment::{Record, Trial};
+use crate::numerics::FilterError;
+
+/// Why a trial has no estimate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EstimateError {
+    /// The settings make no sense.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The output cannot be smoothed as asked.
+    #[error(transparent)]
+    Filter(#[from] FilterError),
+    /// Every trial of a joint is shorter than two rows of β samples.
+    #[error("the longest trial has {samples} samples, but two lines need at least 2β = {needed}")]
+    TooFewSamples {
+        /// Samples of the longest trial.
+        samples: usize,
+        /// Samples it needs.
+        needed: usize,
+    },
+    /// The input has no steps whose delays could be varied.
+    #[error(
+        "the input moves all the time: there is one dead time over the record, on which none of \
+         these settings has an influence"
+    )]
+    Continuous,
+}
+
+/// The delays of one trial of one joint, with all evidence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrialEstimate {
+    /// The trial's label.
+    pub label: String,
+    /// The output that the lines were fitted to; `None` when it is the measured one.
+    pub smoothed: Option<Vec<f64>>,
+    /// One decision per input step, in order.
+    pub decisions: Vec<Decision>,
+    /// The delay of every sample.
+    pub profile: DelayProfile,
+    /// The response of the joint behind its dead times, where the method looks for it.
+    pub onset_model: Option<Arc<OnsetModel>>,
+    /// Where the output comes to rest, where its input says that: its arrivals answer no step.
+    pub tracking: Option<Tracking>,
+}
+
+impl TrialEstimate {
+    /// Overrides the decision on the step `number` by a reviewer's verdict; whether there is one.
+    /// The delay of every sample follows.
+    pub fn review(
+        &mut self,
+        number: usize,
+        verdict: ReviewerVerdict,
+        between: Interpolation,
+    ) -> bool {
+        let samples = self.profile.iter().len();
+        let Some(decision) = self.decisions.iter_mut().find(|known| known.number == number) else {
+            return false;
+        };
+        decision.reviewer_verdict = Some(Box::new(verdict));
+        self.profile = DelayProfile::of(&self.decisions, samples, between);
+        true
+    }
+}
 
 /// Estimates the delay of every input step of `trial` by the method of `settings`.
 ///
@@ -37,11 +101,11 @@ pub fn estimate_joint(
 }
 
 /// Estimates the trials of a joint, which share what the method finds out from all of them.
+#[derive(Debug)]
 pub(crate) struct Estimator {
     /// Those that were asked for, with what the input is taken for.
     settings: Settings,
-    method: &'static dyn DelayMethod,
-    shared: Shared,
+    model: Option<Arc<OnsetModel>>,
     rest: ComingToRest,
     motion: InputMotion,
 }
@@ -63,9 +127,8 @@ impl Estimator {
         if settings.method == Method::AUTO && (settings.paper || settings.grows) {
             settings.method = Method::TWO_LINE;
         }
-        let method = implementation(settings.method);
         let rest = ComingToRest::of(trials, &settings);
-        let shared = settings.method.spec().has_intervals.then(|| {
+        let model = settings.method.spec().has_intervals.then(|| {
             // Onsets are found in what was measured.
             let unsmoothed = Settings { low_pass: None, ..settings.clone() };
             let mut prepared = Prepared::all(trials, &unsmoothed);
@@ -75,9 +138,9 @@ impl Estimator {
             let period = prepared.first().map(|trial| trial.period);
             // A response is looked for in the trials of the first one's period.
             let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
-            method.shared(&prepared, &settings)
+            settings.method.shared(&prepared, &settings)
         });
-        Ok(Self { settings, method, shared: shared.flatten(), rest, motion })
+        Ok(Self { settings, model: model.flatten().map(Arc::new), rest, motion })
     }
 
     /// How the input of the joint moves.
@@ -91,18 +154,67 @@ impl Estimator {
     /// [`EstimateError::Filter`] when the filter does not fit this trial.
     pub(crate) fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
         let settings = self.settings.at(trial.period());
-        let mut prepared = Prepared::lean(trial, &settings)?;
+        let mut prepared = Prepared::of(trial, &settings)?;
         self.rest.bound(&mut prepared, &settings);
-        let decisions = self.method.decide(&prepared, &self.shared, &settings);
+        let decisions = settings.method.decide(&prepared, self.model.as_deref(), &settings);
         let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
         let (label, smoothed) = (trial.label().to_owned(), prepared.smoothed);
-        let (onset_model, tracking) = (self.shared.clone(), self.rest.tracking());
+        let (onset_model, tracking) = (self.model.clone(), self.rest.tracking());
         Ok(TrialEstimate { label, smoothed, decisions, profile, onset_model, tracking })
     }
 }
 
-impl fmt::Debug for Estimator {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Estimator").field("settings", &self.settings).finish_non_exhaustive()
-    }
+/// The dead time of one change of the input, seconds, with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepDelay {
+    /// The most likely one.
+    pub delay_s: f64,
+    /// Lower end of the interval.
+    pub low_s: f64,
+    /// Upper end of the interval.
+    pub high_s: f64,
+}
+
+/// The dead time of every change of the input in all `trials` of a joint, by the best
+/// method there is; none where nothing happened or it cannot be determined.
+///
+/// # Errors
+/// [`EstimateError`], when a trial cannot be estimated.
+///
+/// # Examples
+/// ```
+/// use tauscope::delay::step_delays;
+/// use tauscope::experiment::Trial;
+/// use tauscope::units::SamplePeriod;
+///
+/// // The output follows 12 samples later.
+/// let input: Vec<f64> = (0..200).map(|k| if k < 100 { 0.0 } else { 1.0 }).collect();
+/// let output: Vec<f64> = (0..200).map(|k| 0.2 * f64::from((k - 112).max(0))).collect();
+/// let period = SamplePeriod::from_seconds(0.01).unwrap();
+/// let trial = Trial::new("swing", 0.0, period, input, output).unwrap();
+/// let delays = step_delays(&[trial].into()).unwrap();
+/// assert!((delays[0][0].unwrap().delay_s - 0.12).abs() < 1e-6);
+/// ```
+pub fn step_delays(trials: &Record) -> Result<Vec<Vec<Option<StepDelay>>>, EstimateError> {
+    // A line between the samples of a slow sensor looks like a lag: what is asked then is where the output
+    // bends, without one.
+    let is_interpolated = trials.iter().any(|trial| !trial.interpolated().is_empty());
+    let method = if is_interpolated { Method::HINGE } else { Method::AUTO };
+    let settings = Settings { first_last: FirstLast::Keep, ..Settings::of(method) };
+    let estimates = estimate_joint(trials, &settings);
+    let of = |(trial, estimate): (&Trial, Result<_, EstimateError>)| {
+        let estimate: TrialEstimate = estimate?;
+        let period_s = trial.period().seconds();
+        let decisions = estimate.decisions.iter().map(|decision| {
+            decision.accepted_delay()?;
+            let fine = decision.fine?;
+            Some(StepDelay {
+                delay_s: fine.delay * period_s,
+                low_s: fine.low * period_s,
+                high_s: fine.high * period_s,
+            })
+        });
+        Ok(decisions.collect())
+    };
+    trials.iter().zip(estimates).map(of).collect()
 }

@@ -11,6 +11,7 @@
 //! self-regulation).
 
 use crate::experiment::{Property, Record, Trial};
+use crate::numerics::PairSums;
 use crate::units::floor_to_index;
 
 /// Squared correlation of output and input from which the output follows the input. Chosen: of
@@ -79,7 +80,7 @@ fn lags(trials: &[Trial]) -> impl Iterator<Item = usize> + use<> {
 /// Squared correlation of the output with what `of` makes of the input `lag` samples before, by
 /// `every` so many pairs one.
 fn correlation(trials: &[Trial], lag: usize, of: fn(f64) -> f64, every: usize) -> f64 {
-    let mut sums = Moments::default();
+    let mut sums = PairSums::default();
     for trial in trials {
         let behind = trial.output().get(lag..).unwrap_or_default();
         let pairs = trial.input().iter().zip(behind).step_by(every);
@@ -181,8 +182,8 @@ fn best(
 
 /// How the output goes with what `of` makes of the input `dead` samples before, behind a lag of the
 /// first order.
-fn lagging(trials: &[Trial], time_s: f64, dead: usize, of: fn(f64) -> f64) -> Moments {
-    let mut sums = Moments::default();
+fn lagging(trials: &[Trial], time_s: f64, dead: usize, of: fn(f64) -> f64) -> PairSums {
+    let mut sums = PairSums::default();
     for trial in trials {
         let left = (-trial.period().seconds() / time_s).exp();
         let mut state = trial.input().first().copied().map_or(0.0, of);
@@ -194,42 +195,4 @@ fn lagging(trials: &[Trial], time_s: f64, dead: usize, of: fn(f64) -> f64) -> Mo
         }
     }
     sums
-}
-
-/// Means, variances and covariance of pairs, updated one by one.
-#[derive(Clone, Copy, Debug, Default)]
-struct Moments {
-    count: f64,
-    mean: (f64, f64),
-    /// Sums of squares and of products about the means.
-    xx: f64,
-    yy: f64,
-    xy: f64,
-}
-
-impl Moments {
-    /// Welford's update; pairs that are not numbers are left out.
-    fn push(&mut self, x: f64, y: f64) {
-        if !(x.is_finite() && y.is_finite()) {
-            return;
-        }
-        self.count += 1.0;
-        let (dx, dy) = (x - self.mean.0, y - self.mean.1);
-        self.mean.0 += dx / self.count;
-        self.mean.1 += dy / self.count;
-        self.xx += dx * (x - self.mean.0);
-        self.yy += dy * (y - self.mean.1);
-        self.xy += dx * (y - self.mean.1);
-    }
-
-    fn r_squared(&self) -> f64 {
-        let scale = self.xx * self.yy;
-        if scale > 0.0 { self.xy * self.xy / scale } else { 0.0 }
-    }
-
-    /// Slope and intercept of the regression of the second on the first.
-    fn line(&self) -> (f64, f64) {
-        let slope = if self.xx > 0.0 { self.xy / self.xx } else { 0.0 };
-        (slope, self.mean.1 - slope * self.mean.0)
-    }
 }

@@ -3,9 +3,9 @@
 //! Algorithm 1 goes step by step, so that a decision is final as soon as its segment is
 //! complete: up to `p_(i+1) + α`, and so much further that the low-pass has forgotten the end.
 
+use super::estimate::{EstimateError, TrialEstimate};
 use super::profile::DelayProfile;
 use super::settings::Settings;
-use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::Trial;
 use crate::numerics::FilterError;
 

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::hold::alike;
 use super::input_motion::InputMotion;
 use super::input_noise::Levels;
 use super::settings::Settings;
@@ -38,17 +39,10 @@ pub(crate) fn held_inputs(record: &Record) -> Option<Vec<Vec<f64>>> {
     let holds: Vec<Vec<_>> = holds.collect();
     let mut levels: Vec<f64> = holds.iter().flatten().map(|(level, _)| *level).collect();
     levels.sort_by(f64::total_cmp);
-    let mut kinds: Vec<Vec<f64>> = Vec::new();
-    for level in levels {
-        match kinds.last_mut().filter(|kind| level - kind[0] <= ALIKE * tolerance) {
-            Some(kind) => kind.push(level),
-            None => kinds.push(vec![level]),
-        }
-    }
+    let kinds = alike(&levels, |level| *level, ALIKE * tolerance);
     // The one that begins at the level or below it holds it.
     let kind_of = |level: f64| kinds.partition_point(|kind| kind[0] <= level).saturating_sub(1);
-    let kind =
-        |level: f64| kinds.get(kind_of(level)).and_then(|kind| median(kind)).unwrap_or(level);
+    let kind = |level: f64| kinds.get(kind_of(level)).copied().and_then(median).unwrap_or(level);
     let held = |holds: &Vec<(f64, std::ops::Range<usize>)>| {
         let hold = |(level, range): &(f64, std::ops::Range<usize>)| {
             std::iter::repeat_n(kind(*level), range.len())

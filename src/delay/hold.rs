@@ -2,7 +2,7 @@
 
 use super::steps::input_steps;
 use crate::experiment::{Property, Record, Trial};
-use crate::numerics::{median, noise_of_differences, quantile_of};
+use crate::numerics::{median, noise_of_differences, quantile};
 
 /// Part of the input's range within which two levels are one: chosen; converters and
 /// potentiometers scatter by less, and no experiment steps by so little.
@@ -48,12 +48,25 @@ impl Property for LevelTolerance {
     fn find(record: &Record) -> Self {
         /// Parts of the samples beyond which a level is a glitch.
         const GLITCHES: f64 = 1e-3;
-        let inputs = record.iter().flat_map(Trial::input).copied();
-        let ends = quantile_of(&inputs, GLITCHES).zip(quantile_of(&inputs, 1.0 - GLITCHES));
+        let inputs: Vec<f64> = record.iter().flat_map(Trial::input).copied().collect();
+        let ends = quantile(&inputs, GLITCHES).zip(quantile(&inputs, 1.0 - GLITCHES));
         let range = ends.map_or(0.0, |(low, high)| high - low);
         let noise = noise_of_differences(record.iter().map(Trial::input));
         Self((SAME_LEVEL * range).max((REACH * noise).min(MOST_NOISE * range)))
     }
+}
+
+/// Groups of values, which are in the order of their levels: each level within `tolerance` of the
+/// first of its group.
+pub(super) fn alike<T>(sorted: &[T], level: impl Fn(&T) -> f64, tolerance: f64) -> Vec<&[T]> {
+    let (mut groups, mut rest) = (Vec::new(), sorted);
+    while let Some(least) = rest.first() {
+        let limit = level(least) + tolerance;
+        let (same, others) = rest.split_at(rest.partition_point(|it| level(it) <= limit).max(1));
+        groups.push(same);
+        rest = others;
+    }
+    groups
 }
 
 /// The holds of a trial in their order: from each change of more than `tolerance` to the next.

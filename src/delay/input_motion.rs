@@ -23,8 +23,9 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
-use super::input_noise::{Levels, in_samples, range};
+use super::input_noise::{Levels, in_samples};
 use crate::experiment::{Property, Record, Trial};
+use crate::numerics::{limits, median};
 
 /// How an input is to be taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -104,17 +105,6 @@ impl InputMotion {
     }
 }
 
-impl InputKind {
-    /// Whether the input of a joint is taken as moving all the time.
-    pub fn is_continuous(self, record: &Record) -> bool {
-        match self {
-            Self::Auto => InputMotion::of(record).is_continuous(),
-            Self::Steps => false,
-            Self::Continuous => true,
-        }
-    }
-}
-
 /// Sums over one trial.
 struct Moved {
     samples: f64,
@@ -169,8 +159,8 @@ fn is_drawn_in_time_of_its_own(input: &[f64]) -> bool {
     let lengths: Vec<f64> = runs.iter().map(|run| run.len() as f64).collect();
     let steps = runs.windows(2).map(|pair| (pair[1][0] - pair[0][0]).abs());
     let steps: Vec<f64> = steps.collect();
-    let median = |values: &[f64]| crate::numerics::quantile(values, 0.5).unwrap_or_default();
-    let (usual, (low, high)) = (median(&lengths), range(input));
+    let median = |values: &[f64]| median(values).unwrap_or_default();
+    let (usual, (low, high)) = (median(&lengths), limits(input.iter().copied()));
     let alike = lengths.iter().filter(|length| (*length - usual).abs() <= ALIKE * usual).count();
     (alike as f64) < MOST_ALIKE * lengths.len() as f64 && median(&steps) >= FAR * (high - low)
 }
@@ -191,9 +181,6 @@ struct Hold {
 ///
 /// Every sample enters and leaves the window once: its extremes stand in front of two queues.
 fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
-    if tolerance <= 0.0 {
-        return exact_holds(input, shortest);
-    }
     let (mut holds, mut start) = (Vec::new(), 0);
     let (mut lowest, mut highest) = (VecDeque::new(), VecDeque::new());
     for end in 0..=input.len() {
@@ -214,20 +201,6 @@ fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
         while highest.pop_back_if(|back| input[*back] <= *value).is_some() {}
         lowest.push_back(end);
         highest.push_back(end);
-    }
-    holds
-}
-
-/// [`holds`] of levels without noise: the same value again and again.
-fn exact_holds(input: &[f64], shortest: usize) -> Vec<Hold> {
-    let (mut holds, mut start) = (Vec::new(), 0);
-    #[expect(clippy::float_cmp, reason = "levels are exact")]
-    for run in input.chunk_by(|a, b| a == b) {
-        let end = start + run.len();
-        if run.len() >= shortest || start == 0 {
-            holds.push(Hold { start, end, first: run[0], last: run[0] });
-        }
-        start = end;
     }
     holds
 }
@@ -273,6 +246,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
+    use crate::delay::Settings;
     use crate::units::{SamplePeriod, ceil_to_index};
 
     const LEVELS: [f64; 7] = [0.0, 1.0, -2.0, 0.5, 2.0, -1.0, -0.5];
@@ -405,10 +379,9 @@ mod tests {
     fn an_input_that_never_moves_is_no_joystick() {
         let found = motion(0.01, |_| 7.5);
         assert!(!found.is_continuous() && found.travel_in_steps.is_none());
-        assert!(
-            InputKind::Continuous.is_continuous(&Record::from([]))
-                && !InputKind::Auto.is_continuous(&Record::from([]))
-        );
+        let asked = |input| Settings { input, ..Settings::default() };
+        assert!(asked(InputKind::Continuous).takes_as_continuous(&found));
+        assert!(!asked(InputKind::Auto).takes_as_continuous(&found));
     }
 
     #[test]

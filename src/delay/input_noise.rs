@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::numerics::{median, quantile};
+use crate::numerics::{limits, median, quantile};
 use crate::units::ceil_to_index;
 
 /// The levels of an input, and how far its samples are off them.
@@ -36,7 +36,7 @@ impl<'a> Levels<'a> {
             return exact(without_glitches(input).map_or(Cow::Borrowed(input), Cow::Owned));
         };
         let input = without_spikes(input, noise, period_s).map_or(Cow::Borrowed(input), Cow::Owned);
-        let (low, high) = range(&input);
+        let (low, high) = limits(input.iter().copied());
         let is_small = |noise: f64| noise < OF_RANGE * (high - low);
         if is_small(noise) {
             return Self { tolerance: noise, ..exact(input) };
@@ -185,12 +185,6 @@ pub(super) fn in_samples(seconds: f64, period_s: f64) -> usize {
     /// What a quotient may be above a whole number by rounding.
     const ROUNDING: f64 = 1e-9;
     ceil_to_index(seconds / period_s - ROUNDING)
-}
-
-/// The least and the greatest of `values`.
-pub(super) fn range(values: &[f64]) -> (f64, f64) {
-    let ends = (f64::INFINITY, f64::NEG_INFINITY);
-    values.iter().fold(ends, |(low, high), value| (low.min(*value), high.max(*value)))
 }
 
 #[cfg(test)]

@@ -1,23 +1,14 @@
 //! The settings that are lengths of time: in samples, or in seconds.
 
-use super::in_seconds::InSeconds;
-use super::settings::Settings;
+use super::settings::{InSeconds, Settings};
 use crate::experiment::Trial;
 use crate::units::{Length, SamplePeriod};
 
-/// The seconds of a length that is in seconds.
-fn seconds(length: Length) -> Option<f64> {
+/// Puts a length where it belongs; the samples of one in seconds stay as they were.
+fn put(length: Length, samples: &mut usize, seconds: &mut Option<f64>) {
     match length {
-        Length::Samples(_) => None,
-        Length::Seconds(seconds) => Some(seconds),
-    }
-}
-
-/// The samples of a length that is in samples, else those that were there `before`.
-fn samples(length: Length, before: usize) -> usize {
-    match length {
-        Length::Samples(samples) => samples,
-        Length::Seconds(_) => before,
+        Length::Samples(number) => (*samples, *seconds) = (number, None),
+        Length::Seconds(number) => *seconds = Some(number),
     }
 }
 
@@ -28,34 +19,33 @@ fn length(seconds: Option<f64>, samples: usize) -> Length {
 impl Settings {
     /// With this α.
     #[must_use]
-    pub fn with_alpha(self, alpha: Length) -> Self {
-        let in_seconds = InSeconds { alpha: seconds(alpha), ..self.in_seconds };
-        Self { alpha: samples(alpha, self.alpha), in_seconds, ..self }
+    pub fn with_alpha(mut self, alpha: Length) -> Self {
+        put(alpha, &mut self.alpha, &mut self.in_seconds.alpha);
+        self
     }
 
     /// With this β.
     #[must_use]
-    pub fn with_beta(self, beta: Length) -> Self {
-        let in_seconds = InSeconds { beta: seconds(beta), ..self.in_seconds };
-        Self { beta: samples(beta, self.beta), in_seconds, ..self }
+    pub fn with_beta(mut self, beta: Length) -> Self {
+        put(beta, &mut self.beta, &mut self.in_seconds.beta);
+        self
     }
 
     /// With this `τ_min`.
     #[must_use]
-    pub fn with_min_delay(self, delay: Length) -> Self {
-        let in_seconds = InSeconds { min_delay: seconds(delay), ..self.in_seconds };
-        Self { min_delay: samples(delay, self.min_delay), in_seconds, ..self }
+    pub fn with_min_delay(mut self, delay: Length) -> Self {
+        put(delay, &mut self.min_delay, &mut self.in_seconds.min_delay);
+        self
     }
 
     /// With this longest delay.
     #[must_use]
-    pub fn with_max_delay(self, delay: Length) -> Self {
-        let in_seconds = InSeconds { max_delay: seconds(delay), ..self.in_seconds };
-        let max_delay = match delay {
-            Length::Samples(samples) => Some(samples),
-            Length::Seconds(_) => None,
-        };
-        Self { max_delay, in_seconds, ..self }
+    pub fn with_max_delay(mut self, delay: Length) -> Self {
+        let (mut samples, mut seconds) = (0, None);
+        put(delay, &mut samples, &mut seconds);
+        (self.max_delay, self.in_seconds.max_delay) =
+            (seconds.is_none().then_some(samples), seconds);
+        self
     }
 
     /// α as it was given.

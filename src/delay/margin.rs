@@ -3,7 +3,7 @@
 use super::condition::{Check, Condition};
 use super::decision::Decision;
 use super::settings::Settings;
-use crate::numerics::to_digits_by;
+use crate::numerics::{limits, to_digits_by};
 
 /// The smallest change of a setting with which one condition would have been met, all else
 /// being as it was.
@@ -43,7 +43,7 @@ impl Decision {
     /// What would have accepted this step: one remedy for each condition that failed, none
     /// for an accepted step. `output` is what the method looked at.
     pub(crate) fn remedies(&self, settings: &Settings, output: &[f64]) -> Vec<Remedy> {
-        self.checks.failed().map(|check| self.remedy(&check, settings, output)).collect()
+        self.failed_checks().map(|check| self.remedy(&check, settings, output)).collect()
     }
 
     fn remedy(&self, check: &Check, settings: &Settings, output: &[f64]) -> Remedy {
@@ -70,9 +70,7 @@ impl Decision {
 
     fn wider_limits(&self, settings: &Settings, output: &[f64]) -> Option<Remedy> {
         let (low, high) = settings.output_limits?;
-        let values = output.get(self.segment.indices())?;
-        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (least, most) = limits(output.get(self.segment.indices())?.iter().copied());
         let low = if least > low { low } else { -above(-least) };
         let high = if most < high { high } else { above(most) };
         Some(Remedy::OutputLimits(low, high))

@@ -24,7 +24,7 @@
 
 use super::settings::{FirstLast, Settings};
 use super::steps::InputStep;
-use crate::numerics::RunningLine;
+use crate::numerics::{RunningLine, limits};
 use crate::units::{SamplePeriod, ceil_to_index};
 
 /// Part of the fastest motion up to which a joint rests.
@@ -335,8 +335,7 @@ impl Quiet {
         let quarter = moving.len() / 4;
         let at = |n: usize| moving.get(n * quarter).or(moving.last()).copied().unwrap_or_default();
         let ways = [1, 2, 3].map(|n| (at(n + 1) - at(n)).abs());
-        let most = ways.iter().copied().fold(0.0, f64::max);
-        let least = ways.iter().copied().fold(f64::INFINITY, f64::min);
+        let (least, most) = limits(ways);
         // n·Δv/(8·v) ≤ delay, times v.
         let off = moving.len() as f64 / 8.0 * (most - least - BEYOND_NOISE * self.noise);
         off <= delay as f64 * most.midpoint(least)

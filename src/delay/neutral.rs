@@ -1,11 +1,13 @@
-//! The level of the input at which a joint is meant to stand still.
+//! The level of the input at which a joint is meant to stand still, and the kinds of steps by it.
 //!
 //! A valve's command is zero there, a servo's duty is some 7.5 %, a joystick's voltage half
 //! its supply. It is found from the record, from what the input holds and the output does.
 
 use std::cmp::Ordering;
+use std::fmt;
 
-use super::hold::{Hold, holds, level_tolerance};
+use super::hold::{Hold, alike, holds, level_tolerance};
+use super::steps::InputStep;
 use crate::experiment::{Property, Record};
 
 /// Where the input of a joint is neutral: at a level, and within a dead band about it.
@@ -64,6 +66,65 @@ impl Neutral {
     }
 }
 
+/// The kind of a step of the input, by the sides of [neutral](Neutral) that it joins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Transition {
+    /// From neutral to elsewhere.
+    Start,
+    /// To neutral.
+    Stop,
+    /// From one level to another on the same side, or where neutral is not known.
+    Change,
+    /// From one side of neutral to the other.
+    Reversal,
+}
+
+impl Transition {
+    /// All of them, in the order in which tables list them.
+    pub const ALL: [Self; 4] = [Self::Start, Self::Stop, Self::Change, Self::Reversal];
+
+    /// The kind of `step`.
+    ///
+    /// # Examples
+    /// ```
+    /// use tauscope::delay::{InputStep, Neutral, Transition};
+    ///
+    /// let neutral = Neutral { level: 7.5, low: 7.4, high: 7.6 };
+    /// let kind = |before, after| {
+    ///     Transition::of(&InputStep { sample: 100, before, after }, Some(&neutral))
+    /// };
+    /// assert_eq!(kind(7.5, 10.0), Transition::Start);
+    /// assert_eq!(kind(5.0, 7.45), Transition::Stop);
+    /// assert_eq!(kind(8.0, 10.0), Transition::Change);
+    /// assert_eq!(kind(5.0, 10.0), Transition::Reversal);
+    /// ```
+    pub fn of(step: &InputStep, neutral: Option<&Neutral>) -> Self {
+        let Some(neutral) = neutral else { return Self::Change };
+        match (neutral.side(step.before), neutral.side(step.after)) {
+            (before, after) if before == after => Self::Change,
+            (Ordering::Equal, _) => Self::Start,
+            (_, Ordering::Equal) => Self::Stop,
+            _ => Self::Reversal,
+        }
+    }
+
+    /// Its name in files and tables.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Stop => "stop",
+            Self::Change => "change",
+            Self::Reversal => "reversal",
+        }
+    }
+}
+
+impl fmt::Display for Transition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.id())
+    }
+}
+
 /// All holds of one level.
 #[derive(Clone, Copy, Debug, Default)]
 struct Level {
@@ -82,15 +143,9 @@ impl Level {
     fn all(holds: &[Hold], tolerance: f64) -> Vec<Self> {
         let mut sorted: Vec<&Hold> = holds.iter().collect();
         sorted.sort_by(|a, b| a.level.total_cmp(&b.level));
-        let mut levels = Vec::new();
-        let mut rest = sorted.as_slice();
-        while let Some(least) = rest.first() {
-            let width = rest.partition_point(|hold| hold.level <= least.level + tolerance);
-            let (same, others) = rest.split_at(width.max(1));
-            levels.push(same.iter().fold(Self::default(), |level, hold| level.with(hold)));
-            rest = others;
-        }
-        levels
+        let groups = alike(&sorted, |hold| hold.level, tolerance);
+        let level = |same: &[&Hold]| same.iter().fold(Self::default(), |it, hold| it.with(hold));
+        groups.into_iter().map(level).collect()
     }
 
     fn with(self, hold: &Hold) -> Self {
@@ -294,5 +349,11 @@ mod tests {
             prop_assert_eq!(found.side(expected + gain), Ordering::Greater);
             prop_assert_eq!(found.side(expected - gain), Ordering::Less);
         }
+    }
+
+    #[test]
+    fn without_a_neutral_level_every_step_is_a_change() {
+        let step = InputStep { sample: 9, before: 0.0, after: 1.0 };
+        assert_eq!(Transition::of(&step, None), Transition::Change);
     }
 }

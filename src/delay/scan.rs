@@ -57,7 +57,7 @@ pub fn delay_scan(input: &[f64], output: &[f64], longest: usize) -> Vec<f64> {
 
 /// The least squared error with one value of the input or more, with its penalty.
 fn penalised(columns: &[f64], samples: usize) -> f64 {
-    let mut equations = NormalEquations::of(columns, samples, &[]);
+    let mut equations = NormalEquations::of(columns, samples);
     // The past of the output is known whatever the delay.
     (0..PAST).for_each(|column| equations.eliminate(column));
     let rounding = ROUNDING * equations.error();

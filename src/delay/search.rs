@@ -14,24 +14,15 @@ const TIE: f64 = 1e-12;
 pub struct Candidates {
     first_sample: usize,
     beta: usize,
-    sse: Vec<f64>,
-    /// What is kept of them where they are not.
-    few: Option<Box<Few>>,
-    lines: Lines,
-    best: Option<usize>,
-}
-
-/// What is kept of the squared errors of many candidates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Few {
-    /// Candidates that there were.
+    /// Candidates that were compared.
     count: usize,
-    /// The squared error of the best.
-    best: f64,
-    /// The second-best, where there is one: its index and its squared error.
-    second: Option<(usize, f64)>,
-    /// How far from the best those lie that fit nearly as well, samples.
+    best: Option<Candidate>,
+    second: Option<Candidate>,
     spread: f64,
+    /// Squared errors of all, where these were kept.
+    sse: Vec<f64>,
+    /// Lines before and after each breakpoint, where these were kept.
+    lines: Vec<(Line, Line)>,
 }
 
 /// Weight of a candidate in the [spread](Candidates::spread): its squared error as a part of the
@@ -39,30 +30,6 @@ struct Few {
 /// independent samples, half their number, would leave the best candidate alone. Chosen on
 /// synthetic records: from 4 to a tenth of the samples the order of doubt hardly changes.
 const POWER: f64 = 4.0;
-
-/// Both lines of every candidate.
-#[derive(Clone, Debug, PartialEq)]
-enum Lines {
-    /// Fitted apart: before and after.
-    Apart(Vec<Line>, Vec<Line>),
-    /// Those of one alone.
-    One(usize, (Line, Line)),
-}
-
-impl Default for Lines {
-    fn default() -> Self {
-        Self::Apart(Vec::new(), Vec::new())
-    }
-}
-
-impl Lines {
-    fn get(&self, index: usize) -> Option<(Line, Line)> {
-        match self {
-            Self::Apart(before, after) => Some((*before.get(index)?, *after.get(index)?)),
-            Self::One(one, lines) => (*one == index).then_some(*lines),
-        }
-    }
-}
 
 /// One pair of lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,34 +84,30 @@ impl Candidates {
         // Equations are in Σ y and Σ k·y about the first sample: a joint far from zero keeps its
         // digits.
         let scale = Scale::of(values, offset);
-        let before = found.fit_before(values, scale);
-        found.lines = Lines::Apart(before, found.fit_after(values, scale));
+        found.fit_before(values, scale);
+        found.fit_after(values, scale);
         // Algorithm 1: q_i is where SSE_f is least.
-        found.best = found.lowest(TIE * sum_of_squares(values, scale), latest);
+        let best = found.lowest(TIE * sum_of_squares(values, scale), latest);
         for sse in &mut found.sse {
             *sse *= scale.unit * scale.unit;
         }
+        found.count = found.sse.len();
+        found.best = best.and_then(|best| found.get(best));
+        found.second = best.and_then(|best| found.get(found.second_to(best)?));
+        found.spread = found.best.map_or(0.0, |best| found.spread_about(&best));
         found
     }
 
-    /// The best candidate with its lines, and what is [kept](Few) of the errors of the others,
-    /// whose lines are not numbers.
+    /// These without the errors and lines of all: the best, the second-best and the spread remain.
     pub(super) fn with_best_alone(self) -> Self {
-        let Some((index, best)) = self.best.and_then(|index| Some((index, self.error(index)?)))
-        else {
-            return self;
-        };
-        let lines = self.lines.get(index).map_or_else(Lines::default, |it| Lines::One(index, it));
-        let second = self.second_index().and_then(|index| Some((index, self.error(index)?)));
-        let few = Few { count: self.len(), best, second, spread: self.spread() };
-        Self { sse: Vec::new(), few: Some(Box::new(few)), lines, ..self }
+        Self { sse: Vec::new(), lines: Vec::new(), ..self }
     }
 
     /// Fits the lines before each breakpoint, from the front.
-    fn fit_before(&mut self, values: &[f64], scale: Scale) -> Vec<Line> {
+    fn fit_before(&mut self, values: &[f64], scale: Scale) {
         let count = values.len() / self.beta - 1;
         self.sse.reserve_exact(count);
-        let mut lines = Vec::with_capacity(count);
+        self.lines.reserve_exact(count);
         let mut line = RunningLine::default();
         for (row, f) in values.chunks_exact(self.beta).take(count).zip(1..) {
             for y in row {
@@ -153,29 +116,26 @@ impl Candidates {
             // The regression line goes through the mean, in the middle of its f·β samples.
             let middle = self.first_sample as f64 + ((f * self.beta) as f64 - 1.0) / 2.0;
             self.sse.push(line.sse());
-            lines.push(scale.line(middle, line.mean(), line.slope()));
+            let before = scale.line(middle, line.mean(), line.slope());
+            self.lines.push((before, Line::default()));
         }
-        lines
     }
 
     /// Fits the lines after each breakpoint, from the back.
-    fn fit_after(&mut self, values: &[f64], scale: Scale) -> Vec<Line> {
-        let rows = values.len() / self.beta;
-        let mut lines = vec![Line::default(); rows - 1];
+    fn fit_after(&mut self, values: &[f64], scale: Scale) {
         let last = self.first_sample as f64 + values.len() as f64 - 1.0;
         let mut line = RunningLine::default();
-        let slots = lines.iter_mut().rev().zip(self.sse.iter_mut().rev());
-        for ((row, (after, sse)), count) in values.rchunks_exact(self.beta).zip(slots).zip(1..) {
+        let slots = self.lines.iter_mut().rev().zip(self.sse.iter_mut().rev());
+        for ((row, (lines, sse)), count) in values.rchunks_exact(self.beta).zip(slots).zip(1..) {
             for y in row.iter().rev() {
                 line.push(scale.apply(*y));
             }
             let middle = last - ((count * self.beta) as f64 - 1.0) / 2.0;
             // Grown towards the front: its own slope has the other sign.
-            *after = scale.line(middle, line.mean(), -line.slope());
+            lines.1 = scale.line(middle, line.mean(), -line.slope());
             // SSE_f = SSE of rows 1 … f + SSE of rows f+1 … M.
             *sse += line.sse();
         }
-        lines
     }
 
     /// The first candidate within `tie` of the lowest squared error up to `latest`.
@@ -189,51 +149,38 @@ impl Candidates {
 
     /// Number of candidates: rows of Φ less one.
     pub fn len(&self) -> usize {
-        self.few.as_ref().map_or(self.sse.len(), |few| few.count)
+        self.count
     }
 
     /// Whether the segment was too short for two lines.
     pub fn is_empty(&self) -> bool {
-        self.len() == 0
+        self.count == 0
     }
 
-    /// The candidate at `index`, which is `f − 1`.
+    /// The candidate at `index`, which is `f − 1`; none where only the best were kept.
     pub fn get(&self, index: usize) -> Option<Candidate> {
-        Some(self.candidate(index, self.error(index)?))
-    }
-
-    fn error(&self, index: usize) -> Option<f64> {
-        let Some(few) = &self.few else { return self.sse.get(index).copied() };
-        let best = self.best.filter(|best| *best == index).map(|_| few.best);
-        best.or_else(|| few.second.filter(|(second, _)| *second == index).map(|(_, sse)| sse))
-    }
-
-    fn candidate(&self, index: usize, sse: f64) -> Candidate {
-        let f = index + 1;
-        let unknown = Line { slope: f64::NAN, intercept: f64::NAN };
-        let (before, after) = self.lines.get(index).unwrap_or((unknown, unknown));
-        Candidate { f, breakpoint: self.first_sample + f * self.beta, sse, before, after }
+        let (f, sse, (before, after)) = (index + 1, *self.sse.get(index)?, *self.lines.get(index)?);
+        Some(Candidate { f, breakpoint: self.first_sample + f * self.beta, sse, before, after })
     }
 
     /// All candidates, in the order of their breakpoints; none where only the best were kept.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = Candidate> + '_ {
-        self.sse.iter().enumerate().map(|(index, sse)| self.candidate(index, *sse))
+    pub fn iter(&self) -> impl Iterator<Item = Candidate> + '_ {
+        (0..self.sse.len()).filter_map(|index| self.get(index))
     }
 
     /// The candidate with the lowest squared error, the first of those that tie.
     pub fn best(&self) -> Option<Candidate> {
-        self.best.and_then(|index| self.get(index))
+        self.best
     }
 
     /// The best candidate in another valley of the squared error; where there is only one
     /// valley, the better neighbour of the best.
     pub fn second(&self) -> Option<Candidate> {
-        let kept = self.few.as_ref().map(|few| few.second.map(|(index, _)| index));
-        self.get(kept.unwrap_or_else(|| self.second_index())?)
+        self.second
     }
 
-    fn second_index(&self) -> Option<usize> {
-        let chosen = self.best?;
+    /// The index of the second-best candidate, the best being at `chosen`.
+    fn second_to(&self, chosen: usize) -> Option<usize> {
         let at = |index: usize| self.sse.get(index).copied().unwrap_or(f64::INFINITY);
         let is_valley = |index: &usize| {
             let before = index.checked_sub(1).map_or(f64::INFINITY, at);
@@ -255,16 +202,16 @@ impl Candidates {
     /// How far from the best candidate those lie that fit nearly as well, samples: the root mean
     /// square distance of all, weighted by `(SSE_best / SSE)⁴`.
     pub(super) fn spread(&self) -> f64 {
-        if let Some(few) = &self.few {
-            return few.spread;
-        }
-        let Some(best) = self.best() else { return 0.0 };
+        self.spread
+    }
+
+    fn spread_about(&self, best: &Candidate) -> f64 {
         let (mut weights, mut squares) = (0.0, 0.0);
-        for candidate in self.iter() {
-            let ratio = if candidate.sse > 0.0 { best.sse / candidate.sse } else { 1.0 };
+        for (index, sse) in self.sse.iter().enumerate() {
+            let ratio = if *sse > 0.0 { best.sse / sse } else { 1.0 };
             // The likelihood of independent normal residuals is SSE^(−n/2); see POWER.
             let weight = ratio.min(1.0).powf(POWER);
-            let distance = candidate.breakpoint as f64 - best.breakpoint as f64;
+            let distance = ((index + 1).abs_diff(best.f) * self.beta) as f64;
             weights += weight;
             squares += weight * distance * distance;
         }

@@ -1,9 +1,7 @@
 //! What is asked for: a method, and its settings.
 
-use super::in_seconds::InSeconds;
 use super::input_motion::{InputKind, InputMotion};
-use super::spec::Method;
-use crate::experiment::Record;
+use super::method::Method;
 use crate::numerics::LowPass;
 use crate::units::SamplePeriod;
 
@@ -55,6 +53,31 @@ pub enum CandidateLines {
     /// The best one, and of the others their number, the second-best error and how far those lie
     /// that fit nearly as well, where the method compares many: enough for all but a drawing.
     Best,
+}
+
+/// The settings that were given in seconds; the others are numbers of samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InSeconds {
+    /// α.
+    pub alpha: Option<f64>,
+    /// β.
+    pub beta: Option<f64>,
+    /// `τ_min`.
+    pub min_delay: Option<f64>,
+    /// The longest delay that is looked for.
+    pub max_delay: Option<f64>,
+}
+
+impl InSeconds {
+    /// Each with its name.
+    fn named(self) -> [(&'static str, Option<f64>); 4] {
+        [
+            ("α in seconds", self.alpha),
+            ("β in seconds", self.beta),
+            ("the shortest hold in seconds", self.min_delay),
+            ("the longest delay in seconds", self.max_delay),
+        ]
+    }
 }
 
 /// A method and its settings; the default is the onset model. The paper's search is that of
@@ -122,15 +145,14 @@ pub struct Settings {
 pub(crate) const CONFIDENCE: f64 = 0.99;
 
 impl Settings {
-    /// The settings that suit `method`: its own low-pass and confidence, and else those of
-    /// the paper's Algorithm 1, with intervals that hold 95 % of the true delays.
+    /// The settings that suit `method`: its own confidence, and else those of the paper's
+    /// Algorithm 1, with intervals that hold 95 % of the true delays.
     pub fn of(method: Method) -> Self {
-        let spec = method.spec();
         Self {
             method,
             alpha: 10,
             beta: 5,
-            low_pass: spec.low_pass,
+            low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),
             low_pass_required: false,
             min_delay: 0,
             max_delay: None,
@@ -144,11 +166,18 @@ impl Settings {
             input: InputKind::Auto,
             grows: false,
             interpolation: Interpolation::Hold,
-            confidence: spec.confidence,
+            confidence: method.spec().has_intervals.then_some(CONFIDENCE),
             interval: 0.95,
             lines: CandidateLines::All,
             in_seconds: InSeconds::default(),
         }
+    }
+}
+
+impl Default for Settings {
+    /// Those of the onset model.
+    fn default() -> Self {
+        Self::of(Method::AUTO)
     }
 }
 
@@ -195,20 +224,11 @@ impl Settings {
         self.low_pass.filter(|low_pass| self.low_pass_required || fits(low_pass))
     }
 
-    /// Whether the input of these `trials` of a joint is taken as moving all the time. One whose
-    /// smallest step is given has steps.
-    pub(crate) fn takes_as_continuous(&self, trials: &Record) -> bool {
-        self.takes_as_continuous_if(|| InputMotion::of(trials).is_continuous())
-    }
-
-    /// Whether an input that moves so is taken as moving all the time.
-    pub(crate) fn takes_motion_as_continuous(&self, motion: &InputMotion) -> bool {
-        self.takes_as_continuous_if(|| motion.is_continuous())
-    }
-
-    fn takes_as_continuous_if(&self, moves: impl FnOnce() -> bool) -> bool {
+    /// Whether an input that moves so is taken as moving all the time. One whose smallest step is
+    /// given has steps.
+    pub(crate) fn takes_as_continuous(&self, motion: &InputMotion) -> bool {
         match self.input {
-            InputKind::Auto => self.min_step <= 0.0 && moves(),
+            InputKind::Auto => self.min_step <= 0.0 && motion.is_continuous(),
             InputKind::Steps => false,
             InputKind::Continuous => true,
         }
@@ -216,7 +236,7 @@ impl Settings {
 
     /// These settings with the kind of input that moves so.
     pub(super) fn with_input(&self, motion: &InputMotion) -> Self {
-        let is_continuous = self.takes_motion_as_continuous(motion);
+        let is_continuous = self.takes_as_continuous(motion);
         let input = if is_continuous { InputKind::Continuous } else { InputKind::Steps };
         Self { input, ..self.clone() }
     }

@@ -7,10 +7,10 @@
 
 use std::ops::Range;
 
-use super::input_motion::edge_samples;
+use super::input_motion::{InputMotion, edge_samples};
 use super::input_noise::Levels;
-use super::settings::Settings;
-use crate::experiment::{Record, Trial};
+use super::settings::{FirstLast, Settings};
+use crate::experiment::{Property, Record, Trial};
 
 /// A change of the input: sample `p_i` and the levels on both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +61,7 @@ pub(super) fn hold_ranges(
 /// The steps of each of the `trials` of a joint, as `settings` ask for: none of an input that
 /// moves all the time.
 pub(crate) fn joint_steps(trials: &Record, settings: &Settings) -> Vec<Vec<InputStep>> {
-    if settings.takes_as_continuous(trials) {
+    if settings.takes_as_continuous(&InputMotion::of(trials)) {
         return trials.iter().map(|_| Vec::new()).collect();
     }
     trials.iter().map(|trial| trial_steps(trial, settings)).collect()
@@ -125,6 +125,28 @@ fn with_edges_merged(steps: Vec<InputStep>, longest: usize, tail: usize) -> Vec<
         merged.retain(|step| size(step) >= SMALLEST_PART * largest);
     }
     merged
+}
+
+/// Trials with a step from which a joint is known to be driven in strokes.
+const FEWEST_STROKES: usize = 3;
+
+/// Whether the trials of a joint are strokes.
+struct Strokes(bool);
+
+impl Property for Strokes {
+    fn find(record: &Record) -> Self {
+        let changes = |trial: &Trial| input_steps(trial.input(), 0.0).len();
+        let changes: Vec<usize> = record.iter().map(changes).collect();
+        let driven = changes.iter().filter(|changes| **changes > 0).count();
+        let are_few = changes.iter().all(|changes| FirstLast::Auto.are_judged(*changes));
+        Self(driven >= FEWEST_STROKES && are_few)
+    }
+}
+
+/// Whether the trials of a joint are strokes: each has so few changes of the input that its first
+/// and last step are judged, see [`FirstLast::Auto`], and several have any.
+pub(crate) fn are_strokes(record: &Record) -> bool {
+    record.property::<Strokes>().0
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use super::neutral::Neutral;
 use super::prepared::Prepared;
 use super::steps::{InputStep, hold_ranges};
 use crate::experiment::{Record, Trial};
-use crate::numerics::{median, noise_of_differences};
+use crate::numerics::{limits, median, noise_of_differences};
 
 /// Holds in which the joint comes to the same end of its range, which show a stop.
 const FEWEST: usize = 3;
@@ -54,8 +54,7 @@ impl Stops {
         holds.retain(|(level, _)| !is_neutral(*level));
         let holds = driven(&holds, tolerance);
         let ends = || holds.iter().filter_map(|held| Some((held, end_of(held)?)));
-        let levels = ends().filter_map(|(_, end)| median(end));
-        let (low, high) = levels.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+        let (low, high) = limits(ends().filter_map(|(_, end)| median(end)));
         // One that stands there all the time may rest there, where its input moves nothing.
         let arrived_near = |level: f64| -> Vec<f64> {
             let is_near = |y: &f64| (y - level).abs() <= NEAR * (high - low);
@@ -87,13 +86,11 @@ impl Stops {
     pub(super) fn bound(&self, trial: &mut Prepared<'_>) {
         let samples = trial.raw.len();
         let mut before = None;
-        let mut motions = std::mem::take(&mut trial.motions);
-        let mut is_tested = trial.is_tested;
-        for (motion, hold) in motions.iter_mut().zip(hold_ranges(&trial.steps, samples)) {
+        for (motion, hold) in trial.motions.iter_mut().zip(hold_ranges(&trial.steps, samples)) {
             let start = hold.start;
-            let arrival = self.arrival(&trial.measured(hold));
+            let arrival = self.arrival(&trial.raw[hold]);
             if motion.is_none() && (arrival.is_some_and(|after| after > 0) || before.is_some()) {
-                is_tested = true;
+                trial.is_tested = true;
                 let until = arrival.filter(|after| *after > 0).map(|after| start + after);
                 *motion = Some(Box::new(StepMotion {
                     first: before.unwrap_or(0),
@@ -107,7 +104,6 @@ impl Stops {
                 arrival => arrival.map(|after| start + after),
             };
         }
-        (trial.motions, trial.is_tested) = (motions, is_tested);
     }
 
     /// Samples of a hold until its output stands at a stop, where it ends at one.
@@ -125,8 +121,7 @@ impl Stops {
 fn driven<'a>(holds: &[(f64, &'a [f64])], same: f64) -> Vec<&'a [f64]> {
     /// The part of a hold, one in so many, in which a joint that rests has come to rest.
     const LAST: usize = 3;
-    let outputs = || holds.iter().flat_map(|(_, held)| held.iter().copied());
-    let (low, high) = outputs().fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+    let (low, high) = limits(holds.iter().flat_map(|(_, held)| held.iter().copied()));
     // Over the last of a hold, whose halves are compared: noise is not motion.
     let rests_at = |held: &'a [f64]| {
         let end = held.get(held.len() - held.len() / LAST..).filter(|end| end.len() >= STANDING)?;
@@ -135,9 +130,8 @@ fn driven<'a>(holds: &[(f64, &'a [f64])], same: f64) -> Vec<&'a [f64]> {
         ((to - from).abs() <= 2.0 * THERE * (high - low)).then_some(to)
     };
     let is_driven = |of_level: &&[(f64, &'a [f64])]| {
-        let places = of_level.iter().filter_map(|(_, held)| rests_at(held));
-        let (l, h) = places.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
-        h - l <= NEAR * (high - low)
+        let (least, most) = limits(of_level.iter().filter_map(|(_, held)| rests_at(held)));
+        most - least <= NEAR * (high - low)
     };
     let levels = holds.chunk_by(|a, b| b.0 - a.0 <= same).filter(is_driven);
     levels.flatten().map(|(_, held)| *held).collect()

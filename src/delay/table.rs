@@ -4,12 +4,12 @@ use std::cmp::Ordering;
 
 use super::condition::Condition;
 use super::decision::{Decision, Verdict};
-use super::hold::level_tolerance;
-use super::neutral::Neutral;
-use super::transition::Transition;
-use super::trial_estimate::TrialEstimate;
+use super::estimate::TrialEstimate;
+use super::hold::{alike, level_tolerance};
+use super::neutral::{Neutral, Transition};
 use super::typical::{Scatter, StepSample, TypicalDelay};
 use crate::experiment::{Joint, Trial};
+use crate::numerics::limits;
 
 /// Pairs of levels above which the steps of a kind are put together in bins: chosen; seven
 /// levels on both sides of neutral are still a row each.
@@ -118,8 +118,6 @@ impl KindDelay {
 /// A step, its levels put together with those that are the same.
 #[derive(Clone, Copy, Debug)]
 struct KindStep {
-    /// Among all steps of the joint; equal ones stay in this order.
-    number: usize,
     course: Course,
     from: f64,
     to: f64,
@@ -149,38 +147,28 @@ impl DelayTable {
         let decisions = estimated.flat_map(|(trial, estimate)| {
             estimate.decisions.iter().map(move |decision| (trial, decision))
         });
-        let numbered = decisions.enumerate();
-        let mut steps: Vec<KindStep> = numbered
-            .map(|(number, (trial, decision))| {
-                KindStep::of(number, trial, decision, neutral.as_ref())
-            })
-            .collect();
+        let step = |(trial, decision)| KindStep::of(trial, decision, neutral.as_ref());
+        let mut steps: Vec<KindStep> = decisions.map(step).collect();
         join_levels(&mut steps, tolerance);
-        Self::of_steps(neutral, steps)
-    }
-
-    /// The table of `steps`. They are sorted anew for each part of it, since copies of a hundred
-    /// thousand take as much memory as a hundred thousand decisions.
-    fn of_steps(neutral: Option<Neutral>, mut steps: Vec<KindStep>) -> Self {
         let (mut kinds, mut curves, mut rows) = (Vec::new(), Vec::new(), Vec::new());
-        steps.sort_unstable_by_key(|step| (step.course.transition, step.number));
-        for same in steps.chunk_by_mut(|a, b| a.course.transition == b.course.transition) {
-            kinds.extend(summary(same));
-            curves.extend(self::curves(same));
-            rows.extend(self::rows(same));
+        for transition in Transition::ALL {
+            let own = steps.iter().filter(|step| step.course.transition == transition);
+            let own: Vec<KindStep> = own.copied().collect();
+            kinds.extend(summary(&own));
+            curves.extend(self::curves(&own));
+            rows.extend(self::rows(own));
         }
         Self { neutral, rows, curves, kinds }
     }
 }
 
 impl KindStep {
-    fn of(number: usize, trial: &Trial, decision: &Decision, neutral: Option<&Neutral>) -> Self {
+    fn of(trial: &Trial, decision: &Decision, neutral: Option<&Neutral>) -> Self {
         let step = decision.input_step;
         let transition = Transition::of(&step, neutral);
         let sided = if transition == Transition::Stop { step.before } else { step.after };
         let side = neutral.map_or(Ordering::Equal, |neutral| neutral.side(sided));
         Self {
-            number,
             course: Course { transition, side, rises: step.after > step.before },
             from: step.before,
             to: step.after,
@@ -207,14 +195,10 @@ impl KindStep {
 fn join_levels(steps: &mut [KindStep], tolerance: f64) {
     let mut levels: Vec<f64> = steps.iter().flat_map(|step| [step.from, step.to]).collect();
     levels.sort_by(f64::total_cmp);
-    let mut joined = Vec::new();
-    let mut rest = levels.as_slice();
-    while let Some(least) = rest.first() {
-        let (same, others) =
-            rest.split_at(rest.partition_point(|l| *l <= least + tolerance).max(1));
-        joined.extend(same.get(same.len() / 2).map(|middle| (*least, *middle)));
-        rest = others;
-    }
+    let joined: Vec<(f64, f64)> = alike(&levels, |level| *level, tolerance)
+        .into_iter()
+        .map(|same| (same[0], same[same.len() / 2]))
+        .collect();
     let middle = |level: f64| {
         let index = joined.partition_point(|(least, _)| *least <= level);
         index.checked_sub(1).and_then(|index| joined.get(index)).map_or(level, |found| found.1)
@@ -225,20 +209,16 @@ fn join_levels(steps: &mut [KindStep], tolerance: f64) {
 }
 
 /// The rows of a kind, of all its steps.
-fn rows(same: &mut [KindStep]) -> Vec<DelayRow> {
+fn rows(mut same: Vec<KindStep>) -> Vec<DelayRow> {
     let pair = |a: &KindStep, b: &KindStep| a.from.total_cmp(&b.from).then(a.to.total_cmp(&b.to));
-    let in_order = |a: &KindStep, b: &KindStep| pair(a, b).then(a.number.cmp(&b.number));
-    same.sort_unstable_by(in_order);
+    same.sort_by(pair);
     let pairs: Vec<_> = same.chunk_by(|a, b| pair(a, b).is_eq()).collect();
     if pairs.len() <= MOST_PAIRS {
         return each_with(&pairs, row);
     }
     let transition = same.first().map(|step| step.course.transition);
     let most = if matches!(transition, Some(Transition::Start | Transition::Stop)) { 3 } else { 2 };
-    same.sort_unstable_by(|a, b| {
-        let by_size = || a.size().total_cmp(&b.size());
-        a.course.cmp(&b.course).then_with(by_size).then_with(|| in_order(a, b))
-    });
+    same.sort_by(|a, b| a.course.cmp(&b.course).then(a.size().total_cmp(&b.size())));
     let courses = same.chunk_by(|a, b| a.course == b.course);
     let bins: Vec<_> = courses.flat_map(|course| bins(course, most, KindStep::size)).collect();
     each_with(&bins, row)
@@ -288,8 +268,7 @@ fn row(steps: &[KindStep], scatter: Scatter) -> Option<DelayRow> {
 
 /// Mean and limits of a level; exactly that level where there is only one.
 fn spread(steps: &[KindStep], level: impl Fn(&KindStep) -> f64) -> (f64, (f64, f64)) {
-    let low = steps.iter().map(&level).fold(f64::INFINITY, f64::min);
-    let high = steps.iter().map(&level).fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = limits(steps.iter().map(&level));
     let mean = low + steps.iter().map(|step| level(step) - low).sum::<f64>() / steps.len() as f64;
     (mean, (low, high))
 }
@@ -301,14 +280,10 @@ fn samples(steps: &[KindStep]) -> Vec<StepSample> {
 }
 
 /// The curves of all courses of a kind with an accepted step.
-fn curves(same: &mut [KindStep]) -> Vec<DelayCurve> {
-    let is_rejected = |step: &KindStep| step.verdict != Verdict::Accepted;
-    same.sort_unstable_by(|a, b| {
-        let by_level = || a.level().total_cmp(&b.level());
-        let by_course = is_rejected(a).cmp(&is_rejected(b)).then(a.course.cmp(&b.course));
-        by_course.then_with(by_level).then(a.number.cmp(&b.number))
-    });
-    let accepted = same.split(is_rejected).next().unwrap_or_default();
+fn curves(same: &[KindStep]) -> Vec<DelayCurve> {
+    let accepted = same.iter().filter(|step| step.verdict == Verdict::Accepted);
+    let mut accepted: Vec<KindStep> = accepted.copied().collect();
+    accepted.sort_by(|a, b| a.course.cmp(&b.course).then(a.level().total_cmp(&b.level())));
     let courses = accepted.chunk_by(|a, b| a.course == b.course);
     courses.filter_map(|steps| Some(curve(steps.first()?.course, steps))).collect()
 }

@@ -13,7 +13,7 @@ use super::prepared::Prepared;
 use super::settings::Settings;
 use super::steps::{InputStep, hold_ranges, joint_steps};
 use crate::experiment::{Property, Record, Trial};
-use crate::numerics::noise_of_differences;
+use crate::numerics::{PairSums, limits, noise_of_differences};
 
 /// Levels of the input, and holds at whose end the output rests, that show a relation.
 const FEWEST_LEVELS: usize = 3;
@@ -47,12 +47,6 @@ impl Property for Option<Tracking> {
     }
 }
 
-/// A hold of the input at whose end the output rests.
-struct RestingHold {
-    level: f64,
-    output: f64,
-}
-
 impl Tracking {
     /// The output at rest while the input is zero, output units; 0 where it is nearer to that than
     /// is known.
@@ -74,12 +68,12 @@ impl Tracking {
     /// with their `steps`; `None` where there is none.
     pub(super) fn of(trials: &[Trial], steps: &[Vec<InputStep>]) -> Option<Self> {
         let holds = steps.iter().map(Vec::len).sum::<usize>();
-        let outputs = || trials.iter().flat_map(|trial| trial.output().iter().copied());
-        let range = outputs().fold(f64::MIN, f64::max) - outputs().fold(f64::MAX, f64::min);
+        let (low, high) = limits(trials.iter().flat_map(Trial::output).copied());
+        let range = high - low;
         let of_trial =
             |(trial, steps): (&Trial, &Vec<InputStep>)| resting_holds(trial.output(), steps, range);
-        let rests: Vec<RestingHold> = trials.iter().zip(steps).flat_map(of_trial).collect();
-        let mut levels: Vec<f64> = rests.iter().map(|rest| rest.level).collect();
+        let rests: Vec<(f64, f64)> = trials.iter().zip(steps).flat_map(of_trial).collect();
+        let mut levels: Vec<f64> = rests.iter().map(|(level, _)| *level).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
         let enough = rests.len() >= FEWEST_RESTS && rests.len() as f64 >= RESTING * holds as f64;
@@ -90,26 +84,15 @@ impl Tracking {
     }
 
     /// The regression line of where the output rests, if it is near to it.
-    fn through(rests: &[RestingHold], noise: f64) -> Option<Self> {
-        let n = rests.len() as f64;
-        let mean = |of: fn(&RestingHold) -> f64| rests.iter().map(of).sum::<f64>() / n;
-        let (level, output) = (mean(|rest| rest.level), mean(|rest| rest.output));
-        let (uu, uy) = rests.iter().fold((0.0, 0.0), |(uu, uy), rest| {
-            let from_mean = rest.level - level;
-            (uu + from_mean * from_mean, uy + from_mean * (rest.output - output))
-        });
-        let gain = uy / uu;
-        let offset = output - gain * level;
-        let off = |rest: &RestingHold| (rest.output - offset - gain * rest.level).powi(2);
+    fn through(rests: &[(f64, f64)], noise: f64) -> Option<Self> {
+        let sums = PairSums::of(rests.iter().copied());
+        let ((gain, offset), r_squared) = (sums.line(), sums.r_squared());
         // Two parameters: n − 2 degrees of freedom.
-        let off = (rests.iter().map(off).sum::<f64>() / (n - 2.0)).sqrt();
-        let ends = |of: fn(f64, f64) -> f64, start| rests.iter().map(|r| r.output).fold(start, of);
-        let travel = ends(f64::max, f64::MIN) - ends(f64::min, f64::MAX);
+        let off = (sums.sse() / (rests.len() as f64 - 2.0)).sqrt();
+        let (low, high) = limits(rests.iter().map(|(_, output)| *output));
+        let travel = high - low;
         let tolerance = (3.0 * off).max(4.0 * noise).max(0.005 * travel);
         let is_near = gain.is_finite() && gain != 0.0 && off <= OFF * travel;
-        // The residual about the line, as a part of the variation about the mean.
-        let square = |rest: &RestingHold| (rest.output - output).powi(2);
-        let r_squared = 1.0 - (n - 2.0) * off * off / rests.iter().map(square).sum::<f64>();
         is_near.then_some(Self { offset, gain, tolerance, r_squared })
     }
 
@@ -118,11 +101,10 @@ impl Tracking {
         let mut arrived = 0;
         let mut previous = trial.steps.first().map_or(0.0, |step| self.rest_at(step.before));
         let ranges = hold_ranges(&trial.steps, trial.raw.len());
-        let mut motions = std::mem::take(&mut trial.motions);
-        for ((step, motion), range) in trial.steps.iter().zip(&mut motions).zip(ranges) {
+        for ((step, motion), range) in trial.steps.iter().zip(&mut trial.motions).zip(ranges) {
             let start = range.start;
             let hold = Hold {
-                output: &trial.measured(range),
+                output: &trial.raw[range],
                 previous,
                 target: self.rest_at(step.after),
                 tolerance: self.tolerance,
@@ -133,7 +115,6 @@ impl Tracking {
             arrived = hold.arrival().map_or(arrived, |arrival| start + arrival);
             previous = hold.target;
         }
-        trial.motions = motions;
         trial.is_tested = true;
     }
 
@@ -184,8 +165,9 @@ impl Hold<'_> {
     }
 }
 
-/// The holds at whose end `output` rests; `range` is that of the whole record.
-fn resting_holds(output: &[f64], steps: &[InputStep], range: f64) -> Vec<RestingHold> {
+/// The level of each hold at whose end `output` rests, and where; `range` is that of the whole
+/// record.
+fn resting_holds(output: &[f64], steps: &[InputStep], range: f64) -> Vec<(f64, f64)> {
     /// Part of a hold at its end, and samples of it at least, over which the output rests, and
     /// part of the range by which it may move meanwhile.
     const PARTS: usize = 5;
@@ -200,7 +182,7 @@ fn resting_holds(output: &[f64], steps: &[InputStep], range: f64) -> Vec<Resting
         let (first, last) = tail.split_at(tail.len() / 2);
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
         let rests = (mean(last) - mean(first)).abs() <= STILL * range;
-        rests.then(|| RestingHold { level: step.after, output: mean(tail) })
+        rests.then(|| (step.after, mean(tail)))
     };
     steps.iter().zip(hold_ranges(steps, output.len())).filter_map(resting).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::decision::{Decision, Verdict};
 use super::interval::FineDelay;
-use crate::numerics::{median, student_quantile, to_nanoseconds};
+use crate::numerics::{coin_quantile, limits, median, student_quantile, to_nanoseconds};
 use crate::units::SamplePeriod;
 
 /// How often the interval of a median holds it.
@@ -128,9 +128,7 @@ fn student(samples: &[StepSample], scatter: Scatter) -> Option<(f64, f64)> {
     let variance = (scatter.squares / scatter.freedom).max(own.map_or(0.0, |own| own / count));
     let quantile = student_quantile(0.5 + 0.5 * CONFIDENCE, scatter.freedom);
     let reach = quantile * (variance / count).sqrt();
-    let delays = samples.iter().map(|sample| sample.delay_s);
-    let (least, greatest) =
-        delays.fold((f64::MAX, f64::MIN), |(low, high), delay| (low.min(delay), high.max(delay)));
+    let (least, greatest) = limits(samples.iter().map(|sample| sample.delay_s));
     // Delays on a grid may agree by chance.
     (variance > 0.0)
         .then_some(((mean(samples) - reach).min(least), (mean(samples) + reach).max(greatest)))
@@ -145,20 +143,7 @@ fn ordered(delays: &[f64]) -> Option<(f64, f64)> {
 /// The largest `k` for which a fair coin falls heads fewer than `k` times of `count` with at
 /// most half of what is left to the confidence.
 fn rank(count: usize) -> usize {
-    let tail = f64::midpoint(1.0, -CONFIDENCE);
-    // Logarithms: 2^−n is zero from n = 1075 on.
-    let mut log_ways = -(count as f64) * std::f64::consts::LN_2;
-    let (mut sum, mut heads) = (0.0, 0);
-    while heads < count {
-        sum += log_ways.exp();
-        if sum > tail {
-            break;
-        }
-        // C(n, k + 1) = C(n, k)·(n − k)/(k + 1).
-        log_ways += ((count - heads) as f64 / (heads + 1) as f64).ln();
-        heads += 1;
-    }
-    heads
+    coin_quantile(f64::midpoint(1.0, -CONFIDENCE), count)
 }
 
 #[cfg(test)]

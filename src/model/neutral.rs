@@ -117,15 +117,15 @@ impl Line {
             return None;
         }
         let zero = [&levels[..], &speeds].concat();
-        let mut zero = NormalEquations::of(&zero, taken.len(), &[]);
+        let mut zero = NormalEquations::of(&zero, taken.len());
         zero.eliminate(0);
         let all = [&vec![1.0; taken.len()][..], &levels, &outputs, &speeds].concat();
-        let mut all = NormalEquations::of(&all, taken.len(), &[]);
+        let mut all = NormalEquations::of(&all, taken.len());
         all.eliminate(0);
         let constant = all.error();
         all.eliminate(1);
         let error = all.error();
-        let neutral = match all.coefficients(2, &[]).as_slice() {
+        let neutral = match all.coefficients(2).as_slice() {
             [at_zero, slope] => -at_zero / slope,
             _ => return None,
         };

@@ -71,15 +71,6 @@ impl LowPass {
     /// # Errors
     /// [`FilterError`] when the cutoff or the order is out of range.
     pub fn smooth(&self, signal: &[f64], period: SamplePeriod) -> Result<Vec<f64>, FilterError> {
-        self.smooth_in_place(signal.to_vec(), period)
-    }
-
-    /// Smooths a signal in its own memory, as [`smooth`](Self::smooth) does a copy.
-    pub(crate) fn smooth_in_place(
-        &self,
-        signal: Vec<f64>,
-        period: SamplePeriod,
-    ) -> Result<Vec<f64>, FilterError> {
         let mut sections = self.design(period)?;
         let Some(&offset) = signal.first() else {
             return Ok(Vec::new());
@@ -90,16 +81,11 @@ impl LowPass {
         let pad = padding(&sections).min(samples - 1);
         sosfilt_zi_dyn::<_, _, Sos<f64>>(sections.iter_mut());
         let mut smoothed = extend_odd(signal, pad, offset);
-        one_pass(&sections, &mut smoothed);
-        smoothed.reverse();
-        one_pass(&sections, &mut smoothed);
-        smoothed.reverse();
-        smoothed.truncate(pad + samples);
-        smoothed.drain(..pad);
-        for value in &mut smoothed {
-            *value += offset;
+        for _ in 0..2 {
+            smoothed = one_pass(&sections, &smoothed);
+            smoothed.reverse();
         }
-        Ok(smoothed)
+        Ok(smoothed[pad..pad + samples].iter().map(|value| value + offset).collect())
     }
 
     /// How many of the last samples of a growing signal are smoothed to something else when
@@ -170,37 +156,23 @@ fn padding(sections: &[Sos<f64>]) -> usize {
 /// `signal − offset`, extended by its point reflection at both ends.
 ///
 /// Taking the offset off keeps the digits of a joint that is at 1e6 degrees.
-fn extend_odd(mut signal: Vec<f64>, pad: usize, offset: f64) -> Vec<f64> {
+fn extend_odd(signal: &[f64], pad: usize, offset: f64) -> Vec<f64> {
     let first = signal.first().copied().unwrap_or_default();
     let last = signal.last().copied().unwrap_or_default();
     let head = signal.iter().skip(1).take(pad).rev().map(|value| 2.0 * first - value);
-    let head: Vec<f64> = head.collect();
     let tail = signal.iter().rev().skip(1).take(pad).map(|value| 2.0 * last - value);
-    let tail: Vec<f64> = tail.collect();
-    signal.reserve_exact(2 * pad);
-    signal.extend(tail);
-    signal.splice(0..0, head);
-    for value in &mut signal {
-        *value -= offset;
-    }
-    signal
+    head.chain(signal.iter().copied()).chain(tail).map(|value| value - offset).collect()
 }
 
-/// One run of the sections over `signal`, in its place, from the steady state at the first value.
-fn one_pass(sections: &[Sos<f64>], signal: &mut [f64]) {
-    /// Samples that are filtered at a time: no second signal is needed.
-    const AT_ONCE: usize = 4096;
+/// One run of the sections over `signal`, from the steady state at the first value.
+fn one_pass(sections: &[Sos<f64>], signal: &[f64]) -> Vec<f64> {
     let first = signal.first().copied().unwrap_or_default();
     let mut sections = sections.to_vec();
     for section in &mut sections {
         section.zi0 *= first;
         section.zi1 *= first;
     }
-    for part in signal.chunks_mut(AT_ONCE) {
-        // The sections keep their state from one part to the next.
-        let filtered = sosfilt_dyn(part.iter(), &mut sections);
-        part.copy_from_slice(&filtered);
-    }
+    sosfilt_dyn(signal.iter(), &mut sections)
 }
 
 #[cfg(test)]

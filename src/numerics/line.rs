@@ -75,6 +75,55 @@ impl RunningLine {
     }
 }
 
+/// Means, variances and covariance of pairs, updated one by one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PairSums {
+    count: f64,
+    mean: (f64, f64),
+    /// Sums of squares and of products about the means.
+    xx: f64,
+    yy: f64,
+    xy: f64,
+}
+
+impl PairSums {
+    pub(crate) fn of(pairs: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let mut sums = Self::default();
+        pairs.into_iter().for_each(|(x, y)| sums.push(x, y));
+        sums
+    }
+
+    /// Welford's update; pairs that are not numbers are left out.
+    pub(crate) fn push(&mut self, x: f64, y: f64) {
+        if !(x.is_finite() && y.is_finite()) {
+            return;
+        }
+        self.count += 1.0;
+        let (dx, dy) = (x - self.mean.0, y - self.mean.1);
+        self.mean.0 += dx / self.count;
+        self.mean.1 += dy / self.count;
+        self.xx += dx * (x - self.mean.0);
+        self.yy += dy * (y - self.mean.1);
+        self.xy += dx * (y - self.mean.1);
+    }
+
+    pub(crate) fn r_squared(&self) -> f64 {
+        let scale = self.xx * self.yy;
+        if scale > 0.0 { self.xy * self.xy / scale } else { 0.0 }
+    }
+
+    /// Slope and intercept of the regression of the second on the first.
+    pub(crate) fn line(&self) -> (f64, f64) {
+        let slope = if self.xx > 0.0 { self.xy / self.xx } else { 0.0 };
+        (slope, self.mean.1 - slope * self.mean.0)
+    }
+
+    /// Squared error of that regression.
+    pub(crate) fn sse(&self) -> f64 {
+        (self.yy - self.xy * self.xy / self.xx.max(f64::MIN_POSITIVE)).max(0.0)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

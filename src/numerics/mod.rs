@@ -22,18 +22,20 @@ pub(crate) mod testing;
 pub(crate) use autoregression::Autoregression;
 pub use filter::{FilterError, LowPass, MAX_ORDER};
 pub use line::Line;
-pub(crate) use line::RunningLine;
+pub(crate) use line::{PairSums, RunningLine};
 pub(crate) use moments::{autocovariances, column_products, dot};
 pub(crate) use noise::NoiseModel;
 pub(crate) use normal_equations::NormalEquations;
 pub(crate) use projection::Basis;
 pub(crate) use rank::{PseudoInverse, REGRESSORS};
-pub(crate) use regression::{Regression, residuals_of};
+pub(crate) use regression::{Regression, product, residuals_of};
 pub(crate) use rounding::{
     as_written, decimal_exponent, to_decimals, to_digits, to_digits_by, to_multiple, to_nanoseconds,
 };
 pub use statistics::{RankTest, mann_whitney, median, quantile, ranks, spearman};
-pub(crate) use statistics::{chi_square_tail, fisher_tail, holm, normal_below, student_quantile};
 pub(crate) use statistics::{
-    least_change, noise_of_bends, noise_of_differences, quantile_of, robust_scale,
+    chi_square_tail, coin_quantile, fisher_tail, holm, normal_below, student_quantile,
+};
+pub(crate) use statistics::{
+    least_change, limits, noise_of_bends, noise_of_differences, robust_scale,
 };

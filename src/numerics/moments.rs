@@ -32,7 +32,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The sums of products of `a` with four others, in one pass.
-pub(crate) fn dots(a: &[f64], others: [&[f64]; 4]) -> [f64; 4] {
+fn dots(a: &[f64], others: [&[f64]; 4]) -> [f64; 4] {
     const LANES: usize = 4;
     let length = others.iter().map(|other| other.len()).fold(a.len(), usize::min);
     let a = &a[..length];
@@ -50,6 +50,18 @@ pub(crate) fn dots(a: &[f64], others: [&[f64]; 4]) -> [f64; 4] {
     for (product, other) in products.iter_mut().zip(others) {
         let rest = a.iter().zip(other).skip(heads);
         *product += rest.map(|(a, b)| a * b).sum::<f64>();
+    }
+    products
+}
+
+/// The products of a column with each of up to four others; 0 where there are fewer.
+pub(crate) fn with_each(column: &[f64], others: &[&[f64]]) -> [f64; 4] {
+    if let &[a, b, c, d] = others {
+        return dots(column, [a, b, c, d]);
+    }
+    let mut products = [0.0; 4];
+    for (slot, other) in products.iter_mut().zip(others) {
+        *slot = dot(column, other);
     }
     products
 }

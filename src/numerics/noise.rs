@@ -4,7 +4,7 @@
 //! fitted to the windows before: so many parameters each, columns that are known, or the mean.
 
 use super::autoregression::Autoregression;
-use super::moments::dot;
+use super::moments::{autocovariances, dot};
 
 /// Longest memory of the noise that is looked for in short windows, samples (chosen).
 const LONGEST_MEMORY: usize = 8;
@@ -28,8 +28,6 @@ pub(crate) struct NoiseModel {
     coefficients: Vec<f64>,
     /// `1 − Σ a_i`: what whitening makes of 1.
     pub(crate) level: f64,
-    /// `Σ i·a_i`: whitening makes `level·k + shift` of `k`.
-    pub(crate) shift: f64,
 }
 
 impl NoiseModel {
@@ -39,8 +37,7 @@ impl NoiseModel {
 
     fn new(coefficients: Vec<f64>) -> Self {
         let level = 1.0 - coefficients.iter().sum::<f64>();
-        let shift = coefficients.iter().zip(1..).map(|(a, i)| f64::from(i) * a).sum();
-        Self { coefficients, level, shift }
+        Self { coefficients, level }
     }
 
     /// Noise about a line, which does not wander.
@@ -67,24 +64,14 @@ impl NoiseModel {
     /// Each parameter removes the power of slow noise from the residuals, `S/n` from every
     /// autocovariance, with `S` their sum over all lags and `n` the length of a fit; it is
     /// put back.
-    ///
-    /// They are looked at one after the other: together they may be longer than the record.
-    pub(crate) fn of<R: AsRef<[f64]>>(
-        residuals: impl IntoIterator<Item = R>,
-        parameters: usize,
-    ) -> Self {
+    pub(crate) fn of(residuals: &[Vec<f64>], parameters: usize) -> Self {
         /// Times that `S` is estimated from what it corrects.
         const ROUNDS: usize = 3;
-        let all: Vec<LaggedProducts> =
-            residuals.into_iter().map(|values| LaggedProducts::of(values.as_ref())).collect();
         // Whatever moves a few windows would be taken for the memory of all.
-        let usual = without_misfits(&all, LaggedProducts::power);
-        let samples: usize = usual.iter().map(|found| found.samples).sum();
+        let usual = without_misfits(residuals);
+        let samples: usize = usual.iter().map(|window| window.len()).sum();
         let length = samples as f64 / usual.len().max(1) as f64;
-        let covariance = |lag: usize| {
-            usual.iter().map(|found| found.products[lag]).sum::<f64>() / samples.max(1) as f64
-        };
-        let measured: Vec<f64> = (0..=LONGEST_MEMORY.min(samples / 10)).map(covariance).collect();
+        let measured = autocovariances(&usual, LONGEST_MEMORY.min(samples / 10));
         let mut found = Autoregression::default();
         for _ in 0..ROUNDS {
             let noise = Self::about_line(found.coefficients.clone());
@@ -243,35 +230,18 @@ fn covariances_of_pairs(windows: &[Vec<f64>]) -> Vec<f64> {
     (0..=LONGEST_OF_RESIDUAL.min(samples / 10)).map(covariance).collect()
 }
 
-/// What the residual of one fit says of its noise.
-struct LaggedProducts {
-    samples: usize,
-    /// Sums of the products of its values with those 0, 1, … samples before.
-    products: [f64; LONGEST_MEMORY + 1],
-}
-
-impl LaggedProducts {
-    fn of(values: &[f64]) -> Self {
-        let product = |lag: usize| values.get(lag..).map_or(0.0, |later| dot(values, later));
-        Self { samples: values.len(), products: std::array::from_fn(product) }
-    }
-
-    /// The mean square.
-    fn power(&self) -> f64 {
-        self.products[0] / self.samples.max(1) as f64
-    }
-}
-
-/// Those whose `power` is not far larger than that of most: the residual of the others is no
+/// Those whose mean square is not far larger than that of most: the residual of the others is no
 /// noise.
-fn without_misfits<T>(all: &[T], power: impl Fn(&T) -> f64) -> Vec<&T> {
+fn without_misfits(windows: &[Vec<f64>]) -> Vec<&[f64]> {
     /// Times the median of the mean squares (chosen).
     const MISFIT: f64 = 2.5;
-    let powers: Vec<f64> = all.iter().map(power).collect();
+    let power = |window: &Vec<f64>| dot(window, window) / window.len().max(1) as f64;
+    let powers: Vec<f64> = windows.iter().map(power).collect();
     let mut sorted = powers.clone();
     sorted.sort_by(f64::total_cmp);
     let limit = sorted.get(sorted.len() / 2).map_or(0.0, |median| MISFIT * median);
-    all.iter().zip(powers).filter(|(_, power)| *power <= limit).map(|(one, _)| one).collect()
+    let usual = windows.iter().zip(powers).filter(|(_, power)| *power <= limit);
+    usual.map(|(window, _)| window.as_slice()).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Small least squares by normal equations, solved column by column.
 
-use super::moments::{dot, dots};
+use super::moments::with_each;
 use super::rank::PIVOT;
 
 /// The products of all columns with each other, the last of them the target; eliminated
@@ -13,54 +13,27 @@ pub(crate) struct NormalEquations {
     squares: Vec<f64>,
 }
 
-/// A column that is 0 before `start`.
-#[derive(Clone, Copy, Debug)]
-struct Column<'a> {
-    values: &'a [f64],
-    start: usize,
-}
-
-impl<'a> Column<'a> {
-    fn from(&self, row: usize) -> &'a [f64] {
-        &self.values[row..]
-    }
-
-    /// Puts its products with the `others` into `slots`.
-    fn multiply(&self, others: &[Self], slots: &mut [f64]) {
-        let first = others.iter().map(|other| other.start).min().unwrap_or(0).max(self.start);
-        // Four products in one pass read the column once.
-        if let [a, b, c, d] = others {
-            slots.copy_from_slice(&dots(self.from(first), [a, b, c, d].map(|o| o.from(first))));
-        } else {
-            let products = others.iter().map(|other| dot(self.from(first), other.from(first)));
-            slots.iter_mut().zip(products).for_each(|(slot, product)| *slot = product);
-        }
-    }
-}
-
 impl NormalEquations {
-    /// Of `columns` of `length` samples each, one behind the other; those that have one of the
-    /// `starts` are 0 before it.
-    pub(crate) fn of(columns: &[f64], length: usize, starts: &[usize]) -> Self {
-        let size = columns.len() / length.max(1);
+    /// Of `columns` of `length` samples each, one behind the other.
+    pub(crate) fn of(columns: &[f64], length: usize) -> Self {
+        let columns: Vec<&[f64]> = columns.chunks_exact(length.max(1)).collect();
+        let size = columns.len();
         let mut products = vec![0.0; size * size];
-        // A column that begins behind the last row is 0.
-        let starts = starts.iter().map(|start| *start.min(&length)).chain(std::iter::repeat(0));
-        let columns = columns.chunks_exact(length.max(1)).zip(starts);
-        let columns: Vec<Column<'_>> =
-            columns.map(|(values, start)| Column { values, start }).collect();
         for (i, row) in products.chunks_exact_mut(size.max(1)).enumerate() {
-            let (columns, slots) = (columns.get(i..), row.get_mut(i..));
-            if let (Some(columns @ [first, ..]), Some(slots)) = (columns, slots) {
-                let groups = columns.chunks(4).zip(slots.chunks_mut(4));
-                groups.for_each(|(others, slots)| first.multiply(others, slots));
+            // Four products in one pass read the column once.
+            for (others, slots) in columns[i..].chunks(4).zip(row[i..].chunks_mut(4)) {
+                slots.copy_from_slice(&with_each(columns[i], others)[..others.len()]);
             }
         }
-        Self::from_products(size, products)
+        Self::from_products(size, |i, j| products[i * size + j])
     }
 
-    /// Of the rows of the upper triangle of their `products`, in a square.
-    pub(crate) fn from_products(size: usize, products: Vec<f64>) -> Self {
+    /// Of so many columns, from the `product` of two of them.
+    pub(crate) fn from_products(size: usize, product: impl Fn(usize, usize) -> f64) -> Self {
+        let mut products = vec![0.0; size * size];
+        for (i, j) in (0..size).flat_map(|i| (i..size).map(move |j| (i, j))) {
+            products[i * size + j] = product(i, j);
+        }
         let squares = products.iter().step_by(size + 1).copied().collect();
         Self { size, products, squares }
     }
@@ -99,9 +72,8 @@ impl NormalEquations {
         }
     }
 
-    /// Coefficients of the first `count` columns, all of which are eliminated, given those
-    /// of the columns behind them.
-    pub(crate) fn coefficients(&self, count: usize, behind: &[(usize, f64)]) -> Vec<f64> {
+    /// Coefficients of the first `count` columns, all of which are eliminated.
+    pub(crate) fn coefficients(&self, count: usize) -> Vec<f64> {
         let target = self.size.saturating_sub(1);
         let mut found = vec![0.0; count];
         // Back substitution: x_r = (A_ry − Σ_c>r A_rc x_c) / A_rr.
@@ -111,10 +83,7 @@ impl NormalEquations {
             }
             let later = found.iter().enumerate().skip(row + 1);
             let known: f64 = later.map(|(column, value)| self.at(row, column) * value).sum();
-            let given: f64 =
-                behind.iter().map(|(column, value)| self.at(row, *column) * value).sum();
-            let value = (self.at(row, target) - known - given) / self.at(row, row);
-            found[row] = value;
+            found[row] = (self.at(row, target) - known) / self.at(row, row);
         }
         found
     }
@@ -128,18 +97,18 @@ mod tests {
     fn a_regression_by_hand() {
         // y = 1 + 2 x on x = 0, 1, 2 with an error of (1, −2, 1), which neither explains.
         let columns = [1.0, 1.0, 1.0, 0.0, 1.0, 2.0, 2.0, 1.0, 6.0];
-        let mut equations = NormalEquations::of(&columns, 3, &[]);
+        let mut equations = NormalEquations::of(&columns, 3);
         equations.eliminate(0);
         equations.eliminate(1);
         assert!((equations.error() - 6.0).abs() < 1e-12);
-        let found = equations.coefficients(2, &[]);
+        let found = equations.coefficients(2);
         assert!((found[0] - 1.0).abs() < 1e-12 && (found[1] - 2.0).abs() < 1e-12);
     }
 
     #[test]
     fn a_column_that_others_make_up_is_left_out() {
         let columns = [1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 1.0, 2.0, 3.0];
-        let mut equations = NormalEquations::of(&columns, 3, &[]);
+        let mut equations = NormalEquations::of(&columns, 3);
         equations.eliminate(0);
         assert!(!equations.stands_alone(1));
         equations.eliminate(1);

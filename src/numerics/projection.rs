@@ -5,7 +5,7 @@
 //! # References
 //! B. N. Parlett, "The Symmetric Eigenvalue Problem" (1980), section 6.9 ("twice is enough").
 
-use super::moments::{dot, dots};
+use super::moments::{dot, with_each};
 
 /// An orthonormal basis of what columns span.
 #[derive(Clone, Debug)]
@@ -61,18 +61,6 @@ impl Basis {
             }
         }
     }
-}
-
-/// The products of a column with each of up to four others; 0 where there are fewer.
-fn with_each(column: &[f64], others: &[&[f64]]) -> [f64; 4] {
-    if let &[a, b, c, d] = others {
-        return dots(column, [a, b, c, d]);
-    }
-    let mut products = [0.0; 4];
-    for (slot, other) in products.iter_mut().zip(others) {
-        *slot = dot(column, other);
-    }
-    products
 }
 
 #[cfg(test)]

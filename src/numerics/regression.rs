@@ -17,9 +17,6 @@ pub(crate) struct Regression {
 impl Regression {
     /// By the normal equations `XᵀX β = Xᵀy` of columns of length one.
     pub(crate) fn of(target: &[Vec<f64>], columns: &[&Vec<Vec<f64>>]) -> Self {
-        let product = |a: &[Vec<f64>], b: &[Vec<f64>]| -> f64 {
-            a.iter().zip(b).map(|(a, b)| dot(a, b)).sum()
-        };
         // A column of zeros stays one.
         let length = |c: &&Vec<Vec<f64>>| Some(product(c, c).sqrt()).filter(|n| *n > 0.0);
         let lengths: Vec<f64> = columns.iter().map(|c| length(c).unwrap_or(1.0)).collect();
@@ -45,6 +42,11 @@ impl Regression {
             rank: inverse.rank(),
         }
     }
+}
+
+/// The product of two columns that are cut into the same windows.
+pub(crate) fn product(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| dot(a, b)).sum()
 }
 
 /// The residual of the regression of `target` on `columns`.

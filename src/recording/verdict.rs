@@ -279,7 +279,7 @@ impl Facts<'_, '_> {
             }
             (Verdict::Accepted, None) => "## ✓ accepted".to_owned(),
             (Verdict::Rejected(first), _) => {
-                let failed = decision.checks.failed();
+                let failed = decision.failed_checks();
                 let whys: Vec<_> = failed.map(|check| format!("- {}", self.why(&check))).collect();
                 format!("## ✗ rejected: {}\n{}", first.meaning(), whys.join("\n"))
             }
@@ -296,7 +296,7 @@ impl Facts<'_, '_> {
         let unit =
             self.trial.estimated.joint.output_unit.as_deref().map_or_else(String::new, plain);
         let is_set = |check: &Check| check.outcome == Outcome::Passed;
-        let held = decision.checks.iter().filter(is_set).count();
+        let held = decision.checks.into_iter().filter(is_set).count();
         format!(
             "The slope changes from {before} to {after} {unit}/s there; {} met.\n",
             match held {
@@ -411,13 +411,13 @@ impl Facts<'_, '_> {
             // `✓ nothing_happened` would read inverted.
             format!("| {mark} | {} | {} |", check.condition.when_met(), self.in_short(&check))
         };
-        let rows: Vec<_> = self.segment.decision.checks.iter().map(row).collect();
+        let rows: Vec<_> = self.segment.decision.checks.into_iter().map(row).collect();
         format!("| | met when | value (limit) |\n|---|---|---|\n{}", rows.join("\n"))
     }
 
     /// What the conditions ask that were checked; `–` has no limit, or nothing to compare.
     fn asked(&self) -> String {
-        let checks = self.segment.decision.checks.iter();
+        let checks = self.segment.decision.checks.into_iter();
         let checked = checks.filter(|check| check.outcome != Outcome::NotChecked);
         let asked = checked.map(|check| {
             let condition = check.condition;

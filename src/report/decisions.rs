@@ -82,7 +82,7 @@ impl DecisionDetail {
             method: settings.method.id(),
             delta_low: decision.fine.map(|fine| fine.low),
             delta_high: decision.fine.map(|fine| fine.high),
-            p_value: decision.checks.iter().find(tested).and_then(|check| check.value),
+            p_value: decision.checks.into_iter().find(tested).and_then(|check| check.value),
             runner_up_q: second.map(|second| second.breakpoint),
             runner_up_margin: second.map(|second| second.margin).filter(|m| m.is_finite()),
             accepted_with: remedies.join("; "),

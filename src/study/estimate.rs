@@ -77,7 +77,7 @@ fn estimate_one(
     workers: &impl Workers,
 ) -> Result<JointEstimate, EstimateError> {
     let mut estimate = estimate_steps(joint, settings, done, workers)?;
-    if settings.takes_motion_as_continuous(&estimate.motion) {
+    if settings.takes_as_continuous(&estimate.motion) {
         let found = dead_time(&joint.trials, settings);
         let trials = joint.trials.iter().zip(&mut estimate.trials).enumerate();
         for (number, (trial, estimate)) in trials {

@@ -2,8 +2,8 @@
 
 use super::estimate::estimate_steps;
 use crate::delay::EstimateError;
-use crate::delay::Settings;
 use crate::delay::sweep::{Grid, JointSweep, RunDelays};
+use crate::delay::{InputMotion, Settings};
 use crate::experiment::Joint;
 use crate::explain::Workers;
 
@@ -36,7 +36,8 @@ pub fn sweep_joints(
     };
     let one_joint = |joint: &Joint| {
         let grid = of_joint(joint);
-        let is_continuous = |run: &Settings| run.takes_as_continuous(&joint.trials);
+        let is_continuous =
+            |run: &Settings| run.takes_as_continuous(&InputMotion::of(&joint.trials));
         if grid.runs().first().is_some_and(is_continuous) {
             return Err(EstimateError::Continuous);
         }

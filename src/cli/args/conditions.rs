@@ -95,7 +95,7 @@ pub(crate) fn ids_with(says: impl Fn(&MethodSpec) -> bool) -> String {
 }
 
 fn confidence_help() -> String {
-    let untested = ids_with(|spec| spec.confidence.is_none());
+    let untested = ids_with(|spec| !spec.has_intervals);
     format!(
         "Reject a step as `nothing_happened` unless its change of slope is this unlikely to be \
          noise, or `none` [default: 0.99; `none` for {untested}]"

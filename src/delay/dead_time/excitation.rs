@@ -17,11 +17,11 @@ const ONE_SINE: f64 = 1e-3;
 ///
 /// # References
 /// L. Ljung, "System Identification" (1999), section 13.2: a sine is persistently exciting of order 2.
-pub(super) fn one_frequency(inputs: &[Vec<f64>]) -> Option<f64> {
+pub(super) fn one_frequency(inputs: &[&[f64]]) -> Option<f64> {
     /// A sixth over a quarter of a period.
     const OF_QUARTER: f64 = 2.0 / 3.0;
-    let samples: usize = inputs.iter().map(Vec::len).sum();
-    let mean = inputs.iter().flatten().sum::<f64>() / samples as f64;
+    let samples: usize = inputs.iter().map(|input| input.len()).sum();
+    let mean = inputs.iter().copied().flatten().sum::<f64>() / samples as f64;
     let centred: Vec<Vec<f64>> =
         inputs.iter().map(|input| input.iter().map(|value| value - mean).collect()).collect();
     let longest = centred.iter().map(Vec::len).max()? / 4;
@@ -63,10 +63,11 @@ mod tests {
     #[test]
     fn one_sine_is_one_frequency() {
         for period in [7.0, 31.4, 200.0, 777.0] {
-            let found = one_frequency(&[input(sine(period)), input(sine(period))]).unwrap();
+            let found = one_frequency(&[&input(sine(period)), &input(sine(period))]).unwrap();
             assert!((found * period - 1.0).abs() < 1e-3, "{period} {found}");
             let noise = noise(4, 0.0, 6000);
-            let measured = one_frequency(&[input(|k| sine(period)(k) + 0.005 * noise[k])]).unwrap();
+            let measured =
+                one_frequency(&[&input(|k| sine(period)(k) + 0.005 * noise[k])]).unwrap();
             assert!((measured * period - 1.0).abs() < 0.01, "{period} {measured}");
         }
     }
@@ -79,12 +80,12 @@ mod tests {
         let sweep = |k: usize| (1e-5 * (k as f64).powi(2)).sin();
         let after_rest = |k: usize| if k < 1000 { 0.4 } else { sine(200.0)(k) };
         for found in [input(two), input(triangle), input(square), input(sweep), input(after_rest)] {
-            assert_eq!(one_frequency(&[found]), None);
+            assert_eq!(one_frequency(&[&found]), None);
         }
         let noise = noise(4, 0.0, 6000);
-        assert_eq!(one_frequency(&[noise]), None);
-        assert_eq!(one_frequency(&[input(sine(200.0)), input(sine(90.0))]), None);
-        assert_eq!(one_frequency(&[input(|_| 1.0)]), None);
+        assert_eq!(one_frequency(&[&noise]), None);
+        assert_eq!(one_frequency(&[&input(sine(200.0)), &input(sine(90.0))]), None);
+        assert_eq!(one_frequency(&[&input(|_| 1.0)]), None);
         assert_eq!(one_frequency(&[]), None);
     }
 }

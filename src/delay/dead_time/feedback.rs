@@ -1,7 +1,8 @@
 //! Whether an input follows the output.
 
+use super::record::{changes, whiten, whitening};
 use super::result::Feedback;
-use crate::numerics::{Autoregression, autocovariances, chi_square_tail};
+use crate::numerics::{autocovariances, chi_square_tail};
 
 /// Samples after which an input may have answered.
 const LAGS: usize = 20;
@@ -13,7 +14,7 @@ const MEMORY: usize = 20;
 ///
 /// With `r_l` the correlation of an error with what is new in the input `l` samples later,
 /// `n Σ r_l²` is `χ²` distributed where there is no feedback.
-pub(super) fn feedback(errors: &[Vec<f64>], inputs: &[Vec<f64>]) -> Feedback {
+pub(super) fn feedback(errors: &[Vec<f64>], inputs: &[&[f64]]) -> Feedback {
     let news = innovations(inputs);
     let power = |all: &[Vec<f64>]| all.iter().flatten().map(|x| x * x).sum::<f64>();
     let scale = (power(errors) * power(&news)).sqrt();
@@ -34,23 +35,11 @@ pub(super) fn feedback(errors: &[Vec<f64>], inputs: &[Vec<f64>]) -> Feedback {
 }
 
 /// What the past of the changes of the inputs does not predict.
-fn innovations(inputs: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let change = |input: &Vec<f64>| {
-        let pairs = input.iter().zip(input.iter().skip(1));
-        std::iter::once(0.0).chain(pairs.map(|(from, to)| to - from)).collect::<Vec<f64>>()
-    };
-    let changes: Vec<Vec<f64>> = inputs.iter().map(change).collect();
+fn innovations(inputs: &[&[f64]]) -> Vec<Vec<f64>> {
+    let changes: Vec<Vec<f64>> = inputs.iter().map(|input| changes(input)).collect();
     let samples: usize = changes.iter().map(Vec::len).sum();
-    let memory = Autoregression::of(&autocovariances(&changes, MEMORY.min(samples / 20)), samples);
-    let new = |changes: &Vec<f64>| {
-        let of = |k: usize| {
-            let past = changes.get(..k).unwrap_or_default().iter().rev();
-            let predicted: f64 = memory.coefficients.iter().zip(past).map(|(a, x)| a * x).sum();
-            changes.get(k).map_or(0.0, |change| change - predicted)
-        };
-        (0..changes.len()).map(of).collect()
-    };
-    changes.iter().map(new).collect()
+    let filter = whitening(&autocovariances(&changes, MEMORY.min(samples / 20)), samples);
+    changes.iter().map(|changes| whiten(changes, &filter)).collect()
 }
 
 #[cfg(test)]
@@ -72,7 +61,7 @@ mod tests {
         let follows: Vec<f64> = (0..2000_usize)
             .map(|k| free[k] + k.checked_sub(3).map_or(0.0, |k| errors[k]))
             .collect();
-        let of = |input: &[f64]| feedback(std::slice::from_ref(&errors), &[input.to_vec()]);
+        let of = |input: &[f64]| feedback(std::slice::from_ref(&errors), &[input]);
         assert!(!of(&free).is_present(), "{:?}", of(&free));
         assert!(of(&follows).is_present(), "{:?}", of(&follows));
     }

@@ -6,15 +6,15 @@ use super::curve::Curve;
 use super::excitation::one_frequency;
 use super::feedback::feedback;
 use super::profile::Profile;
-use super::record::{Samples, Whitened, averaged};
+use super::record::{Samples, Whitened, averaged, whitening};
 use super::response::NUMERATORS;
 use super::result::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown};
 use super::search::{Fitted, grid, least, profiles, with_one_lag};
-use super::uncertainty::{Assessed, PARTS, errors};
+use super::uncertainty::{Assessed, PARTS};
 use super::windows::{Estimated, Known, same_in_all};
 use crate::delay::settings::Settings;
 use crate::experiment::Trial;
-use crate::numerics::{Autoregression, autocovariances, student_quantile};
+use crate::numerics::{autocovariances, student_quantile};
 use crate::units::ceil_to_index;
 
 /// Longest dead time that is looked for unasked, seconds: hydraulic joints have up to half of it.
@@ -45,8 +45,6 @@ const LONGEST_LAG: f64 = 200.0;
 /// Samples of all trials that share a period.
 struct Record {
     samples: Vec<(usize, Samples)>,
-    /// The log's samples in one of these.
-    inputs: Vec<Vec<f64>>,
     longest: usize,
     period_s: f64,
 }
@@ -65,11 +63,11 @@ impl Record {
         let asked = settings.at(period).max_delay.map(|samples| samples.div_ceil(averaged));
         let usual = || ceil_to_index(LONGEST_S / period_s).clamp(LONGEST.start, LONGEST.end);
         let longest = asked.unwrap_or_else(usual).min(most / PER_DELAY).max(2);
-        let inputs = alike().map(|(_, trial)| {
-            let chunks = trial.input().chunks_exact(averaged);
-            chunks.map(|chunk| chunk.iter().sum::<f64>() / averaged as f64).collect()
-        });
-        Some(Self { inputs: inputs.collect(), samples, longest, period_s })
+        Some(Self { samples, longest, period_s })
+    }
+
+    fn inputs(&self) -> Vec<&[f64]> {
+        self.samples.iter().map(|(_, samples)| samples.input.as_slice()).collect()
     }
 
     /// The rows of each trial that no dead time reaches beyond, `enough` of them in all.
@@ -136,7 +134,7 @@ pub fn dead_time(trials: &[Trial], settings: &Settings) -> DeadTime {
     if rows.iter().flatten().map(ExactSizeIterator::len).sum::<usize>() < FEWEST {
         return unknown(Unknown::TooShort, confidence);
     }
-    if let Some(cycles) = one_frequency(&record.inputs) {
+    if let Some(cycles) = one_frequency(&record.inputs()) {
         return unknown(Unknown::OneFrequency(cycles / record.period_s), confidence);
     }
     let (filter, start) = noise(&record, &rows);
@@ -188,12 +186,10 @@ fn noise(record: &Record, rows: &[Vec<Range<usize>>]) -> (Vec<f64>, Option<Fitte
             .filter_map(|profile| least(profile))
             .min_by(|a, b| a.error.total_cmp(&b.error));
         let Some(best) = best.filter(|best| best.error.is_finite()) else { break };
-        let residuals = errors(&plain, best);
+        let residuals = best.design(&plain).residuals();
         let samples: usize = residuals.iter().map(Vec::len).sum();
         let memory = MEMORY.min(samples / 20);
-        let memory = Autoregression::of(&autocovariances(&residuals, memory), samples);
-        // w_k = e_k − Σ a_i e_(k−i).
-        filter = std::iter::once(1.0).chain(memory.coefficients.iter().map(|a| -a)).collect();
+        filter = whitening(&autocovariances(&residuals, memory), samples);
     }
     (filter, best.filter(|best| best.error.is_finite()))
 }
@@ -316,14 +312,12 @@ impl Solved<'_> {
     }
 
     /// The input in the rows.
-    fn inputs(&self) -> Vec<Vec<f64>> {
-        let rows = self.record.rows(ENOUGH);
-        let of_trial = |(input, rows): (&Vec<f64>, Vec<Range<usize>>)| {
-            rows.into_iter()
-                .map(|rows| input.get(rows).unwrap_or_default().to_vec())
-                .collect::<Vec<_>>()
+    fn inputs(&self) -> Vec<&[f64]> {
+        let trials = self.record.inputs().into_iter().zip(self.record.rows(ENOUGH));
+        let of_trial = |(input, rows): (_, Vec<Range<usize>>)| {
+            rows.into_iter().map(|rows| <[f64]>::get(input, rows).unwrap_or_default()).collect()
         };
-        self.record.inputs.iter().zip(rows).flat_map(of_trial).collect()
+        trials.flat_map::<Vec<&[f64]>, _>(of_trial).collect()
     }
 
     /// Rows of a window that are enough for intervals as narrow as is worth having.
@@ -335,7 +329,7 @@ impl Solved<'_> {
         const PER_LAG: f64 = 20.0;
         /// Most windows of a record, half of which share no row.
         const MOST: f64 = 60.0;
-        let samples: f64 = self.record.inputs.iter().map(|input| input.len() as f64).sum();
+        let samples: f64 = self.record.inputs().iter().map(|input| input.len() as f64).sum();
         let shortest = (PER_LAG * (best.delay + best.lags.mean().min(20.0))).max(FEWEST_ROWS);
         ceil_to_index((SPARE * needed).max(shortest).max(2.0 * samples / MOST))
     }

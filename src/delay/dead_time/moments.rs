@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::record::{Whitened, driven};
+use super::record::Whitened;
 use super::response::{Lags, NUMERATORS, Numerators};
 use crate::numerics::{NormalEquations, dot};
 
@@ -97,19 +97,11 @@ impl Moments {
         self.change += changes.iter().sum::<f64>();
         self.squared_change += dot(changes, changes);
         let (columns, from) = (self.columns, self.from);
-        let late = |column: &'_ [f64], by: usize| -> (usize, usize) {
-            (start.saturating_sub(by), end.saturating_sub(by).min(column.len()))
-        };
         let delays = self.sums.len() / columns.max(1);
-        let at = |column: &[f64], k: usize, by: usize| {
-            k.checked_sub(1 + by).and_then(|k| column.get(k)).copied().unwrap_or(0.0)
-        };
         for (j, column) in lagged.iter().enumerate() {
-            let (first, last) = late(column, from);
-            let mut sum: f64 = column[first..last].iter().sum();
+            let mut sum: f64 = late(column, &(start..end), from).iter().sum();
             for delay in 0..delays {
-                let (first, last) = late(column, from + delay);
-                let values = &column[first..last];
+                let values = late(column, &(start..end), from + delay);
                 self.with_changes[delay * columns + j] += dot(values, changes);
                 self.sums[delay * columns + j] += sum;
                 // A sample later the window gains one row in front and loses one behind.
@@ -136,14 +128,8 @@ impl Moments {
     ) {
         let (columns, from) = (self.columns, self.from);
         let square = columns * columns;
-        let first = |values: &'_ [f64], by: usize| -> (usize, usize) {
-            (start.saturating_sub(by), end.saturating_sub(by).min(values.len()))
-        };
-        let ((a, b), (c, d)) = (first(one, from), first(other, from + further));
-        let mut product = dot(&one[a..b], &other[c..d]);
-        let at = |values: &[f64], k: usize, by: usize| {
-            k.checked_sub(1 + by).and_then(|k| values.get(k)).copied().unwrap_or(0.0)
-        };
+        let rows = start..end;
+        let mut product = dot(late(one, &rows, from), late(other, &rows, from + further));
         let delays = self.sums.len() / columns.max(1);
         for delay in 0..delays {
             self.products[(delay * NUMERATORS + further) * square + i * columns + j] += product;
@@ -183,18 +169,13 @@ impl Moments {
     /// The equations of all columns behind `numerators`; the constant is projected out.
     fn equations(&self, numerators: &Numerators) -> Option<NormalEquations> {
         let Driven { products, sums, with_changes } = self.driven(numerators)?;
-        let size = self.columns + 1;
-        let mut all = vec![0.0; size * size];
-        for i in 0..self.columns {
-            for j in i..self.columns {
-                // Σ(x − x̄)(z − z̄) = Σxz − ΣxΣz/n.
-                let product = products[i * self.columns + j];
-                all[i * size + j] = product - sums[i] * sums[j] / self.rows;
-            }
-            all[i * size + self.columns] = with_changes[i] - sums[i] * self.change / self.rows;
-        }
-        all[size * size - 1] = self.without_input();
-        Some(NormalEquations::from_products(size, all))
+        let target = self.columns;
+        // Σ(x − x̄)(z − z̄) = Σxz − ΣxΣz/n.
+        Some(NormalEquations::from_products(target + 1, |i, j| match (i == target, j == target) {
+            (true, _) => self.without_input(),
+            (_, true) => with_changes[i] - sums[i] * self.change / self.rows,
+            _ => products[i * target + j] - sums[i] * sums[j] / self.rows,
+        }))
     }
 
     /// The sums of the columns behind `numerators`; none of a dead time that was not asked for.
@@ -227,6 +208,17 @@ impl Moments {
     }
 }
 
+/// The values of a column so many samples before `rows`.
+fn late<'a>(column: &'a [f64], rows: &Range<usize>, by: usize) -> &'a [f64] {
+    let first = rows.start.saturating_sub(by);
+    &column[first..rows.end.saturating_sub(by).min(column.len())]
+}
+
+/// The value of a column `by` samples before that ahead of row `k`; 0 before the first.
+fn at(column: &[f64], k: usize, by: usize) -> f64 {
+    k.checked_sub(1 + by).and_then(|k| column.get(k)).copied().unwrap_or(0.0)
+}
+
 /// Sums over the rows of the columns behind a dead time.
 struct Driven {
     /// Of the products of two columns, for `i ≤ j` at `i · columns + j`.
@@ -239,29 +231,3 @@ struct Driven {
 
 /// Part of a column's square that its spread about its mean is at least, to be more than rounding.
 const SAYS_NOTHING: f64 = 1e-12;
-
-/// The squared error of the best curve behind one dead time and lags, and a constant.
-pub(super) fn error_of(trials: &[Whitened], numerators: &Numerators, lags: Lags) -> f64 {
-    let columns = trials.first().map_or(0, Whitened::lagged_columns);
-    let lagged: Vec<_> = trials.iter().map(|trial| (trial, trial.lagged(lags))).collect();
-    let rows = || {
-        lagged
-            .iter()
-            .flat_map(|(trial, columns)| trial.rows.iter().map(move |r| (trial, columns, r)))
-    };
-    let samples: usize = rows().map(|(_, _, rows)| rows.len()).sum();
-    let mut all = vec![1.0; samples];
-    all.reserve(samples * (columns + 1));
-    for index in 0..columns {
-        for (_, columns, rows) in rows() {
-            let column = columns.get(index).map_or(&[][..], Vec::as_slice);
-            all.extend(rows.clone().map(|k| driven(column, numerators, k)));
-        }
-    }
-    for (trial, _, rows) in rows() {
-        all.extend(&trial.changes[rows.clone()]);
-    }
-    let mut equations = NormalEquations::of(&all, samples, &[]);
-    (0..=columns).for_each(|column| equations.eliminate(column));
-    equations.error()
-}

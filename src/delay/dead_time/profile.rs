@@ -1,7 +1,7 @@
 //! The error of each dead time, its least one, and the interval that follows from it.
 
 use super::record::Whitened;
-use super::search::{Fitted, Start, at_lags, least, with_best_lags};
+use super::search::{FROM_GRID, FROM_NEIGHBOUR, Fitted, at_lags, least, with_best_lags};
 
 /// The best fit of each dead time, found where it is asked for.
 pub(super) struct Profile<'a> {
@@ -33,14 +33,13 @@ impl<'a> Profile<'a> {
         if let Some(known) = nearest(&self.refined).filter(|one| distance(one) < 1e-9) {
             return Some(known);
         }
-        let starts =
-            [(nearest(self.coarse), Start::Grid), (nearest(&self.refined), Start::Neighbour)];
-        let tried = starts.into_iter().filter_map(|(fitted, start)| {
+        let starts = [(nearest(self.coarse), FROM_GRID), (nearest(&self.refined), FROM_NEIGHBOUR)];
+        let tried = starts.into_iter().filter_map(|(fitted, steps)| {
             let fitted = fitted?;
-            Some((at_lags(self.trials, Fitted { delay, ..fitted }, fitted.lags), start))
+            Some((at_lags(self.trials, Fitted { delay, ..fitted }, fitted.lags), steps))
         });
-        let (best, start) = tried.min_by(|a, b| a.0.error.total_cmp(&b.0.error))?;
-        let best = with_best_lags(self.trials, best, self.longest_lag, start);
+        let (best, steps) = tried.min_by(|a, b| a.0.error.total_cmp(&b.0.error))?;
+        let best = with_best_lags(self.trials, best, self.longest_lag, steps);
         let place = self.refined.partition_point(|one| one.delay < delay);
         self.refined.insert(place, best);
         Some(best)

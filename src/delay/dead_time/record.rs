@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::curve::Curve;
 use super::response::{AHEAD, Lags, NUMERATORS, Numerators};
 use crate::experiment::Trial;
+use crate::numerics::{Autoregression, NormalEquations, residuals_of};
 
 /// Shortest period that is worked at: faster logs are averaged over as many samples. A dead
 /// time is found between samples, so that this is no limit to it.
@@ -16,6 +17,7 @@ pub(super) struct Samples {
     /// Samples of the log in one of these.
     pub(super) averaged: usize,
     pub(super) period_s: f64,
+    pub(super) input: Vec<f64>,
     pub(super) output: Vec<f64>,
     /// The coefficients of a spline per part of the curve, each a little [ahead](AHEAD).
     pub(super) columns: Vec<Vec<f64>>,
@@ -25,13 +27,13 @@ impl Samples {
     pub(super) fn of(trial: &Trial, curve: &Curve) -> Self {
         let period_s = trial.period().seconds();
         let averaged = averaged(period_s);
-        let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / averaged as f64;
-        let output = trial.output().chunks_exact(averaged);
-        let output = output.map(|chunk| mean(&mut chunk.iter().copied())).collect();
+        let means = |signal: &[f64], of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            let mean = |chunk: &[f64]| chunk.iter().map(|u| of(*u)).sum::<f64>() / averaged as f64;
+            signal.chunks_exact(averaged).map(mean).collect()
+        };
+        let (input, output) = (means(trial.input(), &|u| u), means(trial.output(), &|y| y));
         let column = |index: usize| {
-            let chunks = trial.input().chunks_exact(averaged);
-            let mut values: Vec<f64> =
-                chunks.map(|chunk| mean(&mut chunk.iter().map(|u| curve.at(index, *u)))).collect();
+            let mut values = means(trial.input(), &|u| curve.at(index, u));
             spline(&mut values);
             // The last one is held.
             let last = values.last().copied().unwrap_or(0.0);
@@ -39,7 +41,7 @@ impl Samples {
             values.split_off(AHEAD)
         };
         let columns = (0..curve.columns()).map(column).collect();
-        Self { averaged, period_s: period_s * averaged as f64, output, columns }
+        Self { averaged, period_s: period_s * averaged as f64, input, output, columns }
     }
 }
 
@@ -84,11 +86,8 @@ pub(super) struct Whitened {
 impl Whitened {
     /// With the coefficients `1, a_1, …`; the input is taken to have been held before.
     pub(super) fn of(samples: &Samples, filter: &[f64], rows: &[Range<usize>]) -> Self {
-        let output = &samples.output;
-        let changes = output.iter().zip(output.iter().skip(1)).map(|(from, to)| to - from);
-        let changes: Vec<f64> = std::iter::once(0.0).chain(changes).collect();
         Self {
-            changes: whiten(&changes, filter),
+            changes: whiten(&changes(&samples.output), filter),
             columns: samples.columns.iter().map(|column| whiten(column, filter)).collect(),
             rows: rows.to_vec(),
         }
@@ -118,7 +117,20 @@ impl Whitened {
     }
 }
 
-fn whiten(values: &[f64], filter: &[f64]) -> Vec<f64> {
+/// The changes from each value to the next, none to the first.
+pub(super) fn changes(values: &[f64]) -> Vec<f64> {
+    let changes = values.windows(2).map(|pair| pair[1] - pair[0]);
+    std::iter::once(0.0).take(values.len()).chain(changes).collect()
+}
+
+/// What is new in a signal of such autocovariances: `w_k = e_k − Σ a_i e_(k−i)`, as a filter.
+pub(super) fn whitening(covariances: &[f64], samples: usize) -> Vec<f64> {
+    let memory = Autoregression::of(covariances, samples);
+    std::iter::once(1.0).chain(memory.coefficients.iter().map(|a| -a)).collect()
+}
+
+/// `values` behind a filter; the first was held before.
+pub(super) fn whiten(values: &[f64], filter: &[f64]) -> Vec<f64> {
     let first = values.first().copied().unwrap_or(0.0);
     let at = |k: usize, back: usize| {
         k.checked_sub(back).and_then(|k| values.get(k)).copied().unwrap_or(first)
@@ -127,8 +139,58 @@ fn whiten(values: &[f64], filter: &[f64]) -> Vec<f64> {
     (0..values.len()).map(value).collect()
 }
 
+/// A column, in the rows of each part of the record.
+pub(super) type Rows = Vec<Vec<f64>>;
+
+/// The regression behind one dead time and lags, over all rows.
+pub(super) struct Design {
+    /// A constant, and what the input stands for.
+    pub(super) columns: Vec<Rows>,
+    /// The changes of the output.
+    pub(super) changes: Rows,
+}
+
+impl Design {
+    pub(super) fn of(trials: &[Whitened], numerators: &Numerators, lags: Lags) -> Self {
+        let parts = || {
+            trials.iter().enumerate().flat_map(|(n, trial)| trial.rows.iter().map(move |r| (n, r)))
+        };
+        let changes: Rows =
+            parts().map(|(n, rows)| trials[n].changes[rows.clone()].to_vec()).collect();
+        let mut columns: Vec<Rows> =
+            vec![changes.iter().map(|rows| vec![1.0; rows.len()]).collect()];
+        let lagged: Vec<_> = trials.iter().map(|trial| trial.lagged(lags)).collect();
+        for index in 0..lagged.first().map_or(0, Vec::len) {
+            let column = |(n, rows): (usize, &Range<usize>)| {
+                rows.clone().map(|k| driven(&lagged[n][index], numerators, k)).collect()
+            };
+            columns.push(parts().map(column).collect());
+        }
+        Self { columns, changes }
+    }
+
+    /// The squared error.
+    pub(super) fn error(&self) -> f64 {
+        let samples: usize = self.changes.iter().map(Vec::len).sum();
+        let all = self.columns.iter().chain([&self.changes]).flatten().flatten();
+        let mut equations = NormalEquations::of(&all.copied().collect::<Vec<f64>>(), samples);
+        (0..self.columns.len()).for_each(|column| equations.eliminate(column));
+        equations.error()
+    }
+
+    /// What `values` are beside the columns; `None` of what is no number.
+    pub(super) fn residuals_of(&self, values: &Rows) -> Option<Rows> {
+        residuals_of(values, &self.columns.iter().collect::<Vec<_>>())
+    }
+
+    /// The residuals of the changes.
+    pub(super) fn residuals(&self) -> Rows {
+        self.residuals_of(&self.changes).unwrap_or_else(|| self.changes.clone())
+    }
+}
+
 /// What `numerators` make of a lagged column, at sample `k`.
-pub(super) fn driven(column: &[f64], numerators: &Numerators, k: usize) -> f64 {
+fn driven(column: &[f64], numerators: &Numerators, k: usize) -> f64 {
     let past = (k + 1).checked_sub(numerators.first + NUMERATORS);
     let past = past.and_then(|from| column.get(from..from + NUMERATORS)).unwrap_or_default();
     past.iter().rev().zip(numerators.values).map(|(value, n)| value * n).sum()

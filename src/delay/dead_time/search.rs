@@ -1,7 +1,7 @@
 //! The dead time and the lags that leave the least error.
 
-use super::moments::{Moments, error_of};
-use super::record::Whitened;
+use super::moments::Moments;
+use super::record::{Design, Whitened};
 use super::response::{Lags, NO_LAG, Numerators, Structure};
 
 /// A structure with its dead time and lags, in samples, and its squared error.
@@ -11,6 +11,14 @@ pub(super) struct Fitted {
     pub(super) delay: f64,
     pub(super) lags: Lags,
     pub(super) error: f64,
+}
+
+impl Fitted {
+    /// The regression that it is the best of.
+    pub(super) fn design(&self, trials: &[Whitened]) -> Design {
+        let numerators = Numerators::of(self.structure, self.delay, self.lags);
+        Design::of(trials, &numerators, self.lags)
+    }
 }
 
 /// Dead times tried, per sample.
@@ -60,14 +68,11 @@ pub(super) fn least(profile: &[Fitted]) -> Option<Fitted> {
     profile.iter().copied().min_by(|a, b| a.error.total_cmp(&b.error))
 }
 
-/// How far off the lags are that a search starts from.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Start {
-    /// Those of a grid.
-    Grid,
-    /// The best ones of a dead time nearby.
-    Neighbour,
-}
+/// Distances of neighbours by which lags are searched, in logarithms of the sum of both lags where that
+/// shows: lags that are off by a twentieth move the dead time by as much of them, which good records
+/// show. From those of a grid, and from the best ones of a dead time nearby.
+pub(super) const FROM_GRID: &[f64] = &[0.24, 0.06, 0.015];
+pub(super) const FROM_NEIGHBOUR: &[f64] = &[0.06, 0.015];
 
 /// Lags that fit a dead time best, near those that it starts from: by the least of the parabola
 /// through ever closer neighbours.
@@ -75,11 +80,8 @@ pub(super) fn with_best_lags(
     trials: &[Whitened],
     fitted: Fitted,
     longest: f64,
-    start: Start,
+    steps: &[f64],
 ) -> Fitted {
-    /// Distances of neighbours, in logarithms of the sum of both lags where that shows: lags that are off
-    /// by a twentieth move the dead time by as much of them, which good records show.
-    const STEPS: [f64; 3] = [0.24, 0.06, 0.015];
     /// Most parabolas of a distance.
     const MOST: usize = 8;
     /// What shows of the faster lag by itself goes with its square.
@@ -92,10 +94,6 @@ pub(super) fn with_best_lags(
         if lags == best.lags { best } else { at_lags(trials, best, lags) }
     };
     let mut best = at_lags(trials, fitted, fitted.lags);
-    let steps = match start {
-        Start::Grid => STEPS.as_slice(),
-        Start::Neighbour => &STEPS[1..],
-    };
     for step in steps {
         for _ in 0..MOST {
             let tried = NEIGHBOURS.map(|(sum, fast)| near(best, sum * step, fast * step));
@@ -168,8 +166,8 @@ fn least_of_parabola(middle: f64, around: [f64; 6]) -> (f64, f64) {
 
 /// `fitted` with other lags.
 pub(super) fn at_lags(trials: &[Whitened], fitted: Fitted, lags: Lags) -> Fitted {
-    let numerators = Numerators::of(fitted.structure, fitted.delay, lags);
-    Fitted { lags, error: error_of(trials, &numerators, lags), ..fitted }
+    let fitted = Fitted { lags, ..fitted };
+    Fitted { error: fitted.design(trials).error(), ..fitted }
 }
 
 #[cfg(test)]

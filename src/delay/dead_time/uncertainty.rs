@@ -18,13 +18,10 @@
 //! Biometrika 73 (1986): the variance by parts. S. G. Self, R. H. Mauritsen, "Power/sample size
 //! calculations for generalized linear models" (1988) for the scaled likelihood.
 
-use super::record::{Whitened, driven};
-use super::response::{Lags, Numerators};
+use super::record::{Rows, Whitened};
+use super::response::Lags;
 use super::search::Fitted;
-use crate::numerics::{Regression, dot, residuals_of};
-
-/// Columns of values in the rows of each trial.
-type Rows = Vec<Vec<f64>>;
+use crate::numerics::{Regression, product, residuals_of};
 
 /// A fit with all that follows from it at its best.
 pub(super) struct Assessed {
@@ -41,71 +38,31 @@ pub(super) struct Assessed {
 /// Parts of the record.
 pub(super) const PARTS: usize = 20;
 
-/// The columns of the curve behind dead time and lags.
-fn regressors(trials: &[Whitened], fitted: Fitted) -> Vec<Rows> {
-    let numerators = Numerators::of(fitted.structure, fitted.delay, fitted.lags);
-    let lagged: Vec<_> = trials.iter().map(|trial| trial.lagged(fitted.lags)).collect();
-    let columns = lagged.first().map_or(0, Vec::len);
-    let column = |index: usize| {
-        let of_trial = |(trial, lagged): (&Whitened, &Vec<Vec<f64>>)| {
-            let values = lagged.get(index).map_or(&[][..], Vec::as_slice);
-            let rows = trial.rows.iter();
-            rows.map(|rows| rows.clone().map(|k| driven(values, &numerators, k)).collect())
-                .collect::<Rows>()
-        };
-        trials.iter().zip(&lagged).flat_map(of_trial).collect()
-    };
-    (0..columns).map(column).collect()
-}
-
-/// The changes of the output.
-fn target(trials: &[Whitened]) -> Rows {
-    let of_trial = |trial: &Whitened| {
-        trial.rows.iter().map(|rows| trial.changes[rows.clone()].to_vec()).collect::<Rows>()
-    };
-    trials.iter().flat_map(of_trial).collect()
-}
-
-fn ones(like: &Rows) -> Rows {
-    like.iter().map(|rows| vec![1.0; rows.len()]).collect()
-}
-
-/// Residuals of a fit to the changes of the output.
-pub(super) fn errors(trials: &[Whitened], fitted: Fitted) -> Rows {
-    let target = target(trials);
-    let constant = ones(&target);
-    let columns = regressors(trials, fitted);
-    let all: Vec<&Rows> = std::iter::once(&constant).chain(&columns).collect();
-    residuals_of(&target, &all).unwrap_or(target)
-}
-
 impl Assessed {
     pub(super) fn of(trials: &[Whitened], best: Fitted) -> Self {
         /// Samples between two predictions whose difference is a derivative.
         const APART: f64 = 0.1;
-        let target = target(trials);
-        let constant = ones(&target);
-        let columns = regressors(trials, best);
-        let own: Vec<&Rows> = std::iter::once(&constant).chain(&columns).collect();
-        let coefficients = Regression::of(&target, &own).coefficients;
+        let own = best.design(trials);
+        let columns: Vec<&Rows> = own.columns.iter().collect();
+        let coefficients = Regression::of(&own.changes, &columns).coefficients;
         let coefficients: Vec<f64> = coefficients.iter().skip(1).copied().collect();
-        let errors = residuals_of(&target, &own).unwrap_or_else(|| target.clone());
-        let by = |fitted| combined(&regressors(trials, fitted), &coefficients);
+        let errors = own.residuals();
+        let by = |fitted: Fitted| combined(&fitted.design(trials).columns[1..], &coefficients);
         let [slow, fast] = sensitivities_to_lags(best).map(|(up, down)| less(by(up), &by(down)));
         let below = (best.delay - 0.5 * APART).max(0.0);
         let at = |delay| Fitted { delay, ..best };
         let mut by_delay = less(by(at(below + APART)), &by(at(below)));
         by_delay.iter_mut().flatten().for_each(|value| *value /= APART);
-        let alone = residuals_of(&by_delay, &own).unwrap_or_default();
-        let others: Vec<&Rows> = own.iter().copied().chain([&slow, &fast]).collect();
+        let alone = own.residuals_of(&by_delay).unwrap_or_default();
+        let others: Vec<&Rows> = columns.into_iter().chain([&slow, &fast]).collect();
         // g: what neither curve nor lags can take over.
         let free = residuals_of(&by_delay, &others).unwrap_or_default();
-        let rows: usize = target.iter().map(Vec::len).sum();
+        let rows: usize = own.changes.iter().map(Vec::len).sum();
         let freedom = rows.saturating_sub(others.len() + 1).max(1) as f64;
-        let variance = sum_of_squares(&errors) / freedom;
+        let variance = product(&errors, &errors) / freedom;
         let widened = widened(&errors, &free, variance);
         // σ²·widened/Σ g², with the lags known.
-        let deviation = (variance * widened / sum_of_squares(&alone)).sqrt();
+        let deviation = (variance * widened / product(&alone, &alone)).sqrt();
         Self { coefficients, errors, widened, deviation }
     }
 }
@@ -138,10 +95,6 @@ fn less(mut from: Rows, other: &Rows) -> Rows {
     from
 }
 
-fn sum_of_squares(rows: &Rows) -> f64 {
-    rows.iter().map(|rows| dot(rows, rows)).sum()
-}
-
 /// How much more the sums of scores vary than those of independent errors.
 fn widened(errors: &Rows, derivative: &Rows, variance: f64) -> f64 {
     let scores = errors.iter().flatten().zip(derivative.iter().flatten()).map(|(e, g)| e * g);
@@ -149,6 +102,6 @@ fn widened(errors: &Rows, derivative: &Rows, variance: f64) -> f64 {
     let part = scores.len().div_ceil(PARTS).max(1);
     // s_b², one of each part.
     let sums = scores.chunks(part).map(|part| part.iter().sum::<f64>().powi(2));
-    let found = sums.sum::<f64>() / (variance * sum_of_squares(derivative));
+    let found = sums.sum::<f64>() / (variance * product(derivative, derivative));
     if found.is_finite() { found.max(1.0) } else { 1.0 }
 }

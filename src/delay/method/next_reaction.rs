@@ -25,15 +25,19 @@ const MORE: f64 = 0.1;
 /// Whether the breakpoints of `decisions` that lie about or behind the next step, in rows of `beta`
 /// samples, are reactions to it.
 pub(super) fn answer_the_next_step(decisions: &[Decision], beta: usize) -> bool {
-    let late: Vec<Late> =
-        decisions.windows(2).filter_map(|pair| Late::of(&pair[0], &pair[1], beta)).collect();
-    let explained = |change: fn(&Late) -> f64| {
-        let sum = |of: &dyn Fn(&Late) -> f64| late.iter().map(of).sum::<f64>();
-        let product = sum(&|one| one.slope_change * change(one));
-        let squares = sum(&|one| one.slope_change.powi(2)) * sum(&|one| change(one).powi(2));
-        if squares > 0.0 { product * product / squares } else { 0.0 }
+    let change = |decision: &Decision| decision.input_step.after - decision.input_step.before;
+    let late = decisions.windows(2).filter_map(|pair| {
+        let candidate = pair[0].breakpoint()?.candidate;
+        let is_late = candidate.breakpoint + beta >= pair[1].input_step.sample;
+        is_late.then(|| [candidate.slope_change(), change(&pair[0]), change(&pair[1])])
+    });
+    let late: Vec<[f64; 3]> = late.collect();
+    let explained = |step: usize| {
+        let sum = |a: usize, b: usize| late.iter().map(|one| one[a] * one[b]).sum::<f64>();
+        let squares = sum(0, 0) * sum(step, step);
+        if squares > 0.0 { sum(0, step).powi(2) / squares } else { 0.0 }
     };
-    late.len() >= FEWEST && explained(|one| one.next) > explained(|one| one.own) + MORE
+    late.len() >= FEWEST && explained(2) > explained(1) + MORE
 }
 
 /// Whether the segments of `decisions` end before the next step, since each would hold the reaction
@@ -43,26 +47,4 @@ pub(crate) fn end_at_the_next_step(decisions: &[Decision]) -> bool {
         || decisions.windows(2).map(|pair| (pair[0].segment.last, pair[1].input_step.sample));
     let at_it = next().filter(|(last, next)| last + 1 == *next).count();
     at_it >= FEWEST && next().all(|(last, next)| last < next)
-}
-
-/// A breakpoint about or behind the next step.
-struct Late {
-    slope_change: f64,
-    /// Change of the input at the step.
-    own: f64,
-    /// Change of the input at the next step.
-    next: f64,
-}
-
-impl Late {
-    fn of(one: &Decision, next: &Decision, beta: usize) -> Option<Self> {
-        let candidate = one.breakpoint()?.candidate;
-        let is_late = candidate.breakpoint + beta >= next.input_step.sample;
-        let change = |decision: &Decision| decision.input_step.after - decision.input_step.before;
-        is_late.then(|| Self {
-            slope_change: candidate.slope_change(),
-            own: change(one),
-            next: change(next),
-        })
-    }
 }

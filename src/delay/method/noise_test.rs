@@ -4,8 +4,6 @@
 //! and by the best bend; how often noise alone gains as much is the p-value of [`Bends`]. The
 //! noise, with its memory, is taken from the residuals of the bends.
 
-use std::borrow::Cow;
-
 use crate::delay::decision::Decision;
 use crate::delay::onset_model::{Bend, Bends, memory};
 use crate::delay::prepared::Prepared;
@@ -23,9 +21,9 @@ const LATEST: usize = 20;
 /// Puts the verdict on each decision of a method that has none of its own.
 pub(super) fn judge(decisions: &mut [Decision], trial: &Prepared<'_>, confidence: f64) {
     let bends = Bends::within(longest(decisions));
-    let best = |decision: &Decision| bends.best(&window(decision, trial));
+    let best = |decision: &Decision| bends.best(window(decision, trial));
     let found: Vec<Option<Bend>> = decisions.iter().map(best).collect();
-    let memory = memory(found.iter().flatten());
+    let memory = memory(found.iter().flatten().map(|bend| bend.residuals.as_slice()));
     for (decision, bend) in decisions.iter_mut().zip(found) {
         decision.test_reaction(bend.map(|bend| bend.p_value(memory)), confidence);
     }
@@ -49,10 +47,11 @@ pub(super) fn judge_until_one_reacts(
             break;
         }
         let values = window(decision, trial);
-        let Some(bend) = Bends::within(values.len() + 1).best(&values) else { continue };
+        let Some(bend) = Bends::within(values.len() + 1).best(values) else { continue };
         found.push(bend);
         let latest = &found[found.len().saturating_sub(LATEST)..];
-        let p_value = latest.last().map(|bend| bend.p_value(memory(latest.iter())));
+        let memory = memory(latest.iter().map(|bend| bend.residuals.as_slice()));
+        let p_value = latest.last().map(|bend| bend.p_value(memory));
         if p_value.is_some_and(|p_value| p_value < PLAIN) {
             break;
         }
@@ -68,8 +67,8 @@ fn longest(decisions: &[Decision]) -> usize {
 }
 
 /// The samples of a decision's segment that its own step alone can have moved.
-fn window<'a>(decision: &Decision, trial: &'a Prepared<'_>) -> Cow<'a, [f64]> {
+fn window<'a>(decision: &Decision, trial: &'a Prepared<'_>) -> &'a [f64] {
     let indices = decision.segment.indices();
     let end = indices.end.min(decision.next_sample() - 1);
-    trial.measured(indices.start..end)
+    trial.raw.get(indices.start..end).unwrap_or_default()
 }

@@ -1,32 +1,110 @@
-//! The registry of methods.
+//! The methods: what each says of itself, and the handle by which settings name it.
 
-use super::by_onset::ByOnset;
-use super::interface::DelayMethod;
-use super::two_line::TwoLine;
-use crate::delay::spec::Method;
+use std::fmt;
 
-/// Every method, in the order the documentation lists them.
-const REGISTRY: [&dyn DelayMethod; 4] =
-    [&ByOnset::AUTO, &TwoLine, &ByOnset::HINGE, &ByOnset::LAG_AWARE];
+use crate::delay::onset_model::Family;
+
+/// What a method says of itself: help, defaults, tables and pages follow from it.
+#[derive(Debug, PartialEq, Eq, Hash)]
+pub struct MethodSpec {
+    /// Its name in options and files, in kebab case.
+    pub id: &'static str,
+    /// What it fits, in few words.
+    pub fits: &'static str,
+    /// Who described it, and where.
+    pub source: Option<&'static str>,
+    /// What it does, in a line of help.
+    pub summary: &'static str,
+    /// Whether it finds the response behind the delays, over all trials of a joint, and gives each delay
+    /// an interval. The decisions of others depend on no sample behind the next step, and come in steps
+    /// of β.
+    pub has_intervals: bool,
+    /// The responses that it chooses from.
+    pub(in crate::delay) families: &'static [Family],
+}
+
+/// How a delay is found: one of [`Method::all`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Method(&'static MethodSpec);
+
+/// What all onset models have in common.
+const ONSET: MethodSpec = MethodSpec {
+    id: "",
+    fits: "onset model",
+    source: None,
+    summary: "",
+    has_intervals: true,
+    families: &Family::ALL,
+};
 
 impl Method {
+    /// The onset model of the response that a joint's record supports.
+    pub const AUTO: Self = Self(&MethodSpec {
+        id: "auto",
+        summary: "The response that the record supports (bend, lag, oscillation, settling, slew), with \
+                  intervals; Algorithm 1's candidates beside it",
+        ..ONSET
+    });
+
+    /// Two regression lines that need not meet: Albrecht and Taylor's Algorithm 1.
+    pub const TWO_LINE: Self = Self(&MethodSpec {
+        id: "two-line",
+        fits: "two-line regression",
+        source: Some("Albrecht and Taylor, Algorithm 1"),
+        summary: "Two regression lines (Albrecht and Taylor)",
+        has_intervals: false,
+        families: &[],
+    });
+
+    /// The onset model of a speed that changes at once.
+    pub const HINGE: Self = Self(&MethodSpec {
+        id: "hinge",
+        fits: "two lines that meet",
+        summary: "`auto` of a joint whose speed changes at once",
+        families: &[Family::Bend],
+        ..ONSET
+    });
+
+    /// The onset model of a speed that changes at once, or behind a lag or an oscillation.
+    pub const LAG_AWARE: Self = Self(&MethodSpec {
+        id: "lag-aware",
+        fits: "two lines that meet, behind a lag or an oscillation",
+        summary: "`auto` of a joint whose speed changes at once, or behind a lag or an oscillation",
+        families: &[Family::Bend, Family::Lag, Family::Pair],
+        ..ONSET
+    });
+
     /// Every method, in the order the documentation lists them.
     pub fn all() -> impl ExactSizeIterator<Item = Self> {
-        REGISTRY.iter().map(|entry| entry.method())
+        [Self::AUTO, Self::TWO_LINE, Self::HINGE, Self::LAG_AWARE].into_iter()
     }
 
     /// The method with this id.
     pub fn find(id: &str) -> Option<Self> {
         Self::all().find(|method| method.id() == id)
     }
+
+    /// What it says of itself.
+    pub fn spec(self) -> &'static MethodSpec {
+        self.0
+    }
+
+    /// Its name in options and files.
+    pub fn id(self) -> &'static str {
+        self.0.id
+    }
 }
 
-/// What does the work of `method`.
-pub(in crate::delay) fn implementation(method: Method) -> &'static dyn DelayMethod {
-    let found = REGISTRY.into_iter().find(|entry| entry.method() == method);
-    // Handles are made in this folder alone, and one that isn't registered has no use for its
-    // implementation, which the compiler points out.
-    found.unwrap_or_else(|| unreachable!("`{method}` is not in the registry"))
+impl fmt::Debug for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.id())
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.id())
+    }
 }
 
 #[cfg(test)]

@@ -11,7 +11,6 @@
 //! # References
 //! Albrecht and Taylor, Algorithm 1 (time-varying delays of hydraulic manipulators).
 
-use super::interface::{DelayMethod, Shared};
 use super::next_reaction::answer_the_next_step;
 use super::noise_test;
 use super::step_context::StepContext;
@@ -20,35 +19,6 @@ use crate::delay::prepared::Prepared;
 use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
 use crate::delay::settings::{CONFIDENCE, CandidateLines, FirstLast, Settings};
-use crate::delay::spec::{Method, MethodSpec};
-use crate::numerics::LowPass;
-
-static SPEC: MethodSpec = MethodSpec {
-    id: "two-line",
-    fits: "two-line regression",
-    source: Some("Albrecht and Taylor, Algorithm 1"),
-    summary: "Two regression lines (Albrecht and Taylor)",
-    has_intervals: false,
-    low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),
-    confidence: None,
-};
-
-impl Method {
-    /// Two regression lines that need not meet: Albrecht and Taylor's Algorithm 1.
-    pub const TWO_LINE: Self = Self::of(&SPEC);
-}
-
-pub(super) struct TwoLine;
-
-impl DelayMethod for TwoLine {
-    fn method(&self) -> Method {
-        Method::TWO_LINE
-    }
-
-    fn decide(&self, trial: &Prepared<'_>, _: &Shared, settings: &Settings) -> Vec<Decision> {
-        decide_all(trial, settings)
-    }
-}
 
 /// The segments of all steps with their candidates, before it is asked whether anything happened.
 pub(super) fn by_lines(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
@@ -60,8 +30,8 @@ pub(super) fn by_lines(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decisio
     decisions
 }
 
-/// The decisions on all steps.
-fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
+/// The decisions on all steps of a trial.
+pub(super) fn decide(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
     let mut decisions = by_lines(trial, settings);
     if let Some(confidence) = confidence(trial, settings) {
         noise_test::judge(&mut decisions, trial, confidence);
@@ -84,7 +54,7 @@ fn in_turn(trial: &Prepared<'_>, settings: &Settings, beyond: usize) -> Vec<Deci
     let mut decisions: Vec<Decision> = Vec::with_capacity(trial.steps.len());
     for index in 0..trial.steps.len() {
         let context = StepContext { trial, index, settings };
-        decisions.push(decide(&context, decisions.last(), beyond));
+        decisions.push(decide_one(&context, decisions.last(), beyond));
     }
     decisions
 }
@@ -116,7 +86,7 @@ fn bounds(context: &StepContext<'_>) -> (usize, usize, usize) {
 }
 
 /// The decision on a step, after the one `before` it; see [`in_turn`].
-fn decide(context: &StepContext<'_>, before: Option<&Decision>, beyond: usize) -> Decision {
+fn decide_one(context: &StepContext<'_>, before: Option<&Decision>, beyond: usize) -> Decision {
     let StepContext { settings, .. } = *context;
     let output = context.output();
     let p = context.step().sample;

@@ -9,7 +9,7 @@
 //!
 //! from sums over the record, whatever its length; a delay may be negative, or longer than holds.
 
-use super::windows::{Pass, Run, window};
+use super::windows::{Pass, Run};
 use crate::units::{ceil_to_index, floor_to_index};
 
 /// A common delay in samples, and `L`.
@@ -31,7 +31,7 @@ const MOST: f64 = 0.6;
 /// The delays at which `L` has its maxima, the largest first, of those alike the
 /// nearest; `longest` is the
 /// longest delay in holds.
-pub(super) fn alignments(runs: &[Run], hold: f64, longest: f64, pass: &Pass<'_>) -> Vec<Alignment> {
+pub(super) fn alignments(runs: &[Run], hold: f64, longest: f64, pass: &Pass) -> Vec<Alignment> {
     let sums: Vec<Sums> = runs.iter().map(|run| Sums::of(&run.output)).collect();
     let by = (hold / PER_HOLD).floor().max(1.0);
     let count = floor_to_index((longest + LEAD) * hold / by);
@@ -68,7 +68,7 @@ pub(super) fn alignments(runs: &[Run], hold: f64, longest: f64, pass: &Pass<'_>)
 }
 
 /// `L` at a delay, and the windows that it is of.
-fn gain(runs: &[Run], sums: &[Sums], delay: f64, pass: &Pass<'_>) -> (f64, f64) {
+fn gain(runs: &[Run], sums: &[Sums], delay: f64, pass: &Pass) -> (f64, f64) {
     /// Samples on each side of a corner at least.
     const FEWEST: usize = 4;
     let (mut gain, mut samples, mut used) = (0.0, 0.0, 0.0);
@@ -78,7 +78,7 @@ fn gain(runs: &[Run], sums: &[Sums], delay: f64, pass: &Pass<'_>) -> (f64, f64) 
             if *position < 0.0 {
                 continue;
             }
-            let (start, end) = window(run, &positions, index, pass);
+            let (start, end) = pass.window(run, &positions, index);
             let corner = ceil_to_index(*position);
             if corner < start + FEWEST || corner + FEWEST > end {
                 continue;
@@ -146,6 +146,7 @@ impl Sums {
 #[cfg(test)]
 mod tests {
     use super::super::dynamics::Before;
+    use super::super::response::response_of;
     use super::super::shape::Shape;
     use super::super::windows::Step;
     use super::*;
@@ -179,15 +180,9 @@ mod tests {
     #[test]
     fn a_delay_a_lead_and_one_beyond_the_holds_are_found() {
         for delay in [-17.0, 0.0, 12.0, 150.0] {
-            let pass = Pass {
-                shape: Shape::BEND,
-                reach: 90,
-                typical: 0.0,
-                edge: 0.0,
-                noise: 0.005,
-                before: Before::Any,
-                windows: None,
-            };
+            let (shape, before) = (Shape::BEND, Before::Any);
+            let response = response_of(&shape, 45.0, 182);
+            let pass = Pass { response, shape, reach: 90, typical: 0.0, noise: 0.005, before };
             let found = alignments(&[run(delay)], 60.0, LONGEST, &pass);
             assert!((found[0].0 - delay).abs() <= 1.0, "{delay}: {found:?}");
         }

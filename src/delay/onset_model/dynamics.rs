@@ -41,6 +41,30 @@ pub(super) type State<const N: usize> = SVector<f64, N>;
 /// A part of the square of a column below which it depends on the others.
 const DEPENDENT: f64 = 1e-10;
 
+/// What is fitted to windows, whatever the size of its state.
+pub(super) trait Response {
+    /// Parameters of one window: the state, the onset, and its sizes.
+    fn parameters(&self) -> usize;
+
+    /// The `values` of a window, with what was under way `before`; what an onset added ends after
+    /// so many samples. `None` where the values are too few, or more than was asked for at first.
+    fn window(&self, values: &[f64], ends: f64, before: Before) -> Option<Box<dyn Fit + '_>>;
+}
+
+/// A window, fitted with an onset at any position between its samples.
+pub(super) trait Fit {
+    fn samples(&self) -> usize;
+
+    /// `SSE_0`: without an onset.
+    fn sse_without(&self) -> f64;
+
+    /// The onset at a `position`.
+    fn at(&self, position: f64) -> Jump;
+
+    /// The output as it is fitted with an onset at `position`.
+    fn fitted(&self, position: f64) -> Vec<f64>;
+}
+
 /// How an output moves, in samples; see the [module](self).
 pub(super) struct Dynamics<const N: usize> {
     generator: Square<N>,
@@ -85,7 +109,8 @@ impl<const N: usize> Steady<N> {
 }
 
 /// The sums over a window from which its squared error at any onset follows.
-pub(super) struct Window<const N: usize> {
+struct Window<'a, const N: usize> {
+    dynamics: &'a Dynamics<N>,
     /// `z_k`.
     behind: Vec<State<N>>,
     /// `S⁻¹`.
@@ -96,8 +121,7 @@ pub(super) struct Window<const N: usize> {
     mean: f64,
     /// Samples after which what an onset added ends; infinite where it lasts.
     ends: f64,
-    /// `SSE_0`: without an onset.
-    pub(super) sse_without: f64,
+    sse_without: f64,
 }
 
 /// An onset at one position of a window.
@@ -147,14 +171,25 @@ impl<const N: usize> Dynamics<N> {
         Self { generator, jump, nuisance, powers, information, steady }
     }
 
-    /// Parameters of one window: the state, the onset, and its sizes.
-    pub(super) fn parameters(&self) -> usize {
+    /// `e^(A f) b` for `f` of a sample at most, by its series.
+    fn moved(&self, b: &State<N>, f: f64) -> State<N> {
+        let (mut term, mut sum) = (*b, *b);
+        let mut order = 1.0;
+        while f > 0.0 && term.norm() > f64::EPSILON * sum.norm() {
+            term = self.generator * term * (f / order);
+            sum += term;
+            order += 1.0;
+        }
+        sum
+    }
+}
+
+impl<const N: usize> Response for Dynamics<N> {
+    fn parameters(&self) -> usize {
         N + 2 + usize::from(self.nuisance.is_some())
     }
 
-    /// Sums over the `values` of a window, with what was under way `before`; `None` where
-    /// they are too few, or more than was asked for at first.
-    pub(super) fn window(&self, values: &[f64], ends: f64, before: Before) -> Option<Window<N>> {
+    fn window(&self, values: &[f64], ends: f64, before: Before) -> Option<Box<dyn Fit + '_>> {
         let n = values.len();
         if n <= self.parameters() || n >= self.powers.len() {
             return None;
@@ -176,39 +211,70 @@ impl<const N: usize> Dynamics<N> {
         };
         let free = inverse * behind[0];
         let sse_without = (squares - behind[0].dot(&free)).max(0.0);
-        Some(Window { behind, inverse, free, samples: n, mean, ends, sse_without })
+        let dynamics = self;
+        let samples = n;
+        Some(Box::new(Window { dynamics, behind, inverse, free, samples, mean, ends, sse_without }))
+    }
+}
+
+impl<const N: usize> Window<'_, N> {
+    fn column(&self, b: &State<N>, position: f64) -> Column<N> {
+        let k = ceil_to_index(position.max(0.0)).min(self.samples - 1);
+        Column { k, beta: self.dynamics.moved(b, (k as f64 - position).clamp(0.0, 1.0)) }
     }
 
-    /// The onset at a `position` between the samples of the window.
-    pub(super) fn at(&self, window: &Window<N>, position: f64) -> Jump {
-        let nothing = Jump { sse: window.sse_without, size: 0.0, information: 0.0, other: 0.0 };
-        let column = self.column(window, &self.jump, position);
-        let Products { mut w, mut v, mut g } = self.products(window, &column);
+    /// Where what the onset added ends, if it does within the window.
+    fn end(&self, position: f64) -> Option<Column<N>> {
+        let end = position + self.ends;
+        (end <= self.samples as f64 - 1.0).then(|| self.column(&self.dynamics.jump, end))
+    }
+
+    fn products(&self, column: &Column<N>) -> Products<N> {
+        let w = self.dynamics.information[self.samples - column.k] * column.beta;
+        let v = self.dynamics.powers[column.k].tr_mul(&w);
+        let g = column.beta.dot(&self.behind[column.k]) - v.dot(&self.free);
+        Products { w, v, g }
+    }
+}
+
+impl<const N: usize> Fit for Window<'_, N> {
+    fn samples(&self) -> usize {
+        self.samples
+    }
+
+    fn sse_without(&self) -> f64 {
+        self.sse_without
+    }
+
+    fn at(&self, position: f64) -> Jump {
+        let nothing = Jump { sse: self.sse_without, size: 0.0, information: 0.0, other: 0.0 };
+        let column = self.column(&self.dynamics.jump, position);
+        let Products { mut w, mut v, mut g } = self.products(&column);
         let mut square = column.beta.dot(&w);
-        if let Some(end) = self.end(window, position) {
-            let taken = self.products(window, &end);
-            let between = &self.powers[end.k - column.k];
+        if let Some(end) = self.end(position) {
+            let taken = self.products(&end);
+            let between = &self.dynamics.powers[end.k - column.k];
             square += end.beta.dot(&taken.w) - 2.0 * column.beta.dot(&between.tr_mul(&taken.w));
             w -= between.tr_mul(&taken.w);
             v -= taken.v;
             g -= taken.g;
         }
-        let solved = window.inverse * v;
+        let solved = self.inverse * v;
         let d = square - v.dot(&solved);
         if d <= DEPENDENT * square {
             return nothing;
         }
-        let Some(second) = &self.nuisance else {
+        let Some(second) = &self.dynamics.nuisance else {
             return Jump {
-                sse: (window.sse_without - g * g / d).max(0.0),
+                sse: (self.sse_without - g * g / d).max(0.0),
                 size: g / d,
                 information: d,
                 other: 0.0,
             };
         };
-        let second = self.column(window, second, position);
-        let its = self.products(window, &second);
-        let own = second.beta.dot(&its.w) - its.v.dot(&(window.inverse * its.v));
+        let second = self.column(second, position);
+        let its = self.products(&second);
+        let own = second.beta.dot(&its.w) - its.v.dot(&(self.inverse * its.v));
         let cross = second.beta.dot(&w) - its.v.dot(&solved);
         let det = d * own - cross * cross;
         if det <= DEPENDENT * d * own {
@@ -216,66 +282,30 @@ impl<const N: usize> Dynamics<N> {
         }
         let size = (g * own - its.g * cross) / det;
         let other = (its.g * d - g * cross) / det;
-        let sse = (window.sse_without - g * size - its.g * other).max(0.0);
+        let sse = (self.sse_without - g * size - its.g * other).max(0.0);
         Jump { sse, size, information: det / own, other }
     }
 
-    /// The output as it is fitted with an onset at `position`.
-    pub(super) fn fitted(&self, window: &Window<N>, position: f64) -> Vec<f64> {
-        let jump = self.at(window, position);
-        let mut columns = vec![(self.column(window, &self.jump, position), jump.size)];
-        columns.extend(self.end(window, position).map(|end| (end, -jump.size)));
-        let second = self.nuisance.as_ref();
-        columns.extend(second.map(|b| (self.column(window, b, position), jump.other)));
-        let mut start = window.free;
+    fn fitted(&self, position: f64) -> Vec<f64> {
+        let jump = self.at(position);
+        let mut columns = vec![(self.column(&self.dynamics.jump, position), jump.size)];
+        columns.extend(self.end(position).map(|end| (end, -jump.size)));
+        let second = self.dynamics.nuisance.as_ref();
+        columns.extend(second.map(|b| (self.column(b, position), jump.other)));
+        let mut start = self.free;
         for (column, size) in &columns {
-            start -= window.inverse * self.products(window, column).v * *size;
+            start -= self.inverse * self.products(column).v * *size;
         }
-        let value =
-            |state: &State<N>, after: usize| self.powers[after].row(0).transpose().dot(state);
+        let value = |state: &State<N>, after: usize| {
+            self.dynamics.powers[after].row(0).transpose().dot(state)
+        };
         let at = |j: usize| {
             let added = columns.iter().filter(|(column, _)| j >= column.k);
             let added: f64 =
                 added.map(|(column, size)| size * value(&column.beta, j - column.k)).sum();
-            window.mean + value(&start, j) + added
+            self.mean + value(&start, j) + added
         };
-        (0..window.samples).map(at).collect()
-    }
-
-    fn column(&self, window: &Window<N>, b: &State<N>, position: f64) -> Column<N> {
-        let k = ceil_to_index(position.max(0.0)).min(window.samples - 1);
-        Column { k, beta: self.moved(b, (k as f64 - position).clamp(0.0, 1.0)) }
-    }
-
-    /// Where what the onset added ends, if it does within the window.
-    fn end(&self, window: &Window<N>, position: f64) -> Option<Column<N>> {
-        let end = position + window.ends;
-        (end <= window.samples as f64 - 1.0).then(|| self.column(window, &self.jump, end))
-    }
-
-    fn products(&self, window: &Window<N>, column: &Column<N>) -> Products<N> {
-        let w = self.information[window.samples - column.k] * column.beta;
-        let v = self.powers[column.k].tr_mul(&w);
-        let g = column.beta.dot(&window.behind[column.k]) - v.dot(&window.free);
-        Products { w, v, g }
-    }
-
-    /// `e^(A f) b` for `f` of a sample at most, by its series.
-    fn moved(&self, b: &State<N>, f: f64) -> State<N> {
-        let (mut term, mut sum) = (*b, *b);
-        let mut order = 1.0;
-        while f > 0.0 && term.norm() > f64::EPSILON * sum.norm() {
-            term = self.generator * term * (f / order);
-            sum += term;
-            order += 1.0;
-        }
-        sum
-    }
-}
-
-impl<const N: usize> Window<N> {
-    pub(super) fn len(&self) -> usize {
-        self.samples
+        (0..self.samples).map(at).collect()
     }
 }
 
@@ -341,10 +371,10 @@ mod tests {
             let y = DVector::from_column_slice(&y);
             let solved = columns.clone().svd(true, true).solve(&y, 1e-12).unwrap();
             let sse = (&y - &columns * &solved).norm_squared();
-            let found = dynamics.at(&window, position);
+            let found = window.at(position);
             assert!((found.sse - sse).abs() < 1e-7 * sse, "{position}: {} {sse}", found.sse);
             assert!((found.size - solved[3]).abs() < 1e-7, "{position}");
-            let fitted = DVector::from_vec(dynamics.fitted(&window, position));
+            let fitted = DVector::from_vec(window.fitted(position));
             assert!((fitted - &columns * &solved).norm() < 1e-5, "{position}");
         }
     }
@@ -360,9 +390,9 @@ mod tests {
         let a = Square::<2>::new(0.0, 1.0, 0.0, 0.0);
         let dynamics = Dynamics::new(a, State::<2>::new(0.0, 1.0), None, Steady::any(), 100);
         let window = dynamics.window(&y, 15.0, Before::Any).unwrap();
-        let found = dynamics.at(&window, 20.3);
+        let found = window.at(20.3);
         assert!(found.sse < 1e-6 && (found.size - 0.5).abs() < 1e-6, "{found:?}");
-        assert!(dynamics.at(&window, 22.0).sse > 0.1);
+        assert!(window.at(22.0).sse > 0.1);
     }
 
     #[test]

@@ -12,12 +12,8 @@
 //! onsets, of other sizes. The weight `w` of a size is as well as it is known, at most what is usual:
 //! of onsets that are near each other only the sum of their sizes is.
 
-use super::windows::{Onset, Run};
-use crate::numerics::{fisher_tail, median};
-
-/// What a step of the input changes on each side of zero, and the size of its onset, both times the root
-/// of the weight.
-type Row = ([f64; 2], f64);
+use super::windows::{Onsets, Run, all};
+use crate::numerics::{Regression, dot, fisher_tail, median};
 
 /// How far the sizes of onsets go with the steps of the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,36 +30,29 @@ impl Follows {
     /// Gains.
     const GAINS: usize = 2;
 
-    pub(super) fn of(runs: &[Run], found: &[Vec<Option<Onset>>]) -> Self {
-        let onsets = runs.iter().zip(found).flat_map(|(run, found)| run.steps.iter().zip(found));
-        let known = found.iter().flatten().flatten().map(|onset| onset.information);
+    pub(super) fn of(runs: &[Run], onsets: &[Onsets]) -> Self {
+        let known = all(runs, onsets).map(|(.., onset)| onset.information);
         let usual = median(&known.collect::<Vec<f64>>()).unwrap_or(1.0).max(f64::MIN_POSITIVE);
-        let rows: Vec<Row> = onsets
-            .filter(|(step, _)| !step.rests)
-            .filter_map(|(step, found)| {
-                let onset = found.as_ref()?;
-                let root = (onset.information / usual).min(1.0).sqrt();
-                let part = |of: fn(f64) -> f64| root * (of(step.after) - of(step.before));
-                Some(([part(|u| u.max(0.0)), part(|u| u.min(0.0))], root * onset.size))
-            })
-            .collect();
-        let sum = |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).sum::<f64>();
-        let total = sum(&|(_, a)| a * a);
-        let [aa, ab, bb] = [(0, 0), (0, 1), (1, 1)].map(|(i, j)| sum(&|(x, _)| x[i] * x[j]));
-        let [ay, by] = [0, 1].map(|i| sum(&|(x, a)| x[i] * a));
-        let det = aa * bb - ab * ab;
-        let explained = if det > 1e-9 * aa * bb {
-            (ay * (bb * ay - ab * by) + by * (aa * by - ab * ay)) / det
-        } else if aa > 0.0 {
-            ay * ay / aa
-        } else {
-            by * by / bb.max(f64::MIN_POSITIVE)
-        };
-        let r2 = (explained / total.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        let freedom = rows.len().saturating_sub(Self::GAINS);
+        // Each times the root of its weight.
+        let (mut sizes, mut above, mut below) = (Vec::new(), Vec::new(), Vec::new());
+        for (run, index, onset) in all(runs, onsets) {
+            let step = run.steps[index];
+            if step.rests {
+                continue;
+            }
+            let root = (onset.information / usual).min(1.0).sqrt();
+            sizes.push(root * onset.size);
+            above.push(root * (step.after.max(0.0) - step.before.max(0.0)));
+            below.push(root * (step.after.min(0.0) - step.before.min(0.0)));
+        }
+        let (sizes, steps) = ([sizes], above.len());
+        let error = Regression::of(&sizes, &[&vec![above], &vec![below]]).error;
+        let total = dot(&sizes[0], &sizes[0]);
+        let r2 = ((total - error) / total.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let freedom = steps.saturating_sub(Self::GAINS);
         let ratio = r2 / Self::GAINS as f64 * freedom as f64 / (1.0 - r2).max(f64::EPSILON);
         let p_value = fisher_tail(ratio, Self::GAINS, freedom).filter(|_| freedom > 0);
-        Self { r2, p_value: p_value.unwrap_or(1.0), steps: rows.len() }
+        Self { r2, p_value: p_value.unwrap_or(1.0), steps }
     }
 
     /// Whether the onsets answer something else: their sizes are hardly explained, or no better than

@@ -81,7 +81,7 @@ pub(in crate::delay) fn gradual_onset(
     // No window reaches farther behind the departure than that is behind the first position.
     let farthest = departed + BEHIND.max(departed.saturating_sub(start.positions.start) + 1);
     let longest = farthest.min(values.len());
-    let shapes = Shapes::of(longest, values.len());
+    let shapes = shapes(longest, values.len());
     let tried = |end: usize| Some(Profile::of(Window::of(values.get(..end)?), start, &shapes));
     let first = tried(shortest)?;
     let mut behind = departed as f64 - first.best()?.position;
@@ -107,7 +107,7 @@ struct Window {
 
 impl Window {
     fn of(values: &[f64]) -> Self {
-        let middle = middle(values.len());
+        let middle = (values.len() as f64 - 1.0) / 2.0;
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let times = || (0..values.len()).map(|k| k as f64 - middle);
         let with: f64 = times().zip(values).map(|(x, y)| x * (y - mean)).sum();
@@ -119,7 +119,8 @@ impl Window {
 
     /// The size of `shape`, which is zero before `first`, beside the line, and the squared error.
     fn with(&self, first: usize, shape: impl Iterator<Item = f64>) -> (f64, f64) {
-        let (middle, length) = (middle(self.residuals.len()), self.residuals.len() as f64);
+        let length = self.residuals.len() as f64;
+        let middle = (length - 1.0) / 2.0;
         let (mut sum, mut with_time, mut square, mut product) = (0.0, 0.0, 0.0, 0.0);
         for ((k, residual), h) in self.residuals.iter().enumerate().skip(first).zip(shape) {
             sum += h;
@@ -139,44 +140,34 @@ impl Window {
     }
 }
 
-/// The middle of the indices of so many samples.
-fn middle(samples: usize) -> f64 {
-    (samples as f64 - 1.0) / 2.0
+/// A shape, at every part of a sample behind its onset.
+type Table = Vec<f64>;
+
+/// The shapes that are tried over `samples`, with time constants up to half of `all`.
+fn shapes(samples: usize, all: usize) -> Vec<Table> {
+    let table = |shape: &dyn Fn(f64) -> f64| -> Table {
+        let parts = 0..samples * FINENESS;
+        parts.map(|part| shape(part as f64 / FINENESS as f64)).collect()
+    };
+    // Longer ones are powers of the time, which have a table of their own.
+    let longest = all as f64 / 2.0;
+    let constants = std::iter::successors(Some(SHORTEST), |constant| Some(constant * RATIO));
+    let constants: Vec<f64> = constants.take_while(|constant| *constant < longest).collect();
+    let mut tables = vec![table(&|time| time)];
+    for order in 1..=ORDERS {
+        let lagged = |constant: &f64| table(&|time| lagged_ramp(time / constant, order));
+        tables.extend(constants.iter().map(lagged));
+        // The limit of r for T much longer than the window: z^(n+1) up to a factor.
+        tables.push(table(&|time| (time / longest).powi(order + 1)));
+    }
+    tables
 }
 
-/// The shapes that are tried, each at every part of a sample.
-struct Shapes {
-    tables: Vec<Vec<f64>>,
-}
-
-impl Shapes {
-    /// Over `samples`, with time constants up to half of `all`.
-    fn of(samples: usize, all: usize) -> Self {
-        let table = |shape: &dyn Fn(f64) -> f64| {
-            let parts = 0..samples * FINENESS;
-            parts.map(|part| shape(part as f64 / FINENESS as f64)).collect()
-        };
-        // Longer ones are powers of the time, which have a table of their own.
-        let longest = all as f64 / 2.0;
-        let constants = std::iter::successors(Some(SHORTEST), |constant| Some(constant * RATIO));
-        let constants: Vec<f64> = constants.take_while(|constant| *constant < longest).collect();
-        let mut tables: Vec<Vec<f64>> = vec![table(&|time| time)];
-        for order in 1..=ORDERS {
-            let lagged = |constant: &f64| table(&|time| lagged_ramp(time / constant, order));
-            tables.extend(constants.iter().map(lagged));
-            // The limit of r for T much longer than the window: z^(n+1) up to a factor.
-            tables.push(table(&|time| (time / longest).powi(order + 1)));
-        }
-        Self { tables }
-    }
-
-    /// The shape of a number for an onset at `position`, and the first sample behind it.
-    fn behind(&self, number: usize, position: f64) -> (usize, impl Iterator<Item = f64>) {
-        let first = ceil_to_index(position);
-        let part = ((first as f64 - position) * FINENESS as f64).round();
-        let table = &self.tables[number];
-        (first, table.iter().skip(ceil_to_index(part)).step_by(FINENESS).copied())
-    }
+/// A shape for an onset at `position`, and the first sample behind it.
+fn behind(table: &[f64], position: f64) -> (usize, impl Iterator<Item = f64>) {
+    let first = ceil_to_index(position);
+    let part = ((first as f64 - position) * FINENESS as f64).round();
+    (first, table.iter().skip(ceil_to_index(part)).step_by(FINENESS).copied())
 }
 
 /// `r(z; n)`, the answer of `n` equal lags in a row to a ramp, over the time constant.
@@ -209,16 +200,16 @@ struct Tried {
 struct Profile<'a> {
     window: Window,
     tried: Vec<Tried>,
-    shapes: &'a Shapes,
+    shapes: &'a [Table],
 }
 
 impl<'a> Profile<'a> {
-    fn of(window: Window, start: &FromRest, shapes: &'a Shapes) -> Self {
+    fn of(window: Window, start: &FromRest, shapes: &'a [Table]) -> Self {
         let first = start.positions.start;
         let best = |number: usize| {
             let position = first as f64 + number as f64 / FINENESS as f64;
-            let tried = (0..shapes.tables.len()).map(|shape| {
-                let (first, values) = shapes.behind(shape, position);
+            let tried = shapes.iter().enumerate().map(|(shape, table)| {
+                let (first, values) = behind(table, position);
                 let (size, sse) = window.with(first, values);
                 Tried { position, shape, size, sse }
             });
@@ -253,7 +244,7 @@ impl<'a> Profile<'a> {
 
     /// The shape of `tried` over the window, beside a line.
     fn shape(&self, tried: &Tried) -> Vec<f64> {
-        let (first, behind) = self.shapes.behind(tried.shape, tried.position);
+        let (first, behind) = behind(&self.shapes[tried.shape], tried.position);
         let values = std::iter::repeat_n(0.0, first).chain(behind);
         Window::of(&values.take(self.window.residuals.len()).collect::<Vec<_>>()).residuals
     }

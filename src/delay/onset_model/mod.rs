@@ -30,7 +30,8 @@ mod uncertainty;
 mod windows;
 
 pub(super) use from_rest::{FromRest, gradual_onset};
-pub(super) use reaction::{Bend, Bends, memory};
+pub(super) use reaction::{Bend, Bends};
 pub(super) use shape::Family;
+pub(super) use uncertainty::memory;
 
 pub use model::{Obstacle, OnsetModel, StepOnset};

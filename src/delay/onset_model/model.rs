@@ -10,12 +10,13 @@ use super::reaction::p_value;
 use super::search::{Candidate, FEW, Search};
 use super::shape::{Family, Shape};
 use super::uncertainty::{Residual, choice, sensor_noise};
-use super::windows::{Fit, Onset, Pass, Run, Step};
+use super::windows::{Onset, Pass, Run, Step, all};
 use crate::delay::interval::FineDelay;
 use crate::delay::motion::StepMotion;
 use crate::delay::prepared::Prepared;
 use crate::delay::settings::{FirstLast, Settings};
-use crate::numerics::{median, student_quantile};
+use crate::delay::steps::InputStep;
+use crate::numerics::{limits, median, student_quantile};
 use crate::units::{SamplePeriod, ceil_to_index, floor_to_index};
 
 /// Samples from which the shape is found, and those from which its misfit is (chosen: more change
@@ -192,7 +193,7 @@ impl OnsetModel {
         search.reach = reach_of(hold, every, part, search.longest_reach());
         let found = search.evaluate(shape, search.starting(typical), typical, PASSES);
         let residual = Residual::of(&search, &found);
-        let follows = Follows::of(&search.runs, &found.onsets.found);
+        let follows = Follows::of(&search.runs, &found.onsets);
         let choice = choice(&candidates, residual.memory);
         let shared = (shared * shared * residual.memory + choice * choice).sqrt();
         let (reach, noise) = (search.reach, search.noise);
@@ -213,31 +214,28 @@ impl OnsetModel {
         };
         model.measure(&search, &found);
         let clear = |onset: &Option<Onset>| onset.filter(|it| it.is_clear).map(|it| it.position);
-        Some((model, found.onsets.found.iter().flatten().map(clear).collect()))
+        let onsets = found.onsets.iter().flat_map(|of_run| &of_run.found);
+        Some((model, onsets.map(clear).collect()))
     }
 
     /// How wide the intervals are, unless most onsets are not clear, and on which side of their steps
     /// they lie.
     fn measure(&mut self, search: &Search, found: &Candidate) {
         const CONFIDENCE: f64 = 0.95;
-        let (fit, pass) = (search.fit(&self.shape), search.pass(self.shape, self.typical));
-        let by = (fit.as_ref(), &pass);
-        let (mut widths, mut early, mut late, mut all) = (Vec::new(), 0.0, 0.0, 0);
-        for (run, found) in search.runs.iter().zip(&found.onsets.found) {
-            all += found.len();
-            for (index, onset) in found.iter().enumerate() {
-                let Some(onset) = onset.as_ref().filter(|onset| onset.is_clear) else { continue };
-                let (low, high) = self.sides(by, run, (index, onset), CONFIDENCE);
-                widths.push(low + high);
-                let next = run.steps.get(index + 1).map_or(f64::INFINITY, |next| next.at);
-                // A step may have been made any time after the sample before it.
-                early += f64::from(u8::from(onset.position + high < run.steps[index].at - 1.0));
-                late += f64::from(u8::from(onset.position - low > next));
-            }
+        let pass = search.pass(self.shape, self.typical);
+        let (mut widths, mut early, mut late) = (Vec::new(), 0.0, 0.0);
+        let clear = all(&search.runs, &found.onsets).filter(|(.., onset)| onset.is_clear);
+        for (run, index, onset) in clear {
+            let (low, high) = self.sides(&pass, run, (index, onset), CONFIDENCE);
+            widths.push(low + high);
+            let next = run.steps.get(index + 1).map_or(f64::INFINITY, |next| next.at);
+            // A step may have been made any time after the sample before it.
+            early += f64::from(u8::from(onset.position + high < run.steps[index].at - 1.0));
+            late += f64::from(u8::from(onset.position - low > next));
         }
         let clear = (widths.len() as f64).max(1.0);
         (self.early, self.late) = (early / clear, late / clear);
-        if 2 * widths.len() >= all {
+        if 2 * widths.len() >= search.steps() {
             self.width = median(&widths).unwrap_or(f64::INFINITY);
         }
     }
@@ -261,19 +259,19 @@ impl OnsetModel {
     /// How far the interval of an onset reaches to both sides, samples.
     fn sides(
         &self,
-        (fit, pass): (&dyn Fit, &Pass<'_>),
+        pass: &Pass,
         run: &Run,
         (index, onset): (usize, &Onset),
         confidence: f64,
     ) -> (f64, f64) {
         /// Samples of all windows that count beside those of one.
         const POOLED: f64 = 20.0;
-        let freedom = (onset.samples() as f64 - fit.parameters() as f64).max(1.0);
+        let freedom = (onset.samples() as f64 - pass.response.parameters() as f64).max(1.0);
         let all = self.residual.deviation.max(self.noise).powi(2);
         let variance = (onset.sse + POOLED * all) / (freedom + POOLED);
         let t = student_quantile(f64::midpoint(1.0, confidence), freedom + POOLED);
         let limit = onset.sse + variance.max(f64::MIN_POSITIVE) * self.residual.memory * t * t;
-        let (low, high) = fit.extent(run, index, onset, pass, limit);
+        let (low, high) = pass.extent(run, index, onset, limit);
         (low.hypot(t * self.shared), high.hypot(t * self.shared))
     }
 
@@ -294,28 +292,32 @@ impl OnsetModel {
         search.reach = ceil_to_index(self.reach as f64 * factor);
         let typical = self.typical * factor;
         let found = search.evaluate(scaled.shape, search.starting(typical), typical, PASSES);
-        let (fit, pass) = (search.fit(&scaled.shape), search.pass(scaled.shape, typical));
-        let by = (fit.as_ref(), &pass);
-        let onsets = found.onsets.found.first().into_iter().flatten().enumerate();
+        let pass = search.pass(scaled.shape, typical);
+        let onsets = found.onsets.iter().flat_map(|of_run| &of_run.found).enumerate();
         onsets
             .map(|(index, onset)| {
-                Some(scaled.step_onset(by, &search.runs[0], (index, onset.as_ref()?), confidence))
+                Some(scaled.step_onset(
+                    &pass,
+                    &search.runs[0],
+                    (index, onset.as_ref()?),
+                    confidence,
+                ))
             })
             .collect()
     }
 
     fn step_onset(
         &self,
-        (fit, pass): (&dyn Fit, &Pass<'_>),
+        pass: &Pass,
         run: &Run,
         (index, onset): (usize, &Onset),
         confidence: f64,
     ) -> StepOnset {
-        let (low, high) = self.sides((fit, pass), run, (index, onset), confidence);
+        let (low, high) = self.sides(pass, run, (index, onset), confidence);
         let delay = onset.position - run.steps[index].at;
         let explained = 1.0 - onset.sse / onset.sse_without.max(f64::MIN_POSITIVE);
         let samples = onset.samples() as f64;
-        let others = fit.parameters() as f64 - 2.0;
+        let others = pass.response.parameters() as f64 - 2.0;
         let p_value = p_value(explained, (samples - others) / self.residual.memory, samples);
         StepOnset {
             fine: FineDelay { delay, low: delay - low, high: delay + high, confidence },
@@ -349,7 +351,7 @@ impl OnsetModel {
     /// Root mean square of what the shape leaves over, in that of the sensor's noise; none of a sensor
     /// that shows no noise.
     pub fn misfit(&self) -> f64 {
-        misfit(self.residual.deviation, self.noise)
+        if self.noise > 0.0 { self.residual.deviation / self.noise } else { 1.0 }
     }
 
     /// The part of the changes of speed, or of level, that goes with the changes of the input: an R²
@@ -378,11 +380,6 @@ fn apart(one: &[Option<f64>], other: &[Option<f64>]) -> f64 {
     median(&both.collect::<Vec<f64>>()).unwrap_or(0.0).abs()
 }
 
-/// What is left over in parts of the noise.
-fn misfit(deviation: f64, noise: f64) -> f64 {
-    if noise > 0.0 { deviation / noise } else { 1.0 }
-}
-
 impl Search {
     /// Samples to each side of an onset that are looked at at most.
     fn longest_reach(&self) -> f64 {
@@ -400,10 +397,9 @@ impl Search {
         }
         let hold = median(&runs.iter().flat_map(holds).collect::<Vec<f64>>())?;
         let outputs = runs.iter().map(|run| run.output.as_slice());
-        let values = || outputs.clone().flatten().copied();
-        let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
+        let (low, high) = limits(outputs.clone().flatten().copied());
         // An output that was computed has no noise but its rounding.
-        let noise = sensor_noise(&outputs).max(ROUNDING * range);
+        let noise = sensor_noise(&outputs).max(ROUNDING * (high - low));
         let changes = runs.iter().flat_map(|run| &run.steps).map(|step| step.change().abs());
         let change = median(&changes.collect::<Vec<f64>>())?;
         let mut search = Self { runs, reach: 0, noise, hold, change, families };
@@ -474,34 +470,29 @@ fn beginning(runs: &[Run], enough: usize) -> Vec<Run> {
 /// each.
 fn run_of(trial: &Prepared<'_>, longest: Option<usize>, families: &[Family]) -> Run {
     let samples = trial.raw.len();
-    let output = trial.measured(0..samples).into_owned();
-    let motions = trial.motions.iter().map(|motion| motion.as_deref());
-    let motions = motions.chain(std::iter::repeat(None));
     // A bump test of an output that settles is its way to a level.
     let is_bounded = trial.steps.len() > FEW || !families.contains(&Family::Settling);
-    let bounds = |motion: Option<&StepMotion>| motion.copied().filter(|_| is_bounded);
-    // What was filled in while nothing was logged says nothing.
-    let logged = |at: usize| {
+    let step = |(step, motion): (&InputStep, &Option<Box<StepMotion>>)| {
+        let at = step.sample - 1;
+        // What was filled in while nothing was logged says nothing.
         let before = trial.unlogged.iter().rev().find(|gap| gap.end <= at);
         let behind = trial.unlogged.iter().find(|gap| gap.start > at);
-        (before.map_or(0, |gap| gap.end), behind.map_or(samples, |gap| gap.start))
+        let bounds = motion.as_ref().filter(|_| is_bounded);
+        let first = before.map_or(0, |gap| gap.end).max(bounds.map_or(0, |it| it.first));
+        let end = behind.map_or(samples, |gap| gap.start);
+        let end = end.min(bounds.map_or(samples, |it| it.end));
+        let asked = longest.map_or(usize::MAX, |longest| at.saturating_add(longest));
+        let latest = motion.as_ref().map_or(samples, |motion| motion.latest).min(asked);
+        Step {
+            at: at as f64,
+            before: step.before,
+            after: step.after,
+            first: first as f64,
+            end: end as f64,
+            latest: latest as f64,
+            rests: motion.as_ref().and_then(|motion| motion.rest).is_some_and(|rest| rest.lasts()),
+        }
     };
-    let extent = |at: usize, motion: Option<&StepMotion>| {
-        let (first, end) = logged(at);
-        bounds(motion).map_or((first, end), |it| (it.first.max(first), it.end.min(end)))
-    };
-    let steps = trial.steps.iter().zip(motions).map(|(step, motion)| Step {
-        at: step.sample as f64 - 1.0,
-        before: step.before,
-        after: step.after,
-        first: extent(step.sample - 1, motion).0 as f64,
-        end: extent(step.sample - 1, motion).1 as f64,
-        latest: {
-            let plainly = motion.map_or(samples, |motion| motion.latest);
-            let asked = longest.map(|longest| (step.sample - 1).saturating_add(longest));
-            plainly.min(asked.unwrap_or(usize::MAX)) as f64
-        },
-        rests: motion.and_then(|motion| motion.rest).is_some_and(|rest| rest.lasts()),
-    });
-    Run { output, steps: steps.collect() }
+    let steps = trial.steps.iter().zip(&trial.motions).map(step).collect();
+    Run { output: trial.raw.to_vec(), steps }
 }

@@ -7,10 +7,9 @@
 
 use std::f64::consts::PI;
 
-use super::dynamics::{Before, Dynamics};
+use super::dynamics::{Before, Dynamics, Response as _};
 use super::response::bend;
-use super::uncertainty;
-use super::windows::MARGIN;
+use super::windows::{MARGIN, best};
 use crate::numerics::fisher_tail;
 use crate::units::floor_to_index;
 
@@ -22,7 +21,8 @@ pub(in crate::delay) struct Bends(Dynamics<2>);
 pub(in crate::delay) struct Bend {
     /// The part of the squared error of one line that it removes.
     explained: f64,
-    residuals: Vec<f64>,
+    /// What it leaves over.
+    pub(in crate::delay) residuals: Vec<f64>,
 }
 
 impl Bends {
@@ -35,10 +35,10 @@ impl Bends {
     pub(in crate::delay) fn best(&self, values: &[f64]) -> Option<Bend> {
         let last = values.len().checked_sub(1 + MARGIN).filter(|last| *last >= MARGIN)?;
         let window = self.0.window(values, f64::INFINITY, Before::Any)?;
-        let (position, jump) = self.0.best(&window, MARGIN as f64, last as f64);
-        let fitted = self.0.fitted(&window, position);
+        let (position, jump) = best(window.as_ref(), MARGIN as f64, last as f64);
+        let fitted = window.fitted(position);
         Some(Bend {
-            explained: 1.0 - jump.sse / window.sse_without.max(f64::MIN_POSITIVE),
+            explained: 1.0 - jump.sse / window.sse_without().max(f64::MIN_POSITIVE),
             residuals: values.iter().zip(fitted).map(|(y, fitted)| y - fitted).collect(),
         })
     }
@@ -50,11 +50,6 @@ impl Bend {
         let samples = self.residuals.len() as f64;
         p_value(self.explained, (samples - 2.0) / memory, samples)
     }
-}
-
-/// By how much the memory of what bends leave over enlarges variances.
-pub(in crate::delay) fn memory<'a>(bends: impl Iterator<Item = &'a Bend> + Clone) -> f64 {
-    uncertainty::memory(bends.map(|bend| bend.residuals.as_slice()))
 }
 
 /// The probability that noise alone gains the `share` of its power with a bend in a window of so many

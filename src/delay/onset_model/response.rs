@@ -2,13 +2,12 @@
 
 use std::ops::Range;
 
-use super::dynamics::{Dynamics, Square, State, Steady};
+use super::dynamics::{Dynamics, Response, Square, State, Steady};
 use super::shape::{Family, Shape};
-use super::windows::Fit;
 
 /// What fits a `shape` in windows of fewer than `longest` samples; `unit` samples are the unit of the
 /// time within, which keeps its numbers alike in size.
-pub(super) fn fit_of(shape: &Shape, unit: f64, longest: usize) -> Box<dyn Fit> {
+pub(super) fn response_of(shape: &Shape, unit: f64, longest: usize) -> Box<dyn Response> {
     let h = unit.recip();
     let [t, zeta] = shape.logs.map(f64::exp);
     match (shape.family, shape.curved) {

@@ -20,9 +20,9 @@
 use super::alignment::{LONGEST, alignments};
 use super::dynamics::Before;
 use super::follows::Follows;
-use super::response::fit_of;
+use super::response::response_of;
 use super::shape::{Family, Shape};
-use super::windows::{Fit, Onset, Onsets, Pass, Run, windows};
+use super::windows::{Onset, Onsets, Pass, Run, all};
 use crate::numerics::median;
 
 /// Steps up to which a record is taken as a whole: a disturbed window is then no small part of it,
@@ -52,7 +52,8 @@ pub(super) struct Search {
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     pub(super) shape: Shape,
-    pub(super) onsets: Onsets,
+    /// Of each run.
+    pub(super) onsets: Vec<Onsets>,
     /// Median delay of the clear onsets, samples.
     pub(super) typical: f64,
     /// Schwarz's criterion; less is better.
@@ -61,12 +62,12 @@ pub(super) struct Candidate {
 
 impl Candidate {
     pub(super) fn found(&self) -> impl Iterator<Item = &Onset> + Clone {
-        self.onsets.found.iter().flatten().flatten()
+        self.onsets.iter().flat_map(|of_run| of_run.found.iter().flatten())
     }
 }
 
 impl Search {
-    fn steps(&self) -> usize {
+    pub(super) fn steps(&self) -> usize {
         self.runs.iter().map(|run| run.steps.len()).sum()
     }
 
@@ -79,39 +80,23 @@ impl Search {
         self.families.contains(&family) && (family != Family::Slew || !self.has_few_steps())
     }
 
-    /// What fits a shape in windows of this search.
-    pub(super) fn fit(&self, shape: &Shape) -> Box<dyn Fit> {
+    pub(super) fn pass(&self, shape: Shape, typical: f64) -> Pass {
         let longest = self.runs.iter().map(|run| run.output.len()).max().unwrap_or(0);
-        fit_of(shape, self.reach as f64 / 2.0, (2 * self.reach).min(longest) + 2)
-    }
-
-    pub(super) fn pass(&self, shape: Shape, typical: f64) -> Pass<'static> {
-        // What begins before a record with a few steps is most of it.
-        let edge = if self.has_few_steps() { 0.0 } else { typical };
-        Pass {
-            shape,
-            reach: self.reach,
-            typical,
-            edge,
-            noise: self.noise,
-            before: if self.has_few_steps() { Before::Steady } else { Before::Any },
-            windows: None,
-        }
+        let response =
+            response_of(&shape, self.reach as f64 / 2.0, (2 * self.reach).min(longest) + 2);
+        let before = if self.has_few_steps() { Before::Steady } else { Before::Any };
+        Pass { response, shape, reach: self.reach, typical, noise: self.noise, before }
     }
 
     /// All onsets so many samples behind their steps.
-    pub(super) fn starting(&self, delay: f64) -> Vec<Vec<f64>> {
-        let of_run = |run: &Run| run.steps.iter().map(|step| step.at + delay).collect();
-        self.runs.iter().map(of_run).collect()
+    pub(super) fn starting(&self, delay: f64) -> Vec<Onsets> {
+        self.runs.iter().map(|run| Onsets::behind(run, delay)).collect()
     }
 
     /// The median delay of the clear onsets.
-    fn typical(&self, onsets: &Onsets) -> Option<f64> {
-        let all = self.runs.iter().zip(&onsets.found);
-        let delays =
-            all.flat_map(|(run, found)| run.steps.iter().zip(found)).filter_map(|(step, found)| {
-                Some(found.filter(|onset| onset.is_clear)?.position - step.at)
-            });
+    fn typical(&self, onsets: &[Onsets]) -> Option<f64> {
+        let clear = all(&self.runs, onsets).filter(|(.., onset)| onset.is_clear);
+        let delays = clear.map(|(run, index, onset)| onset.position - run.steps[index].at);
         median(&delays.collect::<Vec<f64>>())
     }
 
@@ -119,24 +104,44 @@ impl Search {
     pub(super) fn evaluate(
         &self,
         shape: Shape,
-        positions: Vec<Vec<f64>>,
+        mut onsets: Vec<Onsets>,
         typical: f64,
         passes: usize,
     ) -> Candidate {
-        let fit = self.fit(&shape);
-        let found = self.runs.iter().map(|run| vec![None; run.steps.len()]).collect();
-        let mut onsets = Onsets { positions, found };
-        let mut typical = typical;
+        let mut pass = self.pass(shape, typical);
         for _ in 0..passes {
-            onsets.pass(fit.as_ref(), &self.runs, &self.pass(shape, typical));
-            typical = self.typical(&onsets).unwrap_or(typical);
+            for (run, onsets) in self.runs.iter().zip(&mut onsets) {
+                onsets.sweep(run, 0..run.steps.len(), &pass);
+            }
+            pass.typical = self.typical(&onsets).unwrap_or(pass.typical);
         }
         if passes > 1 {
-            onsets.reassign(fit.as_ref(), &self.runs, &self.pass(shape, typical));
+            for (run, onsets) in self.runs.iter().zip(&mut onsets) {
+                onsets.reassign(run, &pass);
+            }
         }
-        let mut candidate = Candidate { shape, onsets, typical, score: f64::INFINITY };
-        candidate.score = self.score(&candidate, fit.parameters());
+        let (typical, score) = (pass.typical, f64::INFINITY);
+        let mut candidate = Candidate { shape, onsets, typical, score };
+        candidate.score = self.score(&candidate, pass.response.parameters());
         candidate
+    }
+
+    /// The onsets of a candidate with the windows where they are.
+    fn held(&self, candidate: &Candidate) -> Vec<Onsets> {
+        let pass = self.pass(candidate.shape, candidate.typical);
+        let pairs = self.runs.iter().zip(&candidate.onsets);
+        pairs.map(|(run, onsets)| onsets.held(run, &pass)).collect()
+    }
+
+    /// Each onset of `held` as it was, and as it is behind `shape`.
+    fn moved(&self, held: &[Onsets], shape: Shape, typical: f64) -> Vec<(Onset, Onset)> {
+        let pass = self.pass(shape, typical);
+        let of_run = |(run, was): (&Run, &Onsets)| {
+            let mut now = was.clone();
+            now.sweep(run, 0..run.steps.len(), &pass);
+            was.found.iter().zip(now.found).filter_map(|(was, now)| Some(((*was)?, now?))).collect()
+        };
+        self.runs.iter().zip(held).flat_map::<Vec<_>, _>(of_run).collect()
     }
 
     /// Schwarz's criterion; each sample stands in two windows.
@@ -175,7 +180,7 @@ impl Search {
             let pairs = shape.logs.iter().zip(&candidate.shape.logs);
             let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             let Candidate { onsets, typical, .. } = candidate;
-            candidate = self.evaluate(shape, onsets.positions, typical, 1);
+            candidate = self.evaluate(shape, onsets, typical, 1);
             h = change.clamp(h / 6.0, h);
             if change < LAST && h < 10.0 * LAST {
                 break;
@@ -186,18 +191,13 @@ impl Search {
 
     /// The best of the points at a distance `h` in the parameters, and of Newton's.
     fn newton_step(&self, candidate: &Candidate, h: f64) -> Shape {
-        let Candidate { shape, onsets, typical, .. } = candidate;
-        let pass = self.pass(*shape, *typical);
-        let windows = windows(&self.runs, &onsets.positions, &pass);
+        let Candidate { shape, typical, .. } = candidate;
+        let held = self.held(candidate);
         let middle = candidate.found().map(Onset::mean_square).collect::<Vec<f64>>();
         let middle = median(&middle).unwrap_or(0.0).max(f64::MIN_POSITIVE);
-        let weight = |onset: &Onset| onset.mean_square().max(middle).recip();
-        let value = |shape: Shape| {
-            let mut moved = onsets.clone();
-            let pass = Pass { shape, windows: Some(&windows), ..pass };
-            moved.pass(self.fit(&shape).as_ref(), &self.runs, &pass);
-            let pairs = moved.found.iter().flatten().zip(onsets.found.iter().flatten());
-            pairs.filter_map(|(now, was)| Some(now.as_ref()?.sse * weight(was.as_ref()?))).sum()
+        let weighted = |(was, now): (Onset, Onset)| now.sse * was.mean_square().max(middle).recip();
+        let value = |shape: Shape| -> f64 {
+            self.moved(&held, shape, *typical).into_iter().map(weighted).sum()
         };
         let mut best = (value(*shape), *shape);
         let here = best.0;
@@ -212,14 +212,16 @@ impl Search {
             }
             value
         };
-        let step = if shape.order() == 1 {
-            along_one(here, at([-h, 0.0]), at([h, 0.0]), h)
-        } else {
-            let near = [[-h, 0.0], [h, 0.0], [0.0, -h], [0.0, h], [h, h]].map(&mut at);
-            along_two(here, near, h)
-        };
-        if let Some(step) = step {
-            at(step.map(|by| by.clamp(-3.0 * h, 3.0 * h)));
+        let near: Vec<f64> = near(shape.order(), h).map(&mut at).collect();
+        if near.iter().all(|value| value.is_finite()) {
+            let (gradient, curvature) = (slopes(&near), Curvature::of(here, &near));
+            let downhill = || gradient.map(|slope| if slope > 0.0 { -2.0 } else { 2.0 });
+            let newton = curvature.solve(gradient).map(|step| step.map(|by| -by));
+            let mut step = newton.unwrap_or_else(downhill).map(|by| h * by.clamp(-3.0, 3.0));
+            if shape.order() == 1 {
+                step[1] = 0.0;
+            }
+            at(step);
         }
         best.1
     }
@@ -246,8 +248,7 @@ impl Search {
             let curved: Vec<Candidate> = plain
                 .map(|it| {
                     let shape = Shape { curved: true, ..it.shape };
-                    let from = it.onsets.positions.clone();
-                    self.refined(self.evaluate(shape, from, it.typical, 2), ROUNDS)
+                    self.refined(self.evaluate(shape, it.onsets.clone(), it.typical, 2), ROUNDS)
                 })
                 .collect();
             all.extend(curved);
@@ -263,10 +264,8 @@ impl Search {
         let Some(best) = all.first().cloned() else { return all };
         for other in &mut all[1..] {
             let later = best.shape.mean() - other.shape.mean();
-            let positions = best.onsets.positions.iter();
-            let positions =
-                positions.map(|of| of.iter().map(|position| position + later).collect());
-            let again = self.evaluate(other.shape, positions.collect(), best.typical + later, 2);
+            let onsets = best.onsets.iter().map(|of_run| of_run.later(later)).collect();
+            let again = self.evaluate(other.shape, onsets, best.typical + later, 2);
             if again.score < other.score {
                 *other = self.refined(again, ROUNDS);
             }
@@ -291,10 +290,14 @@ impl Search {
         kept.map(|it| self.refined(it, ROUNDS)).collect()
     }
 
+    /// How far the onsets of a candidate go with the input.
+    fn r2(&self, candidate: &Candidate) -> f64 {
+        Follows::of(&self.runs, &candidate.onsets).r2
+    }
+
     fn keep_those_that_follow(&self, all: &mut Vec<Candidate>) {
-        let r2 = |candidate: &Candidate| Follows::of(&self.runs, &candidate.onsets.found).r2;
-        let most = all.iter().map(r2).fold(0.0, f64::max);
-        all.retain(|candidate| r2(candidate) > most - WORSE);
+        let most = all.iter().map(|it| self.r2(it)).fold(0.0, f64::max);
+        all.retain(|it| self.r2(it) > most - WORSE);
     }
 
     /// Broken lines about the common delay that shows best, or whose onsets go best with the input
@@ -316,14 +319,13 @@ impl Search {
             let other = bend(0.0);
             return if other.score < best.score { other } else { best };
         }
-        let r2 = |candidate: &Candidate| Follows::of(&self.runs, &candidate.onsets.found).r2;
-        let mut explained = r2(&best);
+        let mut explained = self.r2(&best);
         for (delay, gain) in tops.into_iter().take(TOPS).skip(1) {
             if gain < SHOWS * most || explained > WELL {
                 break;
             }
             let other = bend(delay);
-            let its = r2(&other);
+            let its = self.r2(&other);
             if its > explained + MORE {
                 (best, explained) = (other, its);
             }
@@ -332,7 +334,7 @@ impl Search {
     }
 
     /// Where onsets behind a shape are taken to be at first, with their typical delay.
-    fn starts(&self, shape: Shape, bend: &Candidate) -> Vec<(Vec<Vec<f64>>, f64)> {
+    fn starts(&self, shape: Shape, bend: &Candidate) -> Vec<(Vec<Onsets>, f64)> {
         /// Delays that are compared in a hold, and the longest lead among them.
         const PER_HOLD: i32 = 12;
         const LEAD: i32 = 6;
@@ -340,21 +342,21 @@ impl Search {
         let rests = !shape.family.may_be_curved();
         if !rests && !few {
             let mean = shape.mean();
-            let positions = bend.onsets.positions.iter();
-            let earlier = positions.map(|of| of.iter().map(|position| position - mean).collect());
+            let earlier = bend.onsets.iter().map(|of_run| of_run.later(-mean));
             return vec![(earlier.collect(), bend.typical - mean)];
         }
         // Corners say little of outputs that come to rest.
-        let fit = self.fit(&shape);
+        let mut pass = self.pass(shape, 0.0);
         let by = (self.hold / f64::from(PER_HOLD)).max(1.0);
         let delays = (if few { 0 } else { -LEAD }..=PER_HOLD).map(|k| f64::from(k) * by);
-        let error = |delay: &f64| {
-            fit.mean_square(&self.runs, &self.starting(*delay), &self.pass(shape, *delay))
-        };
-        let best = delays.min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or(0.0);
+        let errors = delays.map(|delay| {
+            pass.typical = delay;
+            (delay, pass.mean_square(&self.runs, &self.starting(delay)))
+        });
+        let best = errors.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |(delay, _)| delay);
         let mut starts = vec![(self.starting(best), best)];
         if few {
-            starts.push((bend.onsets.positions.clone(), bend.typical));
+            starts.push((bend.onsets.clone(), bend.typical));
             starts.push((self.starting(0.0), 0.0));
         }
         starts
@@ -365,71 +367,70 @@ impl Search {
     /// the error in units of its variance; samples squared.
     pub(super) fn shared_variance(&self, candidate: &Candidate) -> f64 {
         const H: f64 = 0.02;
-        let Candidate { shape, onsets, typical, .. } = candidate;
-        let order = shape.order();
-        if order == 0 {
+        let Candidate { shape, typical, .. } = candidate;
+        if shape.order() == 0 {
             return 0.0;
         }
-        let pass = self.pass(*shape, *typical);
-        let windows = windows(&self.runs, &onsets.positions, &pass);
+        let held = self.held(candidate);
         let samples: f64 = candidate.found().map(|onset| onset.samples() as f64).sum();
         let variance = candidate.found().map(|onset| onset.sse).sum::<f64>() / samples.max(1.0);
         let at = |by: [f64; 2]| {
-            let shape = shape.moved(by);
-            let mut moved = onsets.clone();
-            let pass = Pass { shape, windows: Some(&windows), ..pass };
-            moved.pass(self.fit(&shape).as_ref(), &self.runs, &pass);
-            let pairs = moved.found.iter().flatten().zip(onsets.found.iter().flatten());
-            let pairs = pairs.filter_map(|(now, was)| Some((now.as_ref()?, was.as_ref()?)));
-            let (sse, moves): (Vec<f64>, Vec<f64>) =
-                pairs.map(|(now, was)| (now.sse, now.position - was.position)).unzip();
+            let pairs = self.moved(&held, shape.moved(by), *typical);
+            let moves: Vec<f64> =
+                pairs.iter().map(|(was, now)| now.position - was.position).collect();
+            let sse: f64 = pairs.iter().map(|(_, now)| now.sse).sum();
             // Each sample stands in two windows.
-            (sse.iter().sum::<f64>() / (4.0 * variance), median(&moves).unwrap_or(0.0))
+            (sse / (4.0 * variance), median(&moves).unwrap_or(0.0))
         };
-        let ((low, before), (high, behind)) = (at([-H, 0.0]), at([H, 0.0]));
-        let here = at([0.0; 2]).0;
-        let (g, hxx) = ((behind - before) / (2.0 * H), (low - 2.0 * here + high) / (H * H));
-        if order == 1 {
-            return if hxx > 0.0 { g * g / hxx } else { 0.0 };
-        }
-        let ((under, left), (over, right)) = (at([0.0, -H]), at([0.0, H]));
-        let both = at([H, H]).0;
-        let (gy, hyy) = ((right - left) / (2.0 * H), (under - 2.0 * here + over) / (H * H));
-        let hxy = (both - high - over + here) / (H * H);
-        let det = hxx * hyy - hxy * hxy;
-        let variance = (g * g * hyy - 2.0 * g * gy * hxy + gy * gy * hxx) / det;
-        if det > 0.0 { variance.max(0.0) } else { 0.0 }
+        let (errors, moves): (Vec<f64>, Vec<f64>) = near(shape.order(), H).map(at).unzip();
+        let gradient = slopes(&moves);
+        let solved = Curvature::of(at([0.0; 2]).0, &errors).solve(gradient);
+        let variance = solved.map(|[x, y]| x * gradient[0] + y * gradient[1]);
+        variance.unwrap_or(0.0).max(0.0)
     }
 }
 
 /// Rounds of Newton's method at most.
 const ROUNDS: usize = 12;
 
-/// Newton's step along one parameter, from values at `−h`, 0 and `h`; downhill where the error is
-/// not convex.
-fn along_one(here: f64, low: f64, high: f64, h: f64) -> Option<[f64; 2]> {
-    if !(low.is_finite() && high.is_finite()) {
-        return None;
-    }
-    let curvature = low - 2.0 * here + high;
-    let downhill = if low < high { -2.0 * h } else { 2.0 * h };
-    let step = if curvature > 0.0 { h * 0.5 * (low - high) / curvature } else { downhill };
-    Some([step, 0.0])
+/// Where a function of one or two parameters is evaluated for its derivatives: at `(−h, 0)`, `(h, 0)`
+/// and, of two, at `(0, −h)`, `(0, h)` and `(h, h)`.
+fn near(order: usize, h: f64) -> impl Iterator<Item = [f64; 2]> {
+    let all = [[-h, 0.0], [h, 0.0], [0.0, -h], [0.0, h], [h, h]];
+    all.into_iter().take(if order == 1 { 2 } else { all.len() })
 }
 
-/// Newton's step along two parameters, from values at `(−h, 0)`, `(h, 0)`, `(0, −h)`, `(0, h)` and
-/// `(h, h)`.
-fn along_two(here: f64, near: [f64; 5], h: f64) -> Option<[f64; 2]> {
-    if near.iter().any(|value| !value.is_finite()) {
-        return None;
+/// The gradient, in units of `h`, from the values [`near`].
+fn slopes(near: &[f64]) -> [f64; 2] {
+    let slope =
+        |from: usize| near.get(from..from + 2).map_or(0.0, |pair| (pair[1] - pair[0]) / 2.0);
+    [slope(0), slope(2)]
+}
+
+/// The second derivatives, in units of `h`; of one parameter 1 for the other.
+struct Curvature {
+    xx: f64,
+    yy: f64,
+    xy: f64,
+}
+
+impl Curvature {
+    /// From the value `here` and those [`near`].
+    fn of(here: f64, near: &[f64]) -> Self {
+        match *near {
+            [left, right, under, over, both] => Self {
+                xx: left - 2.0 * here + right,
+                yy: under - 2.0 * here + over,
+                xy: both - right - over + here,
+            },
+            _ => Self { xx: near.iter().sum::<f64>() - 2.0 * here, yy: 1.0, xy: 0.0 },
+        }
     }
-    let [left, right, under, over, both] = near;
-    let (gx, gy) = ((right - left) / 2.0, (over - under) / 2.0);
-    let (hxx, hyy) = (left - 2.0 * here + right, under - 2.0 * here + over);
-    let hxy = both - right - over + here;
-    let det = hxx * hyy - hxy * hxy;
-    if hxx > 0.0 && det > 0.0 {
-        return Some([-(hyy * gx - hxy * gy) / det * h, -(hxx * gy - hxy * gx) / det * h]);
+
+    /// `H⁻¹ g`; none where the function is not convex.
+    fn solve(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
+        let Self { xx, yy, xy } = *self;
+        let det = xx * yy - xy * xy;
+        (xx > 0.0 && det > 0.0).then(|| [(yy * x - xy * y) / det, (xx * y - xy * x) / det])
     }
-    Some([gx, gy].map(|slope| -2.0 * h * slope.signum()))
 }

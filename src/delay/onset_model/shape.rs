@@ -16,7 +16,7 @@
 //! with the angle, `s' = q` with a `q` that may jump, too, and is of no interest.
 
 /// Which of the responses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in crate::delay) enum Family {
     Bend,
     Lag,

@@ -15,7 +15,7 @@
 //! M. S. Bartlett's weights as in W. K. Newey and K. D. West, Econometrica 55 (1987).
 
 use super::search::{Candidate, Search};
-use super::windows::Onset;
+use super::windows::{Onset, Run, all};
 use crate::numerics::{median, noise_of_bends, quantile};
 
 /// What the residuals of all windows of a joint say.
@@ -51,23 +51,17 @@ pub(super) fn sensor_noise<'a>(outputs: &(impl Iterator<Item = &'a [f64]> + Clon
 
 impl Residual {
     /// Of the windows of `candidate`.
-    pub(super) fn of(search: &Search, candidate: &Candidate) -> Self {
-        let fit = search.fit(&candidate.shape);
+    pub(super) fn of<'a>(search: &'a Search, candidate: &'a Candidate) -> Self {
         let pass = search.pass(candidate.shape, candidate.typical);
-        let per_window = fit.parameters() as f64;
-        let all = search.runs.iter().zip(&candidate.onsets.found);
-        let windows: Vec<(&Onset, Vec<f64>)> = all
-            .flat_map(|(run, found)| {
-                let (fit, pass) = (&fit, &pass);
-                found.iter().enumerate().filter_map(move |(index, onset)| {
-                    let onset = onset.as_ref()?;
-                    let fitted = fit.fitted(run, index, onset, pass);
-                    let measured = run.output.get(onset.start..onset.end)?;
-                    let left = measured.iter().zip(&fitted).map(|(y, fitted)| y - fitted);
-                    Some((onset, left.collect::<Vec<f64>>()))
-                })
-            })
-            .collect();
+        let per_window = pass.response.parameters() as f64;
+        let left = |(run, index, onset): (&Run, usize, &'a Onset)| {
+            let fitted = pass.fitted(run, index, onset);
+            let measured = run.output.get(onset.start..onset.end)?;
+            let left = measured.iter().zip(&fitted).map(|(y, fitted)| y - fitted);
+            Some((onset, left.collect::<Vec<f64>>()))
+        };
+        let windows: Vec<(&Onset, Vec<f64>)> =
+            all(&search.runs, &candidate.onsets).filter_map(left).collect();
         // A window that something else disturbed is no measure of the others.
         let variances = windows
             .iter()
@@ -82,7 +76,7 @@ impl Residual {
 }
 
 /// By how much the memory of residuals enlarges variances.
-pub(super) fn memory<'a>(windows: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
+pub(in crate::delay) fn memory<'a>(windows: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
     /// Samples over which residuals may go together, and the part of a window that these may be.
     const REACHES: [usize; 6] = [2, 5, 10, 20, 40, 100];
     const PART: usize = 3;

@@ -134,32 +134,23 @@ impl Grid {
 
     /// The combinations with every β.
     fn add_row(&mut self, [m, p, a]: [usize; 3]) {
-        let Some(Base { settings, keeps_low_pass }) = self.bases.get(m).cloned() else { return };
-        let known = keeps_low_pass && p > 0;
-        let low_pass = self.passbands.get(p).copied().flatten().filter(|_| !keeps_low_pass);
-        let low_pass = if keeps_low_pass { settings.low_pass } else { low_pass };
-        let alpha = self.alphas.get(a).copied().unwrap_or(settings.alpha_length());
+        let Base { settings, keeps_low_pass } = self.bases[m].clone();
+        let has_rows = !settings.method.spec().has_intervals;
+        let low_pass = if keeps_low_pass { settings.low_pass } else { self.passbands[p] };
+        // Two runs that differ by a low-pass that is left out would be one.
+        let varied = Settings { low_pass, low_pass_required: true, ..settings };
+        let varied = varied.with_alpha(self.alphas[a]);
         for b in 0..self.betas.len() {
-            let settings = settings.clone();
-            let levels = [m, p, a, b];
-            if !known && (b == 0 || !settings.method.spec().has_intervals) {
-                let beta = self.betas.get(b).copied().unwrap_or(settings.beta_length());
-                // Two runs that differ by a low-pass that is left out would be one.
-                let varied = Settings { low_pass, low_pass_required: true, ..settings };
-                self.runs.push(varied.with_alpha(alpha).with_beta(beta));
+            let settings = varied.clone().with_beta(self.betas[if has_rows { b } else { 0 }]);
+            let is_new = has_rows && !keeps_low_pass;
+            let same =
+                if is_new { None } else { self.runs.iter().rposition(|run| *run == settings) };
+            let run = same.unwrap_or(self.runs.len());
+            if same.is_none() {
+                self.runs.push(settings);
             }
-            let same = if known { self.run_at([m, 0, a, b]) } else { None };
-            let run = same.unwrap_or(self.runs.len() - 1);
-            self.combinations.push(Combination { levels, run });
+            self.combinations.push(Combination { levels: [m, p, a, b], run });
         }
-    }
-
-    /// The run of these levels, where they come before the last.
-    fn run_at(&self, levels: [usize; 4]) -> Option<usize> {
-        // A number with as many digits as there are factors, each to the base of its levels.
-        let digit = |number: usize, (factor, level)| number * self.levels(factor) + level;
-        let index = Factor::ALL.into_iter().zip(levels).fold(0, digit);
-        self.combinations.get(index).map(|one| one.run)
     }
 
     /// The settings that are run, each once.

@@ -39,7 +39,7 @@ impl JointSweep {
             };
             let delays = runs.iter().map(delay).collect();
             let kind = Transition::of(&step, neutral.as_ref());
-            SweptStep::of(trial, step, kind, number, delays).judged(grid, &ran)
+            SweptStep::of(trial, (step, kind, number), delays, (grid, &ran))
         };
         let steps: Vec<SweptStep> = steps.enumerate().map(judged).collect();
         let summary = |(index, run): (usize, &Option<RunDelays>)| {

@@ -72,15 +72,22 @@ pub struct Sensitivity {
 }
 
 impl SweptStep {
-    /// The step of a number in its trial, with the delay that each run reports of it.
+    /// The step of a number in its trial, with the delay that each run of `grid` reports of it, and
+    /// its votes counted; `ran` says which runs did not fail.
     pub(super) fn of(
         trial: &Trial,
-        step: InputStep,
-        transition: Transition,
-        number: usize,
+        (step, transition, number): (InputStep, Transition, usize),
         delays: Vec<Option<ReportedDelay>>,
+        (grid, ran): (&Grid, &[bool]),
     ) -> Self {
-        Self {
+        let tried = grid.combinations().iter().filter(|one| ran.get(one.run) == Some(&true));
+        let reported = grid.combinations().iter().map(|one| *delays.get(one.run)?);
+        let reported: Vec<ReportedDelay> = reported.flatten().collect();
+        let agreement = Agreement::of(&reported);
+        let distances = agreement.map(|agreement| {
+            reported.iter().map(|one| agreement.distance(one)).sum::<f64>() / reported.len() as f64
+        });
+        let mut found = Self {
             trial: trial.label().to_owned(),
             number,
             sample: step.sample,
@@ -89,14 +96,21 @@ impl SweptStep {
             period_s: trial.period().seconds(),
             transition,
             delays,
-            accepted: 0,
-            tried: 0,
-            spread: None,
-            agreement: None,
+            accepted: reported.len(),
+            tried: tried.count(),
+            spread: Spread::of(&reported),
+            agreement,
             delay_depends_on: None,
             verdict_depends_on: None,
-            apart: 0.0,
+            apart: distances.unwrap_or(0.0),
+        };
+        if found.disagreeing() > 0 {
+            found.delay_depends_on = found.delay_depends_on(grid);
         }
+        if found.accepted > 0 && found.accepted < found.tried {
+            found.verdict_depends_on = found.verdict_depends_on(grid, ran);
+        }
+        found
     }
 
     /// Whether all settings that accept it agree, and all or none do.
@@ -117,28 +131,6 @@ impl SweptStep {
 
     pub(super) fn reported(&self, one: &Combination) -> Option<ReportedDelay> {
         self.delays.get(one.run).copied().flatten()
-    }
-
-    /// The step with its votes counted; `ran` says which runs of the grid did not fail.
-    pub(super) fn judged(mut self, grid: &Grid, ran: &[bool]) -> Self {
-        let tried = grid.combinations().iter().filter(|one| ran.get(one.run) == Some(&true));
-        self.tried = tried.count();
-        let reported: Vec<ReportedDelay> =
-            grid.combinations().iter().filter_map(|one| self.reported(one)).collect();
-        self.accepted = reported.len();
-        self.spread = Spread::of(&reported);
-        self.agreement = Agreement::of(&reported);
-        if let Some(agreement) = self.agreement {
-            let distances = reported.iter().map(|one| agreement.distance(one));
-            self.apart = distances.sum::<f64>() / reported.len() as f64;
-        }
-        if self.disagreeing() > 0 {
-            self.delay_depends_on = self.delay_depends_on(grid);
-        }
-        if self.accepted > 0 && self.accepted < self.tried {
-            self.verdict_depends_on = self.verdict_depends_on(grid, ran);
-        }
-        self
     }
 
     /// The factor that moves the delay most when it alone is changed.

@@ -6,6 +6,8 @@
 use statrs::function::beta::checked_beta_reg;
 use statrs::function::erf::erfc;
 
+use crate::numerics::moments::dot;
+
 /// Pairs below which a rank correlation is not computed: of three, any order is likely.
 const MIN_PAIRS: usize = 4;
 
@@ -90,10 +92,6 @@ fn centred(mut ranks: Vec<f64>) -> Vec<f64> {
         *rank -= mean;
     }
     ranks
-}
-
-fn dot(x: &[f64], y: &[f64]) -> f64 {
-    x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
 /// The share of the orders of `y` whose `|Σ x y|` reaches `limit`.

@@ -104,7 +104,7 @@ fn step<'a>(joint: EstimatedJoint<'a>, doubted: &Doubted<'a>) -> StepJson<'a> {
         measured: part(trial.output()),
         smoothed,
         errors: errors.collect(),
-        conditions: decision.checks.iter().map(ConditionJson::from).collect(),
+        conditions: decision.checks.into_iter().map(ConditionJson::from).collect(),
         flags: doubt.flags.iter().map(|flag| flag.meaning()).collect(),
     }
 }
