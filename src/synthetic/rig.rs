@@ -2,8 +2,7 @@
 
 use super::clock::Clock;
 use super::cylinder::{CylinderSpec, Machine, State};
-use super::drive::{Attempt, Drive, Driver, Predictor, beyond};
-use super::driven::Driven;
+use super::drive::{Attempt, Drive, Driven, Driver, Predictor, beyond};
 use super::error::{Place, PlantError};
 use super::spec::JointSpec;
 

@@ -9,7 +9,7 @@ use tauscope::fit::Horizon;
 use tauscope::study::{
     JointEstimate, Mode, Protocol, add_to_joints, estimate_joints, explain_joints, improve_joints,
 };
-use tauscope::synthetic::effects::Effects;
+use tauscope::synthetic::effects::Hidden;
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
 
 const NOISE: f64 = 0.05;
@@ -20,14 +20,14 @@ const PROTOCOL: Protocol =
 type Estimates = Vec<Result<JointEstimate, EstimateError>>;
 
 /// A joint with these delays and effects.
-fn made(seed: u64, delay: DelayLaw, effect: &Effects) -> (Vec<Joint>, Estimates) {
+fn made(seed: u64, delay: DelayLaw, effect: &Hidden) -> (Vec<Joint>, Estimates) {
     let levels = vec![-3.0, -2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0, 3.0];
     let input = InputSpec::Levels { levels, hold_s: [0.6, 2.0] };
     let joint = JointSpec {
         gain: 8.0,
         range: Some([-50.0, 50.0]),
         noise: NOISE,
-        effect: *effect,
+        effect: effect.clone(),
         ..JointSpec::new("boom", input, delay)
     };
     let joints = simulate(&PlantSpec::new(seed, 90.0, vec![joint])).unwrap().joints;
@@ -44,7 +44,7 @@ fn ids(model: &tauscope::model::JointModel) -> Vec<&'static str> {
 
 #[test]
 fn random_delays_are_told_and_taken_from_the_record() {
-    let (joints, estimates) = made(11, RANDOM, &Effects::default());
+    let (joints, estimates) = made(11, RANDOM, &Hidden::default());
     let options = Options::default();
     let found = explain_joints(&joints, &estimates, |_| None, PROTOCOL, &options, &Threads);
     let found = found.into_iter().next().unwrap().unwrap().unwrap();

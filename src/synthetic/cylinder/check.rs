@@ -1,7 +1,7 @@
 //! Which numbers a cylinder may have.
 
 use super::super::clock::Clock;
-use super::super::error::{Place, PlantError};
+use super::super::error::{NOT_NEGATIVE, POSITIVE, Place, PlantError};
 use super::CylinderSpec;
 use super::machine::Machine;
 
@@ -16,12 +16,10 @@ impl CylinderSpec {
     /// Refuses numbers that no cylinder has, and a time step that is too long for them.
     pub(in super::super) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         for (key, value) in self.above_zero() {
-            let fits = |value: &f64| value.is_finite() && *value > 0.0;
-            place.require(key, value, "finite, above zero", fits)?;
+            place.number(key, value, &POSITIVE, clock)?;
         }
         for (key, value) in self.not_negative() {
-            let fits = |value: &f64| value.is_finite() && *value >= 0.0;
-            place.require(key, value, "finite, not negative", fits)?;
+            place.number(key, value, &NOT_NEGATIVE, clock)?;
         }
         self.check_valve(place)?;
         self.check_piston(place)?;
