@@ -40,7 +40,18 @@ static SPEC: Spec = Spec::new(
 .parameters(&[Parameter::new("time_constant", "time to 63 % of a change", Dimension::Seconds)
     .between(0.0, UNLIMITED)])
 .memory(ActuatorLag::MEMORY)
-.confused_with(&["resonance", "variable_delay", "rate_limit"]);
+.confused_with(&["resonance", "variable_delay", "rate_limit"])
+.equations(LAGGING);
+
+/// As the spool has it, too.
+pub(super) const LAGGING: Equations = Equations::new(&[
+    "interval = dt\n",
+    DECAY,
+    "deviation = state - signal
+             state = signal + deviation * left
+             out = signal + deviation * mean",
+])
+.remembering(&["state"], "state = signal");
 
 impl ActuatorLag {
     /// The output, and the decay that was computed last.
@@ -50,22 +61,6 @@ impl ActuatorLag {
 impl Effect for ActuatorLag {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                [
-                    "interval = dt\n",
-                    DECAY,
-                    "deviation = state - signal
-             state = signal + deviation * left
-             out = signal + deviation * mean",
-                ]
-                .concat(),
-            )
-            .remembering(&["state"], "state = signal"),
-        )
     }
 
     /// The memory is the output `x`, and the decay that was computed last.

@@ -33,21 +33,18 @@ static SPEC: Spec = Spec::new("backlash", Stage::Output, "play between actuator 
         .between(0.0, UNLIMITED)
         .typical(0.02)])
     .memory(1)
-    .confused_with(&["dead_band", "variable_delay"]);
+    .confused_with(&["dead_band", "variable_delay"])
+    .equations(
+        Equations::new(&[
+            "measured = min(max(measured, signal - 0.5 * width), signal + 0.5 * width)
+             out = measured",
+        ])
+        .remembering(&["measured"], "measured = signal"),
+    );
 
 impl Effect for Backlash {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                "measured = min(max(measured, signal - 0.5 * width), signal + 0.5 * width)
-             out = measured",
-            )
-            .remembering(&["measured"], "measured = signal"),
-        )
     }
 
     /// The memory is the output.

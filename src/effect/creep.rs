@@ -35,7 +35,17 @@ static SPEC: Spec = Spec::new(
         .neutral(1.0),
 ])
 .memory(1 + DECAY_MEMORY)
-.confused_with(&["actuator_lag", "leakage", "thermal_drift", "accumulator_droop"]);
+.confused_with(&["actuator_lag", "leakage", "thermal_drift", "accumulator_droop"])
+.equations(
+    Equations::new(&[
+        "interval = dt\n",
+        DECAY,
+        "deviation = state - signal
+             state = signal + deviation * left
+             out = signal + share * deviation * mean",
+    ])
+    .remembering(&["state"], "state = signal"),
+);
 
 /// Shortest and longest time constant of a fit: below it is a lag, above it hardly arrives while the
 /// input is held.
@@ -44,22 +54,6 @@ const FITTED_S: (f64, f64) = (0.1, 60.0);
 impl Effect for Creep {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                [
-                    "interval = dt\n",
-                    DECAY,
-                    "deviation = state - signal
-             state = signal + deviation * left
-             out = signal + share * deviation * mean",
-                ]
-                .concat(),
-            )
-            .remembering(&["state"], "state = signal"),
-        )
     }
 
     /// The memory is the slow state `x`, and the decay that was computed last.

@@ -66,7 +66,19 @@ static SPEC: Spec = Spec::new(
 .memory(2)
 .confused_with(&["resonance"])
 .absorbing(&["resonance"])
-.refining("resonance");
+.refining("resonance")
+.equations(
+    Equations::new(&[
+        "away = position + 0.5 * dt * velocity - reference
+             factor = 1 + away * (slope + curvature * away)
+             here = period * min(max(factor, 0.05), 20)
+             at_once = here < 1e-9
+             omega = 2 * pi / max(here, 1e-9)
+             ratio = min(damping + valve_damping * abs(signal), 10)\n",
+        SWING,
+    ])
+    .remembering(&["state", "rate"], "state = signal\nrate = 0"),
+);
 
 /// Largest damping ratio: with more, nothing is left of the swing.
 const MOST_DAMPING: f64 = 10.0;
@@ -77,24 +89,6 @@ const FACTORS: (f64, f64) = (0.05, 20.0);
 impl Effect for OilColumn {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                [
-                    "away = position + 0.5 * dt * velocity - reference
-             factor = 1 + away * (slope + curvature * away)
-             here = period * min(max(factor, 0.05), 20)
-             at_once = here < 1e-9
-             omega = 2 * pi / max(here, 1e-9)
-             ratio = min(damping + valve_damping * abs(signal), 10)\n",
-                    SWING,
-                ]
-                .concat(),
-            )
-            .remembering(&["state", "rate"], "state = signal\nrate = 0"),
-        )
     }
 
     /// The memory is `x`, `x'` in input units per second.

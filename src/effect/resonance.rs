@@ -31,7 +31,16 @@ static SPEC: Spec =
                 .neutral(1.0),
         ])
         .memory(2 + SWING_MEMORY)
-        .confused_with(&["actuator_lag"]);
+        .confused_with(&["actuator_lag"])
+        .equations(
+            Equations::new(&[
+                "at_once = period < 1e-9
+             omega = 2 * pi / max(period, 1e-9)
+             ratio = damping\n",
+                SWING,
+            ])
+            .remembering(&["state", "rate"], "state = signal\nrate = 0"),
+        );
 
 /// Period below which the output is the input: it is then over before anything moves,
 /// and its square is still far from the ends of what a number can hold.
@@ -48,21 +57,6 @@ pub(super) const PERIODS_S: [f64; 4] = [0.12, 0.25, 0.5, 1.0];
 impl Effect for Resonance {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                [
-                    "at_once = period < 1e-9
-             omega = 2 * pi / max(period, 1e-9)
-             ratio = damping\n",
-                    SWING,
-                ]
-                .concat(),
-            )
-            .remembering(&["state", "rate"], "state = signal\nrate = 0"),
-        )
     }
 
     /// The memory is `x`, `x'` in input units per second, and the response that was

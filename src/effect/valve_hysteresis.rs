@@ -34,26 +34,17 @@ static SPEC: Spec = Spec::new(
     .between(0.0, UNLIMITED)
     .typical(0.1)])
 .memory(1)
-.confused_with(&["stiction", "dead_band", "backlash", "variable_delay"]);
+.confused_with(&["stiction", "dead_band", "backlash", "variable_delay"])
+.steady()
+.equations(
+    Equations::new(&["opening = min(max(opening, signal - 0.5 * width), signal + 0.5 * width)
+             out = opening"])
+    .remembering(&["opening"], "opening = signal"),
+);
 
 impl Effect for ValveHysteresis {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    /// Of a held command nothing moves on.
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                "opening = min(max(opening, signal - 0.5 * width), signal + 0.5 * width)
-             out = opening",
-            )
-            .remembering(&["opening"], "opening = signal"),
-        )
     }
 
     /// The memory is the opening.

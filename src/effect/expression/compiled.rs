@@ -23,8 +23,6 @@ struct Expression {
     spec: &'static Spec,
     node: Node,
     states: Vec<State>,
-    /// Names of the states.
-    memory: &'static [&'static str],
     nests: bool,
 }
 
@@ -91,9 +89,7 @@ impl Expression {
             }
         }
         let spec = part_of_interned(specified(&definition));
-        let memory = states.iter().map(|name| text_of_interned(*name)).collect::<Vec<_>>();
-        let memory = part_of_interned(memory);
-        let mut new = Self { definition, spec, node, states: parsed, memory, nests: true };
+        let mut new = Self { definition, spec, node, states: parsed, nests: true };
         if let Some(fault) = new.neutral_fault() {
             if new.definition.parameters.iter().any(|parameter| parameter.neutral.is_some()) {
                 return Err(fault);
@@ -165,25 +161,6 @@ impl Effect for Expression {
         }
         let signals = of_change(change);
         self.or_else(0.0, &Scope { signals: &signals, parameters, ..Scope::default() })
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        let unchanged = if self.spec.stage == Stage::Transport { "0" } else { "signal" };
-        let Definition { states, expression, .. } = &self.definition;
-        // Capital letters: its parameters have none. All states change together.
-        let finite = |name: &str, other: &str| format!("if(is_finite({name}), {name}, {other})");
-        let next =
-            states.iter().map(|OwnState { name, next, .. }| format!("NEXT_{name} = {next}\n"));
-        let becomes = states.iter().map(|OwnState { name, .. }| {
-            format!("{name} = {}\n", finite(&format!("NEXT_{name}"), name))
-        });
-        let settle = states.iter().map(|OwnState { name, start, .. }| {
-            format!("START_{name} = {start}\n{name} = {}\n", finite(&format!("START_{name}"), "0"))
-        });
-        let (settle, states): (String, String) = (settle.collect(), next.chain(becomes).collect());
-        let out = finite("VALUE", unchanged);
-        let equations = Equations::new(format!("{states}VALUE = {expression}\nOUT = {out}"));
-        Some(equations.remembering(self.memory, text_of_interned(settle)))
     }
 
     fn nests(&self) -> bool {
@@ -309,6 +286,27 @@ fn specified(definition: &Definition) -> Spec {
         .memory(definition.states.len())
         .source("the model file")
         .parameters(part_of_interned(parameters))
+        .equations(equations(definition))
+}
+
+/// The equations of a definition. Names in capital letters are free: its parameters have none.
+fn equations(Definition { stage, states, expression, .. }: &Definition) -> Equations {
+    let unchanged = if *stage == Stage::Transport { "0" } else { "signal" };
+    let finite = |name: &str, other: &str| format!("if(is_finite({name}), {name}, {other})");
+    // All states change together.
+    let next = states.iter().map(|OwnState { name, next, .. }| format!("NEXT_{name} = {next}\n"));
+    let becomes = states.iter().map(|OwnState { name, .. }| {
+        format!("{name} = {}\n", finite(&format!("NEXT_{name}"), name))
+    });
+    let settle = states.iter().map(|OwnState { name, start, .. }| {
+        format!("START_{name} = {start}\n{name} = {}\n", finite(&format!("START_{name}"), "0"))
+    });
+    let (settle, states_next): (String, String) = (settle.collect(), next.chain(becomes).collect());
+    let out = finite("VALUE", unchanged);
+    let step = text_of_interned(format!("{states_next}VALUE = {expression}\nOUT = {out}"));
+    let memory: Vec<_> = states.iter().map(|state| text_of_interned(state.name.as_str())).collect();
+    Equations::new(part_of_interned([step]))
+        .remembering(part_of_interned(memory), text_of_interned(settle))
 }
 
 /// Moments at which an effect without an effect is seen to have one: signals of either
