@@ -255,12 +255,12 @@ impl JointSpec {
         let numbers = effects::numbers(twin, &numbers.iter().cloned().collect());
         let numbers = numbers
             .map_err(|cause| PlantError::Numbers { name: twin.name, cause: Box::new(cause) })?;
-        self.put(twin, numbers);
+        self.put(twin, &numbers);
         Ok(())
     }
 
     /// Hides an effect with these numbers.
-    pub(super) fn put(&mut self, twin: &'static Twin, numbers: Vec<f64>) {
+    pub(super) fn put(&mut self, twin: &'static Twin, numbers: &[f64]) {
         let is_outside = OUTSIDE.contains(&twin.name);
         let group = if is_outside { &mut self.outside } else { &mut self.effect };
         group.put(twin, numbers);
@@ -271,11 +271,10 @@ impl JointSpec {
     pub(super) fn effects(&self) -> impl Iterator<Item = Instance> {
         let mut all: Vec<_> = self.effect.acting().chain(self.outside.acting()).cloned().collect();
         all.sort_by_key(|one| effects::in_order().position(|twin| twin.name == one.twin.name));
-        let lag = self.lag_s.map(|lag_s| Instance { twin: &LAG, numbers: vec![lag_s] });
-        let ringing = self.ringing.map(|Ringing { period_s, damping }| Instance {
-            twin: &RINGING,
-            numbers: vec![period_s, damping],
-        });
+        let lag = self.lag_s.map(|lag_s| Instance::new(&LAG, &[lag_s]));
+        let ringing = self
+            .ringing
+            .map(|Ringing { period_s, damping }| Instance::new(&RINGING, &[period_s, damping]));
         all.into_iter().chain(lag).chain(ringing)
     }
 

@@ -1,6 +1,6 @@
 //! From a held input level to a steady speed.
 
-use super::effects::{At, Instance, Stage};
+use super::effects::{At, Instance, Stage, States};
 use super::spec::JointSpec;
 
 /// Effects of the valve, then dead band, saturation and gain, in this order.
@@ -65,7 +65,9 @@ impl Valve {
     /// ```
     pub(super) fn opening(&self, level: f64) -> f64 {
         let effects = self.effects.iter();
-        let level = effects.fold(level, |u, effect| effect.act(u, &self.at, &[], &mut []));
+        let level = effects.fold(level, |u, effect| {
+            effect.act(u, &self.at, &States::default(), &mut States::default())
+        });
         let [lower, upper] = self.dead_band;
         let shifted = (level - upper).max(0.0) + (level - lower).min(0.0);
         shifted.clamp(-self.limit, self.limit)

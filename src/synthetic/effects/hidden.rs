@@ -7,14 +7,13 @@ use serde::{Deserialize as _, Deserializer, Serialize, Serializer, de};
 use super::super::clock::Clock;
 use super::super::error::{Place, PlantError};
 use super::table::{OUTSIDE, in_order};
-use super::twin::{At, Stage, Twin};
+use super::twin::{At, Numbers, Stage, States, Twin};
 
 /// An effect with its numbers.
 #[derive(Clone, Debug)]
 pub(in super::super) struct Instance {
     pub(in super::super) twin: &'static Twin,
-    /// In the order of its keys.
-    pub(in super::super) numbers: Vec<f64>,
+    pub(in super::super) numbers: Numbers,
 }
 
 /// Effects that a joint hides: `[joint.effect.<name>]` or `[joint.outside.<name>]` in a plant file.
@@ -24,19 +23,25 @@ pub(in super::super) struct Instance {
 pub struct Hidden(Vec<Instance>);
 
 impl Instance {
+    pub(in super::super) fn new(twin: &'static Twin, given: &[f64]) -> Self {
+        let mut numbers = Numbers::default();
+        numbers.iter_mut().zip(given).for_each(|(number, given)| *number = *given);
+        Self { twin, numbers }
+    }
+
     /// The signal behind it.
     pub(in super::super) fn act(
         &self,
         signal: f64,
         at: &At,
-        states: &[f64],
-        rates: &mut [f64],
+        states: &States,
+        rates: &mut States,
     ) -> f64 {
         (self.twin.act)(&self.numbers, signal, at, states, rates)
     }
 
     /// The signal behind it after `signal` has long been held, and the states then.
-    pub(in super::super) fn settle(&self, signal: f64, at: &At, states: &mut [f64]) -> f64 {
+    pub(in super::super) fn settle(&self, signal: f64, at: &At, states: &mut States) -> f64 {
         (self.twin.settle)(&self.numbers, signal, at, states)
     }
 
@@ -82,13 +87,13 @@ impl Hidden {
     /// The numbers of the effect `name`, in the order of its keys in `docs/simulating.md`.
     pub fn get(&self, name: &str) -> Option<&[f64]> {
         let known = self.0.iter().find(|instance| instance.twin.name == name);
-        known.map(|instance| instance.numbers.as_slice())
+        known.and_then(|one| one.numbers.get(..one.twin.keys.len()))
     }
 
     /// Puts an effect in the place of what there is of it.
-    pub(in super::super) fn put(&mut self, twin: &'static Twin, numbers: Vec<f64>) {
+    pub(in super::super) fn put(&mut self, twin: &'static Twin, numbers: &[f64]) {
         self.0.retain(|instance| instance.twin.name != twin.name);
-        self.0.push(Instance { twin, numbers });
+        self.0.push(Instance::new(twin, numbers));
         let place = |one: &Instance| in_order().position(|twin| twin.name == one.twin.name);
         self.0.sort_by_key(place);
     }
@@ -110,7 +115,9 @@ impl Hidden {
     /// What the sensor shows of `angle`.
     pub(in super::super) fn shown(&self, angle: f64) -> f64 {
         let of_sensor = self.0.iter().filter(|instance| instance.twin.stage == Stage::Sensor);
-        of_sensor.fold(angle, |angle, one| one.act(angle, &At::default(), &[], &mut []))
+        of_sensor.fold(angle, |angle, one| {
+            one.act(angle, &At::default(), &States::default(), &mut States::default())
+        })
     }
 
     /// Refuses numbers that mean nothing; `group` is the key of the table.
@@ -175,7 +182,7 @@ fn read<'de, D: Deserializer<'de>>(
             let names = names.join(", ");
             de::Error::custom(format!("unknown field `{name}`, expected one of {names}"))
         })?;
-        hidden.put(twin, numbers(twin, &given)?);
+        hidden.put(twin, &numbers(twin, &given)?);
     }
     Ok(hidden)
 }

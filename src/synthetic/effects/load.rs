@@ -20,14 +20,12 @@ use super::twin::{Stage, Twin, rises};
 /// ```
 pub(super) static POSITION_GAIN: Twin = Twin {
     optional: &[0.0],
-    act: |numbers, speed, at, _, _| match *numbers {
-        [ratio, mount, leverage, reference] => {
-            let mount = mount.to_radians();
-            let turned = mount + leverage * (at.angle - reference) * at.radians;
-            let dead_point = std::f64::consts::PI - NEAREST_DEAD_POINT;
-            speed * (arm(ratio, mount) / arm(ratio, turned.max(NEAREST_DEAD_POINT).min(dead_point)))
-        }
-        _ => speed,
+    act: |&[ratio, mount, leverage, reference, ..], speed, at, _, _| {
+        let mount = mount.to_radians();
+        let turned = mount + leverage * (at.angle - reference) * at.radians;
+        let dead_point = std::f64::consts::PI - NEAREST_DEAD_POINT;
+        let turned = turned.max(NEAREST_DEAD_POINT).min(dead_point);
+        speed * (arm(ratio, mount) / arm(ratio, turned))
     },
     // Between square to the cylinder and the dead points.
     drawn: |draw| {
@@ -53,13 +51,9 @@ fn arm(ratio: f64, phi: f64) -> f64 {
 /// The gain goes with the temperature θ of the oil, from 0 at the first sample to 1, where it has
 /// changed by the part `change`: `time_constant θ' = 1 - θ`.
 pub(super) static THERMAL_DRIFT: Twin = Twin {
-    states: 1,
-    act: |numbers, speed, _, states, rates| match (numbers, states, rates) {
-        ([change, time_constant], &[warmth], [rate]) => {
-            *rate = (1.0 - warmth) / time_constant;
-            speed * (1.0 + change * warmth)
-        }
-        _ => speed,
+    act: |&[change, time_constant, ..], speed, _, &[warmth, ..], rates| {
+        rates[0] = (1.0 - warmth) / time_constant;
+        speed * (1.0 + change * warmth)
     },
     drawn: |draw| {
         let change = if draw.sign(0) > 0.0 { 2.0 } else { -0.9 };
@@ -76,13 +70,9 @@ pub(super) static THERMAL_DRIFT: Twin = Twin {
 /// A pump that is shared: the part of the gain that is lost while all other joints' valves are as
 /// far open as they ever are. The state is the demand that the pressure has followed.
 pub(super) static SUPPLY_DROOP: Twin = Twin {
-    states: 1,
-    act: |numbers, speed, at, states, rates| match (numbers, states, rates) {
-        ([droop], &[demand], [rate]) => {
-            *rate = (at.others - demand) / PUMP_S.max(2.0 * at.substep_s);
-            speed * (1.0 - droop * demand)
-        }
-        _ => speed,
+    act: |&[droop, ..], speed, at, &[demand, ..], rates| {
+        rates[0] = (at.others - demand) / PUMP_S.max(2.0 * at.substep_s);
+        speed * (1.0 - droop * demand)
     },
     drawn: |draw| vec![0.95 * draw.strength],
     ..Twin::new("supply_droop", Stage::Load, &["droop"], &[BELOW_ONE])
@@ -100,13 +90,10 @@ const PUMP_S: f64 = 0.02;
 /// ```
 pub(super) static GRAVITY_LOAD: Twin = Twin {
     optional: &[0.0, 0.0],
-    act: |numbers, speed, at, _, _| match *numbers {
-        [kappa, y0, creep] => {
-            let lies = ((at.angle - y0) * at.radians).cos();
-            let left = 1.0 - (speed / at.speed_edge).tanh() * kappa * lies;
-            speed * left.sqrt() - creep * lies
-        }
-        _ => speed,
+    act: |&[kappa, y0, creep, ..], speed, at, _, _| {
+        let lies = ((at.angle - y0) * at.radians).cos();
+        let left = 1.0 - (speed / at.speed_edge).tanh() * kappa * lies;
+        speed * left.sqrt() - creep * lies
     },
     drawn: |draw| {
         let creep = 3.0 * draw.strength * draw.between(1, 0.0, 1.0);
@@ -123,10 +110,7 @@ pub(super) static GRAVITY_LOAD: Twin = Twin {
 /// Oil that passes the piston: the joint drifts toward an angle, `rate` per second of the distance.
 pub(super) static LEAKAGE: Twin = Twin {
     optional: &[0.0],
-    act: |numbers, speed, at, _, _| match *numbers {
-        [rate, y0] => speed + rate * (y0 - at.angle),
-        _ => speed,
-    },
+    act: |&[rate, y0, ..], speed, at, _, _| speed + rate * (y0 - at.angle),
     drawn: |draw| vec![0.6 * draw.strength, draw.between(0, -20.0, 20.0)],
     ..Twin::new("leakage", Stage::Load, &["rate", "y0"], &[DRAINS, FINITE])
 };
@@ -135,12 +119,9 @@ pub(super) static LEAKAGE: Twin = Twin {
 /// twentieth of it, and leaves the part `share` of the speed.
 pub(super) static STICKY_SPOT: Twin = Twin {
     related: rises,
-    act: |numbers, speed, at, _, _| match *numbers {
-        [from, to, share] => {
-            let inside = window(at.angle, from, to, SPOT_EDGE * (to - from));
-            speed * (1.0 - (1.0 - share) * inside)
-        }
-        _ => speed,
+    act: |&[from, to, share, ..], speed, at, _, _| {
+        let inside = window(at.angle, from, to, SPOT_EDGE * (to - from));
+        speed * (1.0 - (1.0 - share) * inside)
     },
     drawn: |draw| {
         let (middle, half) = (draw.between(0, -20.0, 20.0), draw.between(1, 6.0, 9.0));
@@ -156,9 +137,8 @@ const SPOT_EDGE: f64 = 0.05;
 /// the speed. It comes and goes within some 0.2 s.
 pub(super) static DISTURBANCE: Twin = Twin {
     related: rises,
-    act: |numbers, speed, at, _, _| match *numbers {
-        [from_s, to_s, push] => speed + push * window(at.time_s, from_s, to_s, DISTURBANCE_EDGE_S),
-        _ => speed,
+    act: |&[from_s, to_s, push, ..], speed, at, _, _| {
+        speed + push * window(at.time_s, from_s, to_s, DISTURBANCE_EDGE_S)
     },
     drawn: |draw| {
         let from_s = draw.between(0, 20.0, 80.0);
@@ -176,10 +156,7 @@ const DISTURBANCE_EDGE_S: f64 = 0.05;
 pub(super) static END_STOP: Twin = Twin {
     optional: &[f64::NEG_INFINITY, f64::INFINITY],
     related: rises,
-    act: |numbers, speed, at, _, _| match *numbers {
-        [low, high] => speed - beyond(at.angle, low, high) / at.substep_s,
-        _ => speed,
-    },
+    act: |&[low, high, ..], speed, at, _, _| speed - beyond(at.angle, low, high) / at.substep_s,
     drawn: |draw| {
         let way = 65.0 * draw.strength;
         vec![-70.0 + way, 70.0 - way * draw.between(0, 0.7, 1.0)]

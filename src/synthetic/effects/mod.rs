@@ -20,4 +20,4 @@ pub use hidden::Hidden;
 pub(super) use hidden::{Instance, catalogue, numbers, outside};
 pub use table::{CATALOGUE, FINER, OUTSIDE};
 pub(super) use table::{find, in_order};
-pub(super) use twin::{At, Draw, LARGEST_LEVEL, Stage, Twin};
+pub(super) use twin::{At, Draw, LARGEST_LEVEL, Stage, States, Twin};

@@ -9,14 +9,10 @@ use super::twin::{Stage, Twin, followed};
 /// Play between the joint and its sensor, of the whole `width`: what is measured is dragged along
 /// by a stiff spring once the play is used up.
 pub(super) static BACKLASH: Twin = Twin {
-    states: 1,
     settle: followed,
-    act: |numbers, angle, at, states, rates| match (numbers, states, rates) {
-        ([width], &[measured], [rate]) => {
-            *rate = beyond(angle - measured, -0.5 * width, 0.5 * width) / at.substep_s;
-            measured
-        }
-        _ => angle,
+    act: |&[width, ..], angle, at, &[measured, ..], rates| {
+        rates[0] = beyond(angle - measured, -0.5 * width, 0.5 * width) / at.substep_s;
+        measured
     },
     drawn: |draw| vec![15.0 * draw.strength],
     ..Twin::new("backlash", Stage::Sensor, &["width"], &[NOT_NEGATIVE])
@@ -29,9 +25,8 @@ pub(super) static BACKLASH: Twin = Twin {
 /// ```
 pub(super) static SENSOR_NONLINEARITY: Twin = Twin {
     optional: &[0.0],
-    act: |numbers, angle, _, _, _| match *numbers {
-        [amplitude, period, zero] => angle + amplitude * (TAU * (angle - zero) / period).sin(),
-        _ => angle,
+    act: |&[amplitude, period, zero, ..], angle, _, _, _| {
+        angle + amplitude * (TAU * (angle - zero) / period).sin()
     },
     drawn: |draw| {
         let (period, zero) = (draw.between(1, 30.0, 60.0), draw.between(0, -45.0, 45.0));

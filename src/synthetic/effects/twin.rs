@@ -43,15 +43,21 @@ pub(in super::super) struct At {
     pub(in super::super) others: f64,
 }
 
+/// The numbers of an effect in the order of its keys, then zeros.
+pub(in super::super) type Numbers = [f64; 7];
+
+/// What moves or remembers in an effect; those that it does not need stay zero.
+pub(in super::super) type States = [f64; 4];
+
 /// The signal behind an effect with these numbers, for the signal before it and the states of the
 /// effect; the last is where the derivatives of the states go.
-type Act = fn(&[f64], f64, &At, &[f64], &mut [f64]) -> f64;
+type Act = fn(&Numbers, f64, &At, &States, &mut States) -> f64;
 
 /// Puts the states where a signal that is long held has brought them; the signal behind.
-type Settle = fn(&[f64], f64, &At, &mut [f64]) -> f64;
+type Settle = fn(&Numbers, f64, &At, &mut States) -> f64;
 
 /// What a number may be beside another one: the index of the one that is not, and what is allowed.
-type Related = fn(&[f64], &Clock) -> Option<(usize, &'static str)>;
+type Related = fn(&Numbers, &Clock) -> Option<(usize, &'static str)>;
 
 /// An effect that a plant can hide.
 #[derive(Debug)]
@@ -67,8 +73,6 @@ pub(in super::super) struct Twin {
     pub(super) related: Related,
     /// An effect that does not act beside it.
     pub(super) instead_of: Option<&'static str>,
-    /// Numbers of its state.
-    pub(in super::super) states: usize,
     pub(super) settle: Settle,
     pub(super) act: Act,
     /// Its numbers in a scenario.
@@ -91,7 +95,6 @@ impl Twin {
             optional: &[],
             related: |_, _| None,
             instead_of: None,
-            states: 0,
             settle: |_, signal, _, _| signal,
             act: |_, signal, _, _, _| signal,
             drawn: |_| Vec::new(),
@@ -99,16 +102,15 @@ impl Twin {
     }
 }
 
-/// The states of a lag, which in the end are the signal.
-pub(super) fn followed(_: &[f64], signal: f64, _: &At, states: &mut [f64]) -> f64 {
+/// The states of lags, which in the end are the signal.
+pub(super) fn followed(_: &Numbers, signal: f64, _: &At, states: &mut States) -> f64 {
     states.fill(signal);
     signal
 }
 
 /// The second number must be above the first.
-pub(super) fn rises(numbers: &[f64], _: &Clock) -> Option<(usize, &'static str)> {
-    let rises = matches!(numbers, [from, to, ..] if to > from);
-    (!rises).then_some((1, "finite, above the lower end"))
+pub(super) fn rises(&[from, to, ..]: &Numbers, _: &Clock) -> Option<(usize, &'static str)> {
+    (to.is_nan() || to <= from).then_some((1, "finite, above the lower end"))
 }
 
 /// Largest level of the input that numbers are drawn for, in input units.

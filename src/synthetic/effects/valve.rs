@@ -9,20 +9,14 @@ use super::twin::{LARGEST_LEVEL, Stage, Twin, rises};
 
 /// The valve is open a little at zero input: `u + offset`.
 pub(super) static INPUT_OFFSET: Twin = Twin {
-    act: |numbers, u, _, _, _| match *numbers {
-        [offset] => u + offset,
-        _ => u,
-    },
+    act: |&[offset, ..], u, _, _, _| u + offset,
     drawn: |draw| vec![draw.sign(0) * draw.strength],
     ..Twin::new("input_offset", Stage::Valve, &["offset"], &[FINITE])
 };
 
 /// No flow between two levels, `lower` ≤ 0 ≤ `upper`: `ramp(u - upper) - ramp(lower - u)`.
 pub(super) static DEAD_BAND: Twin = Twin {
-    act: |numbers, u, at, _, _| match *numbers {
-        [lower, upper] => ramp(u - upper, at.edge) - ramp(lower - u, at.edge),
-        _ => u,
-    },
+    act: |&[lower, upper, ..], u, at, _, _| ramp(u - upper, at.edge) - ramp(lower - u, at.edge),
     drawn: |draw| {
         let end = |index| 1.5 * draw.strength * draw.between(index, 0.6, 1.0);
         vec![-end(0), end(1)]
@@ -33,12 +27,9 @@ pub(super) static DEAD_BAND: Twin = Twin {
 /// A flow that grows with a power of the opening; 1 is a straight line:
 /// `u ((u² + e²) / (1 + e²))^((exponent - 1) / 2)`, e: the edge.
 pub(super) static FLOW_CURVE: Twin = Twin {
-    act: |numbers, u, at, _, _| match *numbers {
-        [exponent] => {
-            let square = at.edge * at.edge;
-            u * ((u * u + square) / (1.0 + square)).powf(0.5 * (exponent - 1.0))
-        }
-        _ => u,
+    act: |&[exponent, ..], u, at, _, _| {
+        let square = at.edge * at.edge;
+        u * ((u * u + square) / (1.0 + square)).powf(0.5 * (exponent - 1.0))
     },
     drawn: |draw| vec![(draw.sign(0) * draw.strength).exp()],
     ..Twin::new("flow_curve", Stage::Valve, &["exponent"], &[POSITIVE])
@@ -47,10 +38,7 @@ pub(super) static FLOW_CURVE: Twin = Twin {
 /// Speed for a negative input over that for a positive one:
 /// `u (1 + (negative_factor - 1) rise(-u))`.
 pub(super) static DIRECTION_GAIN: Twin = Twin {
-    act: |numbers, u, at, _, _| match *numbers {
-        [factor] => u * (1.0 + (factor - 1.0) * rise(-u, at.edge)),
-        _ => u,
-    },
+    act: |&[factor, ..], u, at, _, _| u * (1.0 + (factor - 1.0) * rise(-u, at.edge)),
     drawn: |draw| vec![(draw.sign(0) * draw.strength).exp()],
     ..Twin::new("direction_gain", Stage::Valve, &["negative_factor"], &[POSITIVE])
 };
@@ -58,9 +46,8 @@ pub(super) static DIRECTION_GAIN: Twin = Twin {
 /// Not in the catalogue: a worn land passes the part `share` in a range of the input.
 pub(super) static INPUT_NOTCH: Twin = Twin {
     related: rises,
-    act: |numbers, u, at, _, _| match *numbers {
-        [from, to, share] => u * (1.0 - (1.0 - share) * window(u, from, to, at.edge)),
-        _ => u,
+    act: |&[from, to, share, ..], u, at, _, _| {
+        u * (1.0 - (1.0 - share) * window(u, from, to, at.edge))
     },
     // Around one of the levels between the largest and the smallest, of either sign.
     drawn: |draw| {
@@ -75,10 +62,7 @@ pub(super) static INPUT_NOTCH: Twin = Twin {
 /// At the limit `2^(-1/p)` of it is passed, with the sharpness p.
 pub(super) static INPUT_SATURATION: Twin = Twin {
     optional: &[HARD],
-    act: |numbers, u, _, _, _| match *numbers {
-        [limit, sharpness] => limited(u, limit, sharpness),
-        _ => u,
-    },
+    act: |&[limit, sharpness, ..], u, _, _, _| limited(u, limit, sharpness),
     // Where the corners of the valve are rounded, this one is as a rule, too.
     drawn: |draw| {
         let sharp = HARD * (0.004 / draw.valve_edge).sqrt();
@@ -92,11 +76,8 @@ pub(super) static INPUT_SATURATION: Twin = Twin {
 pub(super) static ASYMMETRIC_SATURATION: Twin = Twin {
     instead_of: Some("input_saturation"),
     optional: &[HARD],
-    act: |numbers, u, _, _, _| match *numbers {
-        [limit, ratio, sharpness] => {
-            limited(u, if u < 0.0 { ratio * limit } else { limit }, sharpness)
-        }
-        _ => u,
+    act: |&[limit, ratio, sharpness, ..], u, _, _, _| {
+        limited(u, if u < 0.0 { ratio * limit } else { limit }, sharpness)
     },
     // The limits differ by a quarter or more.
     drawn: |draw| {

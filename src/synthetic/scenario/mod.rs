@@ -169,7 +169,7 @@ impl HiddenEffect {
     fn put_on(&self, joint: &mut JointSpec) {
         let (strength, chances) = (self.amount, self.chances);
         let draw = Draw { strength, chances, valve_edge: joint.valve_edge, start: joint.start };
-        joint.put(self.twin, (self.twin.drawn)(&draw));
+        joint.put(self.twin, &(self.twin.drawn)(&draw));
     }
 }
 
