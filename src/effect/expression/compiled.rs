@@ -85,7 +85,7 @@ impl Expression {
         for (known, name) in named {
             let is_it = |node: &Node| matches!(node, Node::Named(used) if *used == known);
             if !nodes(&node, &parsed).any(|node| node.has(&is_it)) {
-                return Err(DefinitionError::Unused { name: (*name).to_owned() });
+                return Err(unusable(name, "is in no expression: use it, or take it out"));
             }
         }
         let spec = part_of_interned(specified(&definition));
@@ -246,22 +246,28 @@ fn finite_or(value: f64, other: f64) -> f64 {
     if value.is_finite() { value } else { other }
 }
 
+fn unusable(name: &str, problem: &'static str) -> DefinitionError {
+    DefinitionError::Name { name: name.to_owned(), problem }
+}
+
 fn check_names(definition: &Definition, signals: &[&str]) -> Result<(), DefinitionError> {
     let Definition { id, parameters, states, .. } = definition;
     let own = parameters.iter().map(|each| &each.name);
     let own: Vec<&String> = own.chain(states.iter().map(|each| &each.name)).collect();
     let mut names = std::iter::once(id).chain(own.iter().copied());
     if let Some(name) = names.find(|name| !contract::is_snake_case(name)) {
-        return Err(DefinitionError::Name { name: name.clone() });
+        let problem = "is not in snake case: small letters, digits and `_`, a letter first";
+        return Err(unusable(name, problem));
     }
     if by_id(id).is_some() || id == KIND {
-        return Err(DefinitionError::TakenId { id: id.clone() });
+        return Err(unusable(id, "is taken; give the effect an id of its own"));
     }
     for (index, name) in own.iter().enumerate() {
         let mut before = own.iter().take(index);
         let is_taken = signals.contains(&name.as_str()) || grammar::is_taken(name);
         if is_taken || before.any(|other| other == name) {
-            return Err(DefinitionError::TakenName { name: (*name).clone() });
+            let problem = "is a name that is taken: rename the parameter or the state";
+            return Err(unusable(name, problem));
         }
     }
     if definition.stage == Stage::Transport && !states.is_empty() {
@@ -497,7 +503,7 @@ mod tests {
     fn a_parameter_without_a_use_is_refused() {
         let k = OwnParameter::new("k", 1.0);
         let error = define(definition(Stage::Load, "if(signal > 0, signal, -signal)", &[k]));
-        assert!(matches!(error, Err(DefinitionError::Unused { name }) if name == "k"));
+        assert!(matches!(error, Err(DefinitionError::Name { name, .. }) if name == "k"));
     }
 
     /// A first-order lag, sampled at the ends of intervals.
