@@ -40,6 +40,7 @@ static SPEC: Spec = Spec::new(
 .parameters(&[Parameter::new("time_constant", "time to 63 % of a change", Dimension::Seconds)
     .between(0.0, UNLIMITED)])
 .memory(ActuatorLag::MEMORY)
+.starting_at_signal()
 .confused_with(&["resonance", "variable_delay", "rate_limit"])
 .equations(LAGGING);
 
@@ -72,12 +73,6 @@ impl Effect for ActuatorLag {
         let deviation = *state - at.signal;
         *state = at.signal + deviation * decay.left;
         at.signal + deviation * decay.mean
-    }
-
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let Some(state) = memory.first_mut() {
-            *state = at.signal;
-        }
     }
 
     fn guesses(&self, _record: &RecordRange<'_>) -> Vec<Vec<f64>> {

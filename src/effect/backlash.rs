@@ -33,6 +33,7 @@ static SPEC: Spec = Spec::new("backlash", Stage::Output, "play between actuator 
         .between(0.0, UNLIMITED)
         .typical(0.02)])
     .memory(1)
+    .starting_at_signal()
     .confused_with(&["dead_band", "variable_delay"])
     .equations(
         Equations::new(&[
@@ -52,11 +53,6 @@ impl Effect for Backlash {
         let (&[width], [measured]) = (parameters, memory) else { return at.signal };
         *measured = measured.max(at.signal - 0.5 * width).min(at.signal + 0.5 * width);
         *measured
-    }
-
-    /// The joint is in the middle of its play.
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        memory.fill(at.signal);
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {

@@ -35,6 +35,7 @@ static SPEC: Spec = Spec::new(
         .neutral(1.0),
 ])
 .memory(1 + DECAY_MEMORY)
+.starting_at_signal()
 .confused_with(&["actuator_lag", "leakage", "thermal_drift", "accumulator_droop"])
 .equations(
     Equations::new(&[
@@ -65,12 +66,6 @@ impl Effect for Creep {
         let deviation = *state - at.signal;
         *state = at.signal + deviation * decay.left;
         at.signal + share * deviation * decay.mean
-    }
-
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let Some(state) = memory.first_mut() {
-            *state = at.signal;
-        }
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {

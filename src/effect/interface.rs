@@ -37,7 +37,14 @@ pub trait Effect: Debug + Send + Sync {
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64;
 
     /// Puts the memory into the state it has when `at.signal` has long been held.
-    fn settle(&self, _parameters: &[f64], _memory: &mut [f64], _at: &Moment) {}
+    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
+        if let [first, others @ ..] = memory
+            && self.spec().starts_at_signal
+        {
+            *first = at.signal;
+            others.fill(0.0);
+        }
+    }
 
     /// Seconds by which a change of the input arrives later than the joint's delay.
     ///

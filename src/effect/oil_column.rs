@@ -64,6 +64,7 @@ static SPEC: Spec = Spec::new(
         .not_fitted(),
 ])
 .memory(2)
+.starting_at_signal()
 .confused_with(&["resonance"])
 .absorbing(&["resonance"])
 .refining("resonance")
@@ -108,12 +109,6 @@ impl Effect for OilColumn {
         }
         let damping = (damping + valve_damping * at.signal.abs()).min(MOST_DAMPING);
         Swing::over(TAU / period, damping, at.dt_s).advance(at.signal, state, rate)
-    }
-
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let [state, rate] = memory {
-            [*state, *rate] = [at.signal, 0.0];
-        }
     }
 
     fn depends_on_angle(&self) -> bool {

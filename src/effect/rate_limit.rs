@@ -34,6 +34,7 @@ static SPEC: Spec = Spec::new("rate_limit", Stage::Dynamics, "slew rate of the s
     )
     .between(0.0, UNLIMITED)])
     .memory(1)
+    .starting_at_signal()
     .confused_with(&["actuator_lag", "variable_delay"])
     .equations(SLEWING);
 
@@ -69,10 +70,6 @@ impl Effect for RateLimit {
         let moved = (at.dt_s / seconds_per_input).copysign(way);
         *opening += moved;
         *opening - 0.5 * moved
-    }
-
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        memory.fill(at.signal);
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {

@@ -31,6 +31,7 @@ static SPEC: Spec =
                 .neutral(1.0),
         ])
         .memory(2 + SWING_MEMORY)
+        .starting_at_signal()
         .confused_with(&["actuator_lag"])
         .equations(
             Equations::new(&[
@@ -71,12 +72,6 @@ impl Effect for Resonance {
         }
         let omega = TAU / period;
         Swing::recall(known, omega, damping, at.dt_s).advance(at.signal, state, rate)
-    }
-
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let [state, rate, ..] = memory {
-            [*state, *rate] = [at.signal, 0.0];
-        }
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {

@@ -32,6 +32,9 @@ pub struct Spec {
     pub parameters: &'static [Parameter],
     /// How many numbers it remembers.
     pub memory: usize,
+    /// Whether the first number that it remembers is the signal where that was long held, and the
+    /// others zero; if not, [`settle`](super::Effect::settle) says what they are.
+    pub starts_at_signal: bool,
     /// Ids of effects that look alike in a record.
     pub confused_with: &'static [&'static str],
     /// Ids of effects that it contains: to add it to a model is to put it in their
@@ -85,6 +88,7 @@ impl Spec {
             drawing: None,
             parameters: &[],
             memory: 0,
+            starts_at_signal: false,
             confused_with: &[],
             absorbs: &[],
             looks_like_both: &[],
@@ -126,6 +130,12 @@ impl Spec {
     #[must_use]
     pub const fn memory(self, memory: usize) -> Self {
         Self { memory, ..self }
+    }
+
+    /// Its memory [starts at the signal](Self::starts_at_signal).
+    #[must_use]
+    pub const fn starting_at_signal(self) -> Self {
+        Self { starts_at_signal: true, ..self }
     }
 
     /// [Confused](Self::confused_with) with these.

@@ -40,6 +40,7 @@ static SPEC: Spec = Spec::new(
 )
 .between(0.0, UNLIMITED)])
 .memory(ActuatorLag::MEMORY)
+.starting_at_signal()
 .confused_with(&["actuator_lag", "rate_limit", "variable_delay"])
 .absorbing(&["actuator_lag"])
 .refining("actuator_lag")
@@ -52,10 +53,6 @@ impl Effect for SpoolLag {
 
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
         ActuatorLag.step(parameters, memory, at)
-    }
-
-    fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        ActuatorLag.settle(parameters, memory, at);
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {

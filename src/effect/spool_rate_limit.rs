@@ -36,6 +36,7 @@ static SPEC: Spec = Spec::new(
 )
 .between(0.0, UNLIMITED)])
 .memory(1)
+.starting_at_signal()
 .confused_with(&["rate_limit", "spool_lag", "variable_delay"])
 .absorbing(&["rate_limit"])
 .refining("rate_limit")
@@ -48,10 +49,6 @@ impl Effect for SpoolRateLimit {
 
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
         RateLimit.step(parameters, memory, at)
-    }
-
-    fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        RateLimit.settle(parameters, memory, at);
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {

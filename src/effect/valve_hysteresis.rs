@@ -34,6 +34,7 @@ static SPEC: Spec = Spec::new(
     .between(0.0, UNLIMITED)
     .typical(0.1)])
 .memory(1)
+.starting_at_signal()
 .confused_with(&["stiction", "dead_band", "backlash", "variable_delay"])
 .steady()
 .equations(
@@ -52,11 +53,6 @@ impl Effect for ValveHysteresis {
         let (&[width], [opening]) = (parameters, memory) else { return at.signal };
         *opening = opening.max(at.signal - 0.5 * width).min(at.signal + 0.5 * width);
         *opening
-    }
-
-    /// The spool is in the middle of its play: nobody knows from where it came.
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        memory.fill(at.signal);
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
