@@ -325,13 +325,13 @@ mod tests {
 
     use proptest::prelude::*;
 
-    use super::super::{Dimension, Placebo, REGISTRY, Stage};
+    use super::super::{Dimension, REGISTRY, Stage};
     use super::*;
 
     #[test]
     fn every_effect_keeps_the_contract() {
-        for effect in REGISTRY.iter().copied().chain([&Placebo as &dyn Effect]) {
-            check(effect).unwrap();
+        for effect in REGISTRY {
+            check(*effect).unwrap();
         }
     }
 

@@ -6,7 +6,7 @@ use crate::sample::size;
 use proptest::prelude::*;
 use tauscope::effect::expression::define;
 use tauscope::effect::{Definition, OwnParameter};
-use tauscope::effect::{Effect, Placebo, REGISTRY, Stage, find};
+use tauscope::effect::{Effect, REGISTRY, Stage, find};
 use tauscope::model::{
     Component, JointModel, ModelError, ModelFile, Revision, RevisionErrors, Value,
 };
@@ -246,7 +246,7 @@ fn what_could_not_be_read_again_is_not_written() {
             matches!(error.unwrap_err(), ModelError::OutOfBounds { name, .. } if name == "gain")
         );
     }
-    let unknown = arm.with(Component::neutral(&Placebo));
+    let unknown = arm.with(Component::neutral(&crate::custom_effect::Hose));
     let error = file.revised("arm", &unknown, &Revision::default()).unwrap_err();
     assert!(matches!(error, ModelError::UnknownEffect { .. }), "{error}");
 }
