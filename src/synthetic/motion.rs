@@ -86,7 +86,7 @@ impl<'a> Motion<'a> {
     /// How far the valve is open, as a part of what the largest level opens it; a level of `drive`
     /// that begins to act now counts.
     pub(super) fn demand(&mut self, drive: &Drive) -> f64 {
-        self.arrive(self.now_s, drive);
+        self.arrive(self.now_s.next_up(), drive);
         self.valve.share(self.opening)
     }
 
@@ -99,10 +99,10 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Lets the levels of `drive` act that begin to until `end_s`.
+    /// Lets the levels of `drive` act that begin to before `end_s`.
     fn arrive(&mut self, end_s: f64, drive: &Drive) {
         while let Some((index, arrival)) = drive.arrivals().later().get(self.arrived) {
-            if arrival.time_s > end_s {
+            if arrival.time_s >= end_s {
                 break;
             }
             self.integrate_to(arrival.time_s);
