@@ -5,8 +5,6 @@
 //! constant: a time step is split where a level begins to act. No fitted model uses this code, so
 //! that data and model cannot share a mistake.
 
-use std::f64::consts::TAU;
-
 use super::clock::Clock;
 use super::drive::{Attempt, Drive, Predictor, beyond};
 use super::effects::{At, Instance, Stage, States};
@@ -58,11 +56,10 @@ impl<'a> Motion<'a> {
         let valve = Valve::of(joint);
         let moving = |one: &Instance| !matches!(one.twin.stage, Stage::Delay | Stage::Valve);
         let effects: Vec<_> = joint.effects().filter(moving).collect();
-        let radians = radians(&joint.output_unit);
         let mut motion = Self {
             joint,
             clock,
-            at: At { radians, substep_s: clock.substep_s(), ..valve.edges() },
+            at: At { radians: joint.radians(), substep_s: clock.substep_s(), ..valve.edges() },
             has_spool: effects.iter().any(|effect| effect.twin.stage == Stage::Spool),
             valve,
             effects,
@@ -244,18 +241,10 @@ impl Predictor for Motion<'_> {
     }
 }
 
-/// Radians in an angle of one `unit`; degrees where the unit is no angle.
-fn radians(unit: &str) -> f64 {
-    match unit {
-        "rad" => 1.0,
-        "mrad" => 1e-3,
-        "turn" | "rev" => TAU,
-        _ => 1_f64.to_radians(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::super::spec::Ringing;
     use super::super::{DelayLaw, InputSpec};
     use super::*;

@@ -1,5 +1,7 @@
 //! The plant file: which joints, how they move, what drives them.
 
+use std::f64::consts::TAU;
+
 use serde::{Deserialize, Serialize};
 
 use super::cylinder::CylinderSpec;
@@ -276,6 +278,16 @@ impl JointSpec {
             .ringing
             .map(|Ringing { period_s, damping }| Instance::new(&RINGING, &[period_s, damping]));
         all.into_iter().chain(lag).chain(ringing)
+    }
+
+    /// Radians in an angle of one output unit; degrees where the unit is no angle.
+    pub(super) fn radians(&self) -> f64 {
+        match self.output_unit.as_str() {
+            "rad" => 1.0,
+            "mrad" => 1e-3,
+            "turn" | "rev" => TAU,
+            _ => 1_f64.to_radians(),
+        }
     }
 
     /// Whether its motion is that of dead band, saturation, lag and ringing alone.
