@@ -27,11 +27,9 @@ fn record(fails: fn(f64, f64) -> bool) -> Result<ResidualRecord, RecordError> {
         let size = if fails(level, output) { 5.0 } else { 1.0 };
         samples.residual.push(size * (f64::from(random.next_u32()) / f64::from(u32::MAX) - 0.5));
     }
-    samples.time_s.push_even(0.0, 0.01, SAMPLES);
-    for _ in 0..SAMPLES / HOLD {
-        samples.since_step_s.push_even(0.0, 0.01, HOLD);
-        samples.hold_s.push_even(0.01 * HOLD as f64, 0.0, HOLD);
-    }
+    samples.time_s = (0..SAMPLES).map(|k| 0.01 * k as f64).collect();
+    samples.since_step_s = (0..SAMPLES).map(|k| 0.01 * (k % HOLD) as f64).collect();
+    samples.hold_s = vec![0.01 * HOLD as f64; SAMPLES];
     let segments = (0..SAMPLES).step_by(HOLD).map(|start| start..start + HOLD).collect();
     ResidualRecord::new(samples, vec!["1".to_owned()], segments)
 }

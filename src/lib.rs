@@ -28,7 +28,7 @@
 //!
 //! | what | one file | one line, beside its `mod` |
 //! |---|---|---|
-//! | an effect | `src/effect/` | `src/effect/registry.rs`; its independent twin for tests: where it acts in `src/synthetic/effects/` (its struct, `mod.rs`, `groups.rs`, `names.rs`) and `src/synthetic/motion.rs` or `effects/opening.rs`, how large it is drawn in `src/synthetic/scenario/recipe.rs`; a row in `docs/simulating.md`; `tests/models/hidden_effects.rs`, `tests/models/export_models.rs` and `tests/commands/documents.rs` name what is missing |
+//! | an effect | `src/effect/` | `src/effect/registry.rs`; its independent twin for tests: a row in the file of its stage in `src/synthetic/effects/`, and its name in `table.rs`; a row in `docs/simulating.md`; `tests/models/hidden_effects.rs`, `tests/models/export_models.rs` and `tests/commands/documents.rs` name what is missing |
 //! | a method that finds delays | `src/delay/method/` | `src/delay/method/registry.rs`; a row in `docs/methods.md` |
 //! | a format of logs | `src/experiment/format/` | `src/experiment/format/registry.rs`; where it needs a library, a feature in `Cargo.toml`; a section in `docs/formats.md`; a target in `fuzz/targets/` (its name in `fuzz/Cargo.toml`, `fuzz/run`, `tests/reading/replay.rs`) |
 //! | a field of a command's JSON | `src/report/json/`, a file per command; what models have in all of them in `joint.rs` | |

@@ -1,6 +1,5 @@
 //! Where two outputs are apart, as a fit sees it.
 
-use super::linear_screen::{centred, windows};
 use super::schedule::{Hold, Schedule};
 
 /// How far two outputs are apart along an input.
@@ -33,8 +32,7 @@ pub struct HoldApart {
 /// numbers; a fit of it takes part of that away (see [`Expected`](super::Expected)).
 pub fn apart(schedule: &Schedule, one: &[f64], other: &[f64], noise: f64) -> Apart {
     let difference: Vec<f64> = one.iter().zip(other).map(|(one, other)| one - other).collect();
-    let all = windows(schedule, schedule.holds().len());
-    let centred = centred(&difference, &all);
+    let centred = centred(&difference, &schedule.windows(schedule.holds().len()));
     let over_noise: Vec<f64> = centred.iter().map(|by| by / noise).collect();
     let square = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>();
     let whole = square(&over_noise).max(f64::MIN_POSITIVE);
@@ -48,6 +46,16 @@ pub fn apart(schedule: &Schedule, one: &[f64], other: &[f64], noise: f64) -> Apa
     };
     let holds = schedule.holds().iter().map(of).collect();
     Apart { over_noise, holds }
+}
+
+/// `values` in windows, each without its mean: a fit starts anew there.
+pub(super) fn centred(values: &[f64], windows: &[(usize, usize)]) -> Vec<f64> {
+    let window = |(start, end): &(usize, usize)| {
+        let part = &values[*start..*end];
+        let mean = part.iter().sum::<f64>() / part.len().max(1) as f64;
+        part.iter().map(|value| value - mean).collect::<Vec<_>>()
+    };
+    windows.iter().flat_map(window).collect()
 }
 
 #[cfg(test)]

@@ -143,11 +143,7 @@ pub(super) fn kept(schedule: &Schedule, suspects: &Suspects, rig: &TestRig) -> u
         predicted.kept_until(range)
     });
     let Some(until) = until.min() else { return schedule.holds().len() };
-    let ends = schedule.holds().iter().scan(0, |end, hold| {
-        *end += hold.samples;
-        Some(*end)
-    });
     // What was commanded acts on after its hold, until the next arrives.
     let delay = samples_in(suspects.base.delay.value, rig.period);
-    ends.take_while(|end| end + delay <= until).count()
+    until.checked_sub(delay).map_or(0, |until| schedule.over_after(until))
 }

@@ -1,6 +1,6 @@
 //! How far the predictions of a model are off on parts of a record that it was not fitted to.
 
-use super::left_out::{EndStops, LeftOut, Length, Run};
+use super::left_out::{LeftOut, Run};
 use super::trend::{Travel, Trend};
 use crate::experiment::Joint;
 use crate::model::JointModel;
@@ -56,10 +56,7 @@ impl FreeRunError {
         let left_out = LeftOut::of(joint, model)?;
         let LeftOut { has_stops, is_bounded, .. } = left_out;
         let trend = Trend::of(&left_out.motions()).filter(|_| !is_bounded && has_stops);
-        let is_joined = !is_bounded && (trend.is_some() || !has_stops);
-        let length = if is_joined { Length::Joined } else { Length::Each };
-        let stops = if trend.is_some() { EndStops::LeftOut } else { EndStops::Kept };
-        let runs = left_out.runs(stops, length);
+        let runs = left_out.runs(trend.as_ref());
         let seconds = |run: &Run, sample: usize| sample as f64 * run.period_s;
         let way = |run: &Run, sample: usize| run.way.get(sample).copied().unwrap_or(0.0);
         let (by_time, by_way) = (Growth::of(&runs, seconds), Growth::of(&runs, way));

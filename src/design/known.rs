@@ -9,7 +9,7 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
 
-use super::predict::Uncertain;
+use super::predict::{Uncertain, values, with_value};
 use crate::effect::is_unlimited;
 use crate::experiment::Trial;
 use crate::fit::{Assessment, FitRecord, Status};
@@ -35,7 +35,7 @@ impl Uncertain {
             let span = is_free.then(|| span(record, &known.model, place, noise)).flatten();
             let deviation = match (span, parameter.std_error) {
                 (Some((low, high)), _) => {
-                    known.model = with(&known.model, place, 0.5 * (low + high));
+                    known.model = with_value(&known.model, place, 0.5 * (low + high));
                     0.5 * (high - low) / DEVIATIONS
                 }
                 (None, Some(error)) => error,
@@ -171,10 +171,6 @@ fn stretched(
     moved.iter().zip(limits).all(is_allowed).then_some((here.cost, moved))
 }
 
-fn values(model: &JointModel) -> Vec<f64> {
-    model.values().iter().map(|value| value.value).collect()
-}
-
 /// The squared residual of `model`, in variances of the noise.
 fn cost(record: &FitRecord<'_>, model: &JointModel, noise: f64) -> f64 {
     let residuals = record.evaluate_residuals(model).residuals;
@@ -207,7 +203,7 @@ fn span(
     if is_unlimited(value) || value.abs() <= f64::MIN_POSITIVE {
         return None;
     }
-    let cost = |value: f64| cost(record, &with(model, place, value), noise);
+    let cost = |value: f64| cost(record, &with_value(model, place, value), noise);
     let least = cost(value);
     let end = |sign: f64| {
         let steps = (0..STEPS).map(|k| FIRST * GROWTH.powi(k) * value.abs());
@@ -223,15 +219,6 @@ fn span(
     };
     let span = (end(-1.0), end(1.0));
     (span.1 > span.0).then_some(span)
-}
-
-/// `model` with another value of the parameter at `place`.
-fn with(model: &JointModel, place: usize, value: f64) -> JointModel {
-    let mut values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
-    if let Some(slot) = values.get_mut(place) {
-        *slot = value;
-    }
-    model.with_values(&values)
 }
 
 #[cfg(test)]

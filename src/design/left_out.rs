@@ -9,7 +9,7 @@ use rand::seq::SliceRandom as _;
 use rand_chacha::ChaCha8Rng;
 
 use super::stops::{SHORTEST_RUN, Stops, extent};
-use super::trend::Travel;
+use super::trend::{Travel, Trend};
 use crate::effect::{Effect as _, EndStop};
 use crate::experiment::{Joint, Trial};
 use crate::fit::{FitRecord, Horizon, Split, fit, follows_input};
@@ -102,40 +102,24 @@ impl<'a> LeftOut<'a> {
         motions.collect()
     }
 
-    /// Free runs over the parts.
-    pub(super) fn runs(&self, stops: EndStops, length: Length) -> Vec<Run> {
+    /// Free runs over the parts: each piece by itself, or, where `trend` is what is off each time in
+    /// the same way, or there are no stops, pieces joined with those behind them, in several orders.
+    ///
+    /// With a trend the model's stops are left out, as they would remove errors.
+    pub(super) fn runs(&self, trend: Option<&Trend>) -> Vec<Run> {
+        let is_joined = !self.is_bounded && (trend.is_some() || !self.has_stops);
         let runs = self.parts.iter().flat_map(|(model, pieces)| {
-            let model = match stops {
-                EndStops::LeftOut => freed(model),
-                EndStops::Kept => model.clone(),
-            };
-            let joined = match length {
-                Length::Joined => in_orders(pieces),
-                Length::Each => each(pieces),
+            let model = if trend.is_some() { freed(model) } else { model.clone() };
+            let joined = if is_joined {
+                in_orders(pieces)
+            } else {
+                pieces.iter().map(|piece| vec![*piece]).collect()
             };
             let runs = joined.into_iter().flat_map(|pieces| runs(&model, &pieces, &self.around));
             runs.collect::<Vec<_>>()
         });
         runs.collect()
     }
-}
-
-/// What becomes of the model's stops in a free run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum EndStops {
-    /// They are left out, as they would remove errors.
-    LeftOut,
-    /// They stay.
-    Kept,
-}
-
-/// How long free runs are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Length {
-    /// Each piece by itself.
-    Each,
-    /// Pieces joined with those behind them, in several orders.
-    Joined,
 }
 
 /// `model` without a stop, which would remove errors as the joint's own does; of a joint that is
@@ -223,11 +207,6 @@ fn runs(model: &JointModel, pieces: &[Piece<'_>], around: &Surroundings<'_>) -> 
         found.extend(joined);
     }
     found
-}
-
-/// Each of `pieces` by itself.
-fn each<'a>(pieces: &[Piece<'a>]) -> Vec<Vec<Piece<'a>>> {
-    pieces.iter().map(|piece| vec![*piece]).collect()
 }
 
 /// `pieces` in the order of the log, and in others.

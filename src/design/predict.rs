@@ -62,13 +62,24 @@ impl Uncertain {
 
     /// The model with the parameter at `place` off by so many standard deviations.
     fn with_off(&self, place: usize, by: f64) -> JointModel {
-        let mut values: Vec<f64> = self.model.values().iter().map(|value| value.value).collect();
-        if let (Some(value), Some(deviation)) = (values.get_mut(place), self.deviations.get(place))
-        {
-            *value += by * deviation;
-        }
-        self.model.with_values(&values)
+        let value = values(&self.model).get(place).copied().unwrap_or_default();
+        let deviation = self.deviations.get(place).copied().unwrap_or_default();
+        with_value(&self.model, place, value + by * deviation)
     }
+}
+
+/// The values of all parameters of `model`.
+pub(super) fn values(model: &JointModel) -> Vec<f64> {
+    model.values().iter().map(|value| value.value).collect()
+}
+
+/// `model` with another value of the parameter at `place`.
+pub(super) fn with_value(model: &JointModel, place: usize, value: f64) -> JointModel {
+    let mut values = values(model);
+    if let Some(slot) = values.get_mut(place) {
+        *slot = value;
+    }
+    model.with_values(&values)
 }
 
 impl TestRig {

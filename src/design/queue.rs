@@ -1,15 +1,16 @@
 //! Inputs that may be judged in full, with what the linear screen shows of them.
 
 use super::family::{Family, families};
-use super::pair_screen::PairScreen;
+
 use super::problem::Problem;
+use super::screen::Screen;
 use crate::explain::Workers;
 use crate::model::JointModel;
 
 /// An input that may be judged.
 pub(super) struct Entry {
     pub(super) family: Family,
-    screen: PairScreen,
+    pub(super) screen: Screen,
     /// By how much it was worse than in the screen when it was judged last; 0 or less.
     offset: f64,
 }
@@ -22,11 +23,10 @@ pub(super) fn queue(
 ) -> Vec<Entry> {
     let Problem { suspects, rig, limits } = problem;
     let families = families(suspects, rig, limits);
-    let screens = workers.map(&families, |family| PairScreen::of(suspects, rig, family));
-    let entry = |(family, screen): (Family, Option<PairScreen>)| {
-        Some(Entry { family, screen: screen?, offset: 0.0 })
-    };
-    let mut queue: Vec<Entry> = families.into_iter().zip(screens).filter_map(entry).collect();
+    let screens = workers.map(&families, |family| Screen::of(suspects, rig, &family.schedule));
+    let entries = families.into_iter().zip(screens);
+    let entries = entries.map(|(family, screen)| Entry { family, screen, offset: 0.0 });
+    let mut queue: Vec<Entry> = entries.collect();
     for (truth, hard) in hard.iter().enumerate() {
         include(problem, &mut queue, truth, hard, workers);
     }
@@ -48,35 +48,28 @@ pub(super) fn include(
     });
     for (entry, outputs) in queue.iter_mut().zip(outputs) {
         for output in outputs {
-            entry.screen.add(truth, &output);
+            entry.screen.add(truth, output);
         }
     }
 }
 
 impl Entry {
-    /// The power of the whole input for the suspects of `targets`, in the screen.
-    pub(super) fn best_power(&self, targets: [bool; 2]) -> f64 {
-        let all = self.family.schedule.holds().len();
-        let truths = (0..2).filter(|truth| targets[*truth]);
-        truths.map(|truth| self.screen.best_known(truth, &self.family, all)).fold(1.0, f64::min)
-    }
-
     /// The seconds that its beginning needs at least, in the screen, to separate the suspects
     /// of `targets` with `power`; `None` where the whole is too little.
     pub(super) fn least_s(&self, targets: [bool; 2], power: f64) -> Option<f64> {
-        let count = self.screen.fewest(&self.family, targets, power)?;
+        let count = self.screen.fewest(targets, power)?;
         Some(self.family.schedule.first(count).duration_s())
     }
 
     /// By how many standard deviations its first `count` holds separate the suspects of
     /// `targets`, as far as is known.
     pub(super) fn margin(&self, targets: [bool; 2], count: usize) -> f64 {
-        self.screen.margin(&self.family, targets, count) + self.offset
+        self.screen.margin(targets, count) + self.offset
     }
 
     /// Takes `margin` for that of its first `count` holds, where it looked better.
     pub(super) fn correct(&mut self, margin: f64, targets: [bool; 2], count: usize) {
-        let screened = self.screen.margin(&self.family, targets, count);
+        let screened = self.screen.margin(targets, count);
         self.offset = (margin - screened).min(0.0);
     }
 }

@@ -110,14 +110,28 @@ impl Schedule {
         all.fold((f64::INFINITY, 0.0), |(low, high), hold| (low.min(hold), high.max(hold)))
     }
 
-    /// How many of its holds are over after so many seconds.
-    pub(super) fn fitting(&self, seconds: f64) -> usize {
-        let most = samples_in(seconds, self.period);
+    /// How many of its holds are over after so many samples.
+    pub(super) fn over_after(&self, samples: usize) -> usize {
         let ends = self.holds.iter().scan(0, |end, hold| {
             *end += hold.samples;
             Some(*end)
         });
-        ends.take_while(|end| *end <= most).count()
+        ends.take_while(|end| *end <= samples).count()
+    }
+
+    /// Borders of the windows of a fit to the first `count` holds.
+    pub(super) fn windows(&self, count: usize) -> Vec<(usize, usize)> {
+        /// Samples of a window between steps of the input, at most: as of a fit.
+        const LONGEST: usize = 200;
+        let mut windows = Vec::new();
+        let mut start = 0;
+        for hold in self.holds.iter().take(count) {
+            let parts = hold.samples.div_ceil(LONGEST).max(1);
+            let border = |part: usize| start + hold.samples * part / parts;
+            windows.extend((0..parts).map(|part| (border(part), border(part + 1))));
+            start += hold.samples;
+        }
+        windows
     }
 
     /// This schedule with `rest` added to each level.
@@ -154,8 +168,9 @@ mod tests {
         assert_eq!((made.samples(), made.steps(), made.levels()), (6, 2, vec![-1.0, 0.0, 2.0]));
         assert_eq!((made.duration_s(), made.hold_range_s()), (3.0, (1.5, 1.5)));
         assert_eq!(made.first(2).input(), [0.0, 2.0, 2.0, 2.0]);
-        assert_eq!((made.fitting(2.0), made.fitting(1.9)), (2, 2));
-        assert_eq!((made.fitting(1.7), samples_in(0.1, period)), (1, 1));
+        let over_after = |seconds: f64| made.over_after(samples_in(seconds, period));
+        assert_eq!((over_after(2.0), over_after(1.9)), (2, 2));
+        assert_eq!((over_after(1.7), samples_in(0.1, period)), (1, 1));
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::predict::TestRig;
 use super::problem::{Findings, Problem};
 use super::queue::{Entry, queue};
 use super::result::{Design, DesignError};
+use super::schedule::samples_in;
 use super::suspects::Suspects;
 use crate::explain::Workers;
 
@@ -82,7 +83,7 @@ pub fn shortest(
     let Findings { runner_up, power: judged, .. } = findings;
     // Its power will do, and how its rehearsals went is reported.
     runner_up.ok_or_else(|| {
-        let screened = entries.iter().map(|entry| entry.best_power(targets));
+        let screened = entries.iter().map(|entry| entry.screen.best_power(targets));
         let best = screened.fold(judged, f64::max);
         let longest_s = limits.longest_s;
         if best < IMITATED {
@@ -156,7 +157,8 @@ impl Search<'_, '_> {
     ) -> Option<(usize, Design)> {
         let mut screened = Vec::new();
         for (index, entry) in self.entries.iter().enumerate() {
-            let count = entry.family.schedule.fitting(length_s);
+            let schedule = &entry.family.schedule;
+            let count = schedule.over_after(samples_in(length_s, schedule.period()));
             if count > 1 {
                 screened.push((entry.margin(targets, count), index, count));
             }

@@ -14,7 +14,6 @@ use super::{
     ErrorFigures, InputCorrelation, LackOfFit, RawErrors, TestColumns, TrialSignals, Whiteness,
 };
 use super::{input_correlation, lack_of_fit, sensor_noise, whiteness};
-use crate::experiment::Trial;
 use crate::fit::{
     Assessment, Evaluation, Excerpt, Fit, FitRecord, Horizon, Part, Termination, follows_input,
 };
@@ -115,7 +114,6 @@ fn figures(
     let evaluation = by_step.evaluate(&fit.model);
     let per_step = step_errors(&by_step, &evaluation);
     let (arising, restarted) = if follows_input(record.joint()).is_some() {
-        drop(evaluation);
         let evaluation = Evaluation::clone(&fit.evaluation);
         (fit.evaluation.horizon, residual_record(&by_step, evaluation, ErrorOf::Output))
     } else {
@@ -126,8 +124,8 @@ fn figures(
         training: error(Part::Training),
         validation: error(Part::Validation),
         curves: curves(record, &fit.model, &fit.evaluation.simulated),
-        raw: RawErrors::restarted(record, &fit.model),
-        free: RawErrors::free(record, &fit.model),
+        raw: RawErrors::of(record, &record.raw_residuals(&fit.model)),
+        free: RawErrors::of(record, &record.free_residuals(&fit.model)),
         sensor_noise: sensor_noise(&record.measured().trials),
         lack_of_fit,
         whiteness,
@@ -231,23 +229,18 @@ enum ErrorOf {
 
 /// The residual of a model, with what happened; `record` restarts at every step of the input, whether
 /// or not the simulation of `evaluation` does.
-///
-/// The columns of `evaluation` become those of the record: of a long one each is as long as the
-/// log.
 fn residual_record(
     record: &FitRecord<'_>,
     evaluation: Evaluation,
     error: ErrorOf,
 ) -> Option<failure::ResidualRecord> {
     let trials = &record.joint().trials;
-    let all = trials.iter().map(Trial::len).sum();
-    let mut samples = Samples::with_capacity(all);
+    let mut samples = Samples::default();
     let mut segments = Vec::new();
     let simulated = evaluation.simulated.into_iter().zip(evaluation.residuals);
     for (index, (trial, (simulated, mut residual))) in trials.iter().zip(simulated).enumerate() {
         let number = u32::try_from(index).ok()?;
-        let Simulated { output, velocity, acting } = simulated;
-        drop(output);
+        let Simulated { mut velocity, mut acting, .. } = simulated;
         // What was filled in says nothing of the model.
         for gap in trial.unlogged() {
             residual[gap.clone()].fill(0.0);
@@ -256,9 +249,10 @@ fn residual_record(
         let period = trial.period().seconds();
         let levels = levels(&acting);
         for level in &levels {
-            let held = level.len() as f64 * period;
-            samples.since_step_s.push_even(0.0, period, level.len());
-            samples.hold_s.push_even(held, 0.0, level.len());
+            let times = (0..level.len()).map(|k| k as f64 * period);
+            samples.since_step_s.extend(times);
+            let held_s = level.len() as f64 * period;
+            samples.hold_s.extend(std::iter::repeat_n(held_s, level.len()));
         }
         // An input that is never held has no levels to look at.
         let windows = record.windows_of(index).iter();
@@ -269,26 +263,16 @@ fn residual_record(
         // An input that moves all the time changes its level with every sample.
         let own = if levels.len() > windows.len().saturating_mul(20) { windows } else { levels };
         segments.extend(own.into_iter().map(|span| first + span.start..first + span.end));
-        append(&mut samples.residual, residual, all);
-        append(&mut samples.input, acting, all);
-        append(&mut samples.speed, velocity, all);
+        samples.residual.append(&mut residual);
+        samples.input.append(&mut acting);
+        samples.speed.append(&mut velocity);
         samples.output.extend(trial.output());
-        samples.time_s.push_even(trial.time_s(1), period, trial.len());
+        let start_s = trial.time_s(1);
+        samples.time_s.extend((0..trial.len()).map(|k| start_s + k as f64 * period));
         samples.trial.extend(std::iter::repeat_n(number, trial.len()));
     }
     let labels = trials.iter().map(|trial| trial.label().to_owned()).collect();
     failure::ResidualRecord::new(samples, labels, segments).ok()
-}
-
-/// Puts a column of one trial behind those before, of which all together will have `all` samples;
-/// without a copy where it is the first.
-fn append(column: &mut Vec<f64>, mut own: Vec<f64>, all: usize) {
-    if column.is_empty() {
-        own.reserve_exact(all - own.len().min(all));
-        *column = own;
-    } else {
-        column.append(&mut own);
-    }
 }
 
 /// Spans of samples with one level.

@@ -1,7 +1,6 @@
 //! How large the error of a model is.
 
 use crate::fit::{Evaluation, FitRecord, Part, Window, is_rounding};
-use crate::model::JointModel;
 
 /// The error of a model on one part of a record, without isolated spikes of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,17 +79,8 @@ pub struct RawErrors {
 }
 
 impl RawErrors {
-    /// Of `model` with the restarts of `record`, each run from the smoothed measured output.
-    pub(super) fn restarted(record: &FitRecord<'_>, model: &JointModel) -> Self {
-        Self::of(record, &record.raw_residuals(model))
-    }
-
-    /// Of `model` in a free run from the start of each trial, judged on the parts of `record`.
-    pub(super) fn free(record: &FitRecord<'_>, model: &JointModel) -> Self {
-        Self::of(record, &record.free_residuals(model))
-    }
-
-    fn of(record: &FitRecord<'_>, residuals: &[Vec<f64>]) -> Self {
+    /// Of these residuals, judged on the parts of `record`.
+    pub(super) fn of(record: &FitRecord<'_>, residuals: &[Vec<f64>]) -> Self {
         let on = |part| Some(ErrorFigures::over(record, residuals, record.part(part))?.rmse);
         Self { training: on(Part::Training), validation: on(Part::Validation) }
     }

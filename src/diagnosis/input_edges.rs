@@ -17,6 +17,7 @@
 //! K. J. Åström and B. Wittenmark, "Computer-Controlled Systems", 1997, chapter 1 (asynchronous
 //! sampling).
 
+use super::lags::centre;
 use crate::fit::{Evaluation, FitRecord, Window, follows_input};
 use crate::numerics::{Regression, dot, quantile, spearman};
 
@@ -128,10 +129,7 @@ fn moved(velocity: &[f64], at: usize, end: usize) -> Vec<f64> {
     let before = velocity[at.saturating_sub(2)];
     let at_sample = |k: usize| if k < at { 0.0 } else { before - velocity[k.min(end) - 1] };
     let mut shape: Vec<f64> = (0..velocity.len()).map(at_sample).collect();
-    let mean = shape.iter().sum::<f64>() / shape.len() as f64;
-    for value in &mut shape {
-        *value -= mean;
-    }
+    centre(&mut shape);
     shape
 }
 

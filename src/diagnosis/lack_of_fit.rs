@@ -33,8 +33,9 @@
 
 use super::input_edges::InputEdges;
 use super::local_misfit::LocalMisfit;
-use super::residual_size::{BEYOND_NOISE, ResidualSize, SizeVerdict, independent, is_near_noise};
-use super::shown_by::ShownBy;
+use super::residual_size::{
+    BEYOND_NOISE, ResidualSize, ShownBy, SizeVerdict, independent, is_near_noise,
+};
 use crate::numerics::NoiseModel;
 use crate::numerics::fisher_tail;
 use crate::numerics::{Regression, residuals_of};

@@ -66,6 +66,14 @@ pub(super) fn means(values: &[f64], size: usize) -> Vec<f64> {
     values.chunks_exact(size).map(|block| block.iter().sum::<f64>() / size as f64).collect()
 }
 
+/// Takes the mean from `values`.
+pub(super) fn centre(values: &mut [f64]) {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    for value in values {
+        *value -= mean;
+    }
+}
+
 /// Sums of products from lag 0 to `lags`, over all `series`.
 pub(super) fn autocovariance(series: &[Vec<f64>], lags: usize) -> Vec<f64> {
     (0..=lags).map(|lag| products(series, series, lag)).collect()

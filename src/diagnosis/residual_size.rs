@@ -1,6 +1,5 @@
 //! How large a residual is: beside the noise, and beside itself on data not fitted to.
 
-use super::shown_by::ShownBy;
 use crate::fit::{Evaluation, FitRecord, Part};
 use crate::numerics::{fisher_tail, robust_scale};
 
@@ -10,6 +9,19 @@ pub(crate) const BEYOND_NOISE: f64 = 3.0;
 
 /// A residual no more than so many times the noise is negligible, however significant.
 pub(crate) const NEAR_NOISE: f64 = 1.15;
+
+/// What shows that a model lacks something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShownBy {
+    /// Shapes that missing effects have explain more than noise would.
+    Shapes,
+    /// The residual is far beyond the noise of the measurement.
+    Size,
+    /// The residual is larger on the part that was not fitted.
+    UnseenPart,
+    /// The residual stands out in a few windows.
+    FewWindows,
+}
 
 /// What the size of a residual says of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

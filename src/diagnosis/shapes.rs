@@ -2,6 +2,7 @@
 
 use std::mem::take;
 
+use super::lags::centre;
 use crate::experiment::Trial;
 use crate::fit::{Evaluation, FitRecord, Window};
 use crate::model::Simulated;
@@ -179,13 +180,6 @@ fn integrated(velocity: &[f64], period: f64) -> Vec<f64> {
         before
     };
     velocity.iter().map(before).collect()
-}
-
-fn centre(values: &mut [f64]) {
-    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-    for value in values {
-        *value -= mean;
-    }
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@
 
 use std::ops::Range;
 
-use super::lags::{BAND, CONFIDENCE, Lags, TrialSignals, autocovariance, means};
+use super::lags::{BAND, CONFIDENCE, Lags, TrialSignals, autocovariance, centre, means};
 use crate::numerics::chi_square_tail;
 
 /// Whether the residual is white noise.
@@ -47,8 +47,9 @@ pub fn whiteness(trials: &[TrialSignals<'_>], period_s: f64) -> Option<Whiteness
     };
     let windows: Vec<Vec<f64>> = trials.iter().flat_map(of_trial).collect();
     let lags = Lags::new(period_s, windows.iter().map(Vec::len).max()?)?;
-    let windows = windows.iter().map(|window| centred(means(window, lags.block)));
-    let windows: Vec<Vec<f64>> = windows.filter(|window| !window.is_empty()).collect();
+    let windows = windows.iter().map(|window| means(window, lags.block));
+    let mut windows: Vec<Vec<f64>> = windows.filter(|window| !window.is_empty()).collect();
+    windows.iter_mut().for_each(|window| centre(window));
     let samples: usize = windows.iter().map(Vec::len).sum();
     let correlation = centred_autocorrelation(&windows, lags.count)?;
     let n = samples as f64;
@@ -85,14 +86,6 @@ fn centred_autocorrelation(windows: &[Vec<f64>], lags: usize) -> Option<Vec<f64>
     };
     let lags = covariance.iter().zip(1..);
     Some(lags.map(|(product, lag)| product / power + lost(lag) / freedom).collect())
-}
-
-fn centred(mut values: Vec<f64>) -> Vec<f64> {
-    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-    for value in &mut values {
-        *value -= mean;
-    }
-    values
 }
 
 #[cfg(test)]

@@ -33,7 +33,19 @@ static SPEC: Spec = Spec::new(
         .neutral(1.0),
 ])
 .memory(1 + DECAY_MEMORY)
-.confused_with(&["thermal_drift", "creep", "input_saturation"]);
+.confused_with(&["thermal_drift", "creep", "input_saturation"])
+.equations(
+    Equations::new(&[
+        "interval = dt\ntime_constant = recovery_time\n",
+        DECAY,
+        "steady = abs(signal) * recovery_time
+             deviation = way - steady
+             during = steady + deviation * mean
+             way = steady + deviation * left
+             out = signal * max(1 - droop * during, 0.05)",
+    ])
+    .remembering(&["way"], ""),
+);
 
 /// Smallest factor that is left of the gain.
 const SMALLEST_FACTOR: f64 = 0.05;
@@ -46,24 +58,6 @@ impl Effect for AccumulatorDroop {
     /// What was consumed depends on the input, not on where the joint is.
     fn depends_on_angle(&self) -> bool {
         false
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                [
-                    "interval = dt\ntime_constant = recovery_time\n",
-                    DECAY,
-                    "steady = abs(signal) * recovery_time
-             deviation = way - steady
-             during = steady + deviation * mean
-             way = steady + deviation * left
-             out = signal * max(1 - droop * during, 0.05)",
-                ]
-                .concat(),
-            )
-            .remembering(&["way"], ""),
-        )
     }
 
     /// The memory is the way `w`, and the decay that was computed last.

@@ -40,7 +40,19 @@ static SPEC: Spec = Spec::new(
 .parameters(&[Parameter::new("time_constant", "time to 63 % of a change", Dimension::Seconds)
     .between(0.0, UNLIMITED)])
 .memory(ActuatorLag::MEMORY)
-.confused_with(&["resonance", "variable_delay", "rate_limit"]);
+.starting_at_signal()
+.confused_with(&["resonance", "variable_delay", "rate_limit"])
+.equations(LAGGING);
+
+/// As the spool has it, too.
+pub(super) const LAGGING: Equations = Equations::new(&[
+    "interval = dt\n",
+    DECAY,
+    "deviation = state - signal
+             state = signal + deviation * left
+             out = signal + deviation * mean",
+])
+.remembering(&["state"], "state = signal");
 
 impl ActuatorLag {
     /// The output, and the decay that was computed last.
@@ -52,22 +64,6 @@ impl Effect for ActuatorLag {
         &SPEC
     }
 
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                [
-                    "interval = dt\n",
-                    DECAY,
-                    "deviation = state - signal
-             state = signal + deviation * left
-             out = signal + deviation * mean",
-                ]
-                .concat(),
-            )
-            .remembering(&["state"], "state = signal"),
-        )
-    }
-
     /// The memory is the output `x`, and the decay that was computed last.
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
         let (&[time_constant], [state, known @ ..]) = (parameters, memory) else {
@@ -77,12 +73,6 @@ impl Effect for ActuatorLag {
         let deviation = *state - at.signal;
         *state = at.signal + deviation * decay.left;
         at.signal + deviation * decay.mean
-    }
-
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let Some(state) = memory.first_mut() {
-            *state = at.signal;
-        }
     }
 
     fn guesses(&self, _record: &RecordRange<'_>) -> Vec<Vec<f64>> {

@@ -27,7 +27,7 @@
 //! Automatica 30.
 
 use super::coulomb_friction::{GAPS, NEGATIVE, POSITIVE, TIME_CONSTANT};
-use super::decay::DECAY;
+use super::decay::LAG_DECAY;
 use super::sliding::{self, SLIDING_MEMORY};
 use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage};
 
@@ -67,19 +67,10 @@ static SPEC: Spec = Spec::new(
 .confused_with(&["coulomb_friction", "direction_gain"])
 .absorbing(&["coulomb_friction", "actuator_lag"])
 .refining("coulomb_friction")
-.limiting_case("time_constant", &["dead_band", "direction_gain"]);
-
-impl Effect for AsymmetricFriction {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        let decay = DECAY.replace("time_constant", "lag");
-        Some(
-            Equations::new(
-                [
-                    "force = max(signal - positive, 0) + min(signal + negative, 0)
+.limiting_case("time_constant", &["dead_band", "direction_gain"])
+.equations(
+    Equations::new(&[
+        "force = max(signal - positive, 0) + min(signal + negative, 0)
              moving = if(speed > 0, signal - positive, signal + negative)
              drive = if(speed == 0, force, moving)
              viscous = if(if(speed == 0, force, speed) < 0, negative_viscous, 1)
@@ -90,22 +81,24 @@ impl Effect for AsymmetricFriction {
              stops = stop < dt
              interval = if(stops, dt - stop, dt)
              lag = time_constant / if(stops, from_rest, viscous)\n",
-                    &decay,
-                    "target = if(stops, force / from_rest, drive / viscous)
+        LAG_DECAY,
+        "target = if(stops, force / from_rest, drive / viscous)
              deviation = if(stops, 0, speed) - target
              braking = if(stops, drive / viscous * stop + slowing * speed, 0)
              speed = if(time_constant <= 0, force / from_rest, target + deviation * left)
              moved = braking + interval * (target + deviation * mean)
              out = if(time_constant <= 0, force / from_rest, moved / dt)",
-                ]
-                .concat(),
-            )
-            .remembering(
-                &["speed"],
-                "force = max(signal - positive, 0) + min(signal + negative, 0)
+    ])
+    .remembering(
+        &["speed"],
+        "force = max(signal - positive, 0) + min(signal + negative, 0)
              speed = force / if(force < 0, negative_viscous, 1)",
-            ),
-        )
+    ),
+);
+
+impl Effect for AsymmetricFriction {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
     }
 
     /// The memory is the speed in input units, and the decay that was computed last.

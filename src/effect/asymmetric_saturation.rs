@@ -47,26 +47,20 @@ static SPEC: Spec = Spec::new(
 ])
 .confused_with(&["input_saturation", "direction_gain"])
 .absorbing(&["input_saturation"])
-.refining("input_saturation");
-
-impl Effect for AsymmetricSaturation {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new(
-            "here = if(signal < 0, negative_limit, limit)
+.refining("input_saturation")
+.steady()
+.equations(Equations::new(&[
+    "here = if(signal < 0, negative_limit, limit)
              size = abs(signal)
              into_knee = size - here * (1 - softness)
              width = 2 * softness * here
              rounded = size - into_knee * (into_knee / (2 * width))
              out = if(into_knee <= 0, signal, sign(signal) * if(into_knee < width, rounded, here))",
-        ))
+]));
+
+impl Effect for AsymmetricSaturation {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -45,7 +45,21 @@ static SPEC: Spec = Spec::new(
 .memory(1)
 .confused_with(&["stiction", "dead_band", "coulomb_friction"])
 .absorbing(&["stiction"])
-.refining("stiction");
+.refining("stiction")
+.steady()
+.equations(
+    Equations::new(&["start = if(signal < 0, negative_start, positive_start)
+             stop = if(signal < 0, negative_stop, positive_stop)
+             goes_on = signal * direction > 0 && abs(signal) >= min(stop, start)
+             moves = goes_on || abs(signal) > start
+             direction = if(moves, sign(signal), 0)
+             out = if(moves, signal, 0)"])
+    .remembering(
+        &["direction"],
+        "start = if(signal < 0, negative_start, positive_start)
+             direction = if(abs(signal) > start, sign(signal), 0)",
+    ),
+);
 
 const fn level(name: &'static str, meaning: &'static str) -> Parameter {
     Parameter::new(name, meaning, Dimension::Input).between(0.0, UNLIMITED)
@@ -54,28 +68,6 @@ const fn level(name: &'static str, meaning: &'static str) -> Parameter {
 impl Effect for AsymmetricStiction {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                "start = if(signal < 0, negative_start, positive_start)
-             stop = if(signal < 0, negative_stop, positive_stop)
-             goes_on = signal * direction > 0 && abs(signal) >= min(stop, start)
-             moves = goes_on || abs(signal) > start
-             direction = if(moves, sign(signal), 0)
-             out = if(moves, signal, 0)",
-            )
-            .remembering(
-                &["direction"],
-                "start = if(signal < 0, negative_start, positive_start)
-             direction = if(abs(signal) > start, sign(signal), 0)",
-            ),
-        )
     }
 
     /// As a [`Stiction`] with the levels of the direction of the signal.

@@ -33,21 +33,19 @@ static SPEC: Spec = Spec::new("backlash", Stage::Output, "play between actuator 
         .between(0.0, UNLIMITED)
         .typical(0.02)])
     .memory(1)
-    .confused_with(&["dead_band", "variable_delay"]);
+    .starting_at_signal()
+    .confused_with(&["dead_band", "variable_delay"])
+    .equations(
+        Equations::new(&[
+            "measured = min(max(measured, signal - 0.5 * width), signal + 0.5 * width)
+             out = measured",
+        ])
+        .remembering(&["measured"], "measured = signal"),
+    );
 
 impl Effect for Backlash {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                "measured = min(max(measured, signal - 0.5 * width), signal + 0.5 * width)
-             out = measured",
-            )
-            .remembering(&["measured"], "measured = signal"),
-        )
     }
 
     /// The memory is the output.
@@ -55,11 +53,6 @@ impl Effect for Backlash {
         let (&[width], [measured]) = (parameters, memory) else { return at.signal };
         *measured = measured.max(at.signal - 0.5 * width).min(at.signal + 0.5 * width);
         *measured
-    }
-
-    /// The joint is in the middle of its play.
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        memory.fill(at.signal);
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {

@@ -65,7 +65,26 @@ static SPEC: Spec = Spec::new(
 .confused_with(&["dead_band", "stiction", "input_offset"])
 .absorbing(&["actuator_lag"])
 .limiting_case("time_constant", &["dead_band"])
-.looking_like_both(&[["dead_band", "spool_lag"], ["dead_band", "actuator_lag"]]);
+.looking_like_both(&[["dead_band", "spool_lag"], ["dead_band", "actuator_lag"]])
+.equations(
+    Equations::new(&[
+        "force = max(signal - positive, 0) + min(signal + negative, 0)
+             moving = if(speed > 0, signal - positive, signal + negative)
+             drive = if(speed == 0, force, moving)
+             is_braked = speed * drive < 0
+             stop = if(is_braked, time_constant * ln1p(-speed / if(is_braked, drive, 1)), dt)
+             stops = stop < dt
+             interval = if(stops, dt - stop, dt)\n",
+        DECAY,
+        "target = if(stops, force, drive)
+             deviation = if(stops, 0, speed) - target
+             braking = if(stops, drive * stop + time_constant * speed, 0)
+             speed = if(time_constant <= 0, force, target + deviation * left)
+             moved = braking + interval * (target + deviation * mean)
+             out = if(time_constant <= 0, force, moved / dt)",
+    ])
+    .remembering(&["speed"], "speed = max(signal - positive, 0) + min(signal + negative, 0)"),
+);
 
 /// Parameters that the asymmetric form has, too.
 pub(super) const POSITIVE: Parameter =
@@ -84,34 +103,6 @@ pub(super) const GAPS: usize = 3;
 impl Effect for CoulombFriction {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                [
-                    "force = max(signal - positive, 0) + min(signal + negative, 0)
-             moving = if(speed > 0, signal - positive, signal + negative)
-             drive = if(speed == 0, force, moving)
-             is_braked = speed * drive < 0
-             stop = if(is_braked, time_constant * ln1p(-speed / if(is_braked, drive, 1)), dt)
-             stops = stop < dt
-             interval = if(stops, dt - stop, dt)\n",
-                    DECAY,
-                    "target = if(stops, force, drive)
-             deviation = if(stops, 0, speed) - target
-             braking = if(stops, drive * stop + time_constant * speed, 0)
-             speed = if(time_constant <= 0, force, target + deviation * left)
-             moved = braking + interval * (target + deviation * mean)
-             out = if(time_constant <= 0, force, moved / dt)",
-                ]
-                .concat(),
-            )
-            .remembering(
-                &["speed"],
-                "speed = max(signal - positive, 0) + min(signal + negative, 0)",
-            ),
-        )
     }
 
     /// The memory is the speed in input units, and the decay that was computed last.

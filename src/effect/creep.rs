@@ -35,7 +35,18 @@ static SPEC: Spec = Spec::new(
         .neutral(1.0),
 ])
 .memory(1 + DECAY_MEMORY)
-.confused_with(&["actuator_lag", "leakage", "thermal_drift", "accumulator_droop"]);
+.starting_at_signal()
+.confused_with(&["actuator_lag", "leakage", "thermal_drift", "accumulator_droop"])
+.equations(
+    Equations::new(&[
+        "interval = dt\n",
+        DECAY,
+        "deviation = state - signal
+             state = signal + deviation * left
+             out = signal + share * deviation * mean",
+    ])
+    .remembering(&["state"], "state = signal"),
+);
 
 /// Shortest and longest time constant of a fit: below it is a lag, above it hardly arrives while the
 /// input is held.
@@ -44,22 +55,6 @@ const FITTED_S: (f64, f64) = (0.1, 60.0);
 impl Effect for Creep {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                [
-                    "interval = dt\n",
-                    DECAY,
-                    "deviation = state - signal
-             state = signal + deviation * left
-             out = signal + share * deviation * mean",
-                ]
-                .concat(),
-            )
-            .remembering(&["state"], "state = signal"),
-        )
     }
 
     /// The memory is the slow state `x`, and the decay that was computed last.
@@ -71,12 +66,6 @@ impl Effect for Creep {
         let deviation = *state - at.signal;
         *state = at.signal + deviation * decay.left;
         at.signal + share * deviation * decay.mean
-    }
-
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let Some(state) = memory.first_mut() {
-            *state = at.signal;
-        }
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {

@@ -47,7 +47,9 @@ static SPEC: Spec = Spec::new(
     Parameter::new("upper", "upper end of the band", Dimension::Input).between(0.0, UNLIMITED),
 ])
 .confused_with(&["stiction", "flow_curve", "coulomb_friction"])
-.upstream_of(&["input_saturation", "asymmetric_saturation"]);
+.upstream_of(&["input_saturation", "asymmetric_saturation"])
+.steady()
+.equations(Equations::new(&["out = max(signal - upper, 0) + min(signal - lower, 0)"]));
 
 /// Gaps between input levels in which a fit starts.
 const GAPS: usize = 4;
@@ -55,14 +57,6 @@ const GAPS: usize = 4;
 impl Effect for DeadBand {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new("out = max(signal - upper, 0) + min(signal - lower, 0)"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

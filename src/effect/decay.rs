@@ -20,6 +20,14 @@ pub(super) const DECAY: &str = "
     mean = if(is_over, 0, if(ratio < 1e-300, 1, -expm1(-ratio) / ratio))
 ";
 
+/// The same with the time constant `lag`.
+pub(super) const LAG_DECAY: &str = "
+    ratio = interval / lag
+    is_over = lag <= 0 || !is_finite(ratio)
+    left = if(is_over, 0, exp(-ratio))
+    mean = if(is_over, 0, if(ratio < 1e-300, 1, -expm1(-ratio) / ratio))
+";
+
 impl Decay {
     /// The decay over `dt_s` with time constant `time_constant`; nothing is left at 0.
     pub(super) fn over(dt_s: f64, time_constant: f64) -> Self {

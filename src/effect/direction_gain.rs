@@ -39,19 +39,13 @@ static SPEC: Spec = Spec::new(
 .between(0.05, 20.0)
 .neutral(1.0)
 .typical(-0.2)])
-.confused_with(&["input_offset", "gravity_load"]);
+.confused_with(&["input_offset", "gravity_load"])
+.steady()
+.equations(Equations::new(&["out = if(signal < 0, negative_factor * signal, signal)"]));
 
 impl Effect for DirectionGain {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new("out = if(signal < 0, negative_factor * signal, signal)"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -31,15 +31,12 @@ static SPEC: Spec = Spec::new("end_stop", Stage::Output, "hardware limits of the
         Parameter::new("high", "highest angle", Dimension::Output).neutral(UNLIMITED),
     ])
     .confused_with(&["input_saturation"])
-    .acting_on_state();
+    .acting_on_state()
+    .equations(Equations::new(&["out = min(max(signal, low), high)"]));
 
 impl Effect for EndStop {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new("out = min(max(signal, low), high)"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -16,11 +16,12 @@
 /// ```
 /// use tauscope::effect::Equations;
 ///
-/// let hysteresis = Equations::new("held = if(abs(signal - held) > width, signal, held)\nout = held")
-///     .remembering(&["held"], "held = signal");
+/// let hysteresis =
+///     Equations::new(&["held = if(abs(signal - held) > width, signal, held)\nout = held"])
+///         .remembering(&["held"], "held = signal");
 /// assert_eq!(hysteresis.memory, ["held"]);
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Equations {
     /// Names of what it remembers, all zero at first. A cache that
     /// [`step`](super::Effect::step) keeps to be faster is not part of it.
@@ -28,19 +29,20 @@ pub struct Equations {
     /// What [`Effect::settle`](super::Effect::settle) does; it gives no `out`.
     pub settle: &'static str,
     /// What [`Effect::step`](super::Effect::step) does, or
-    /// [`Effect::extra_delay_s`](super::Effect::extra_delay_s) in the transport stage.
-    pub step: String,
+    /// [`Effect::extra_delay_s`](super::Effect::extra_delay_s) in the transport stage: texts one
+    /// behind the other.
+    pub step: &'static [&'static str],
 }
 
 impl Equations {
     /// These lines, without memory.
-    pub fn new(step: impl Into<String>) -> Self {
-        Self { memory: &[], settle: "", step: step.into() }
+    pub const fn new(step: &'static [&'static str]) -> Self {
+        Self { memory: &[], settle: "", step }
     }
 
     /// With this memory, which `settle` puts into the state of a signal that was long held.
     #[must_use]
-    pub fn remembering(self, memory: &'static [&'static str], settle: &'static str) -> Self {
+    pub const fn remembering(self, memory: &'static [&'static str], settle: &'static str) -> Self {
         Self { memory, settle, ..self }
     }
 }

@@ -34,19 +34,13 @@ static SPEC: Spec = Spec::new(
 .parameters(&[Parameter::new("exponent", "power of the opening", Dimension::One)
     .between(0.2, 5.0)
     .neutral(1.0)])
-.confused_with(&["input_saturation", "dead_band"]);
+.confused_with(&["input_saturation", "dead_band"])
+.steady()
+.equations(Equations::new(&["out = sign(signal) * abs(signal)^exponent"]));
 
 impl Effect for FlowCurve {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new("out = sign(signal) * abs(signal)^exponent"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -41,19 +41,14 @@ static SPEC: Spec = Spec::new(
     Parameter::new("y0", "angle at which gravity acts in full", Dimension::Output),
     Parameter::new("creep", "speed at which the weight lowers it", Dimension::OutputPerSecond),
 ])
-.confused_with(&["leakage", "direction_gain", "position_gain"]);
+.confused_with(&["leakage", "direction_gain", "position_gain"])
+.equations(Equations::new(&["gravity = cos((position - y0) * radians)
+             load = kappa * gravity * sign(signal)
+             out = signal * sqrt(1 - load) - creep * gravity"]));
 
 impl Effect for GravityLoad {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new(
-            "gravity = cos((position - y0) * radians)
-             load = kappa * gravity * sign(signal)
-             out = signal * sqrt(1 - load) - creep * gravity",
-        ))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -27,19 +27,13 @@ static SPEC: Spec = Spec::new(
 .parameters(&[
     Parameter::new("offset", "what is added to the input", Dimension::Input).typical(0.02)
 ])
-.confused_with(&["direction_gain", "leakage", "coulomb_friction", "gravity_load"]);
+.confused_with(&["direction_gain", "leakage", "coulomb_friction", "gravity_load"])
+.steady()
+.equations(Equations::new(&["out = signal + offset"]));
 
 impl Effect for InputOffset {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new("out = signal + offset"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

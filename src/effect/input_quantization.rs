@@ -27,7 +27,10 @@ static SPEC: Spec = Spec::new(
 .parameters(&[
     Parameter::new("step", "distance of two commands", Dimension::Input).between(0.0, UNLIMITED)
 ])
-.confused_with(&["dead_band", "flow_curve"]);
+.confused_with(&["dead_band", "flow_curve"])
+.steady()
+.equations(Equations::new(&["count = floor(abs(signal) / step + 0.5)
+             out = if(step > 0 && is_finite(count), sign(signal) * step * count, signal)"]));
 
 /// Steps that a fit tries, in parts of the largest input: between two of them few levels of the
 /// input come to another multiple.
@@ -36,17 +39,6 @@ const TRIED: usize = 14;
 impl Effect for InputQuantization {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new(
-            "count = floor(abs(signal) / step + 0.5)
-             out = if(step > 0 && is_finite(count), sign(signal) * step * count, signal)",
-        ))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -36,7 +36,14 @@ static SPEC: Spec =
                 .neutral(UNLIMITED),
             SOFTNESS,
         ])
-        .confused_with(&["flow_curve", "rate_limit"]);
+        .confused_with(&["flow_curve", "rate_limit"])
+    .steady()
+    .equations(Equations::new(&["size = abs(signal)
+             into_knee = size - limit * (1 - softness)
+             width = 2 * softness * limit
+             rounded = size - into_knee * (into_knee / (2 * width))
+             out = if(into_knee <= 0, signal, sign(signal) * if(into_knee < width, rounded, limit))"]
+        ));
 
 /// As the asymmetric form has it, too.
 pub(super) const SOFTNESS: Parameter = Parameter::new(
@@ -53,20 +60,6 @@ pub(super) const FITTED_LIMIT: (f64, f64) = (0.01, 2.0);
 impl Effect for InputSaturation {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new(
-            "size = abs(signal)
-             into_knee = size - limit * (1 - softness)
-             width = 2 * softness * limit
-             rounded = size - into_knee * (into_knee / (2 * width))
-             out = if(into_knee <= 0, signal, sign(signal) * if(into_knee < width, rounded, limit))",
-        ))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

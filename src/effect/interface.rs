@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt::Debug;
 
-use super::{Definition, Equations, InputChange, Moment, RecordRange, Spec, Stage};
+use super::{Definition, InputChange, Moment, RecordRange, Spec, Stage};
 
 /// An effect, and the word in the labels of the trials in which it acts.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,14 @@ pub trait Effect: Debug + Send + Sync {
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64;
 
     /// Puts the memory into the state it has when `at.signal` has long been held.
-    fn settle(&self, _parameters: &[f64], _memory: &mut [f64], _at: &Moment) {}
+    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
+        if let [first, others @ ..] = memory
+            && self.spec().starts_at_signal
+        {
+            *first = at.signal;
+            others.fill(0.0);
+        }
+    }
 
     /// Seconds by which a change of the input arrives later than the joint's delay.
     ///
@@ -73,10 +80,9 @@ pub trait Effect: Debug + Send + Sync {
         true
     }
 
-    /// Whether its signal depends on `at.signal` and its memory alone, and does not change while
-    /// `at.signal` is held: a simulation then asks it once for each level of the input.
+    /// Whether it is [steady](Spec::is_steady).
     fn is_steady(&self) -> bool {
-        false
+        self.spec().is_steady
     }
 
     /// Whether a joint with it moves otherwise from another angle.
@@ -110,13 +116,6 @@ pub trait Effect: Debug + Send + Sync {
     /// A record whose input moves all the time has no steps.
     fn depends_on_steps(&self) -> bool {
         false
-    }
-
-    /// What it does, as text of which other languages can be made: the same as
-    /// [`settle`](Self::settle), [`step`](Self::step) and
-    /// [`extra_delay_s`](Self::extra_delay_s). `None` where it cannot leave the program.
-    fn equations(&self) -> Option<Equations> {
-        None
     }
 
     /// The effect that it is in the trials of one condition, where it belongs to such alone. A

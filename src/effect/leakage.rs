@@ -27,15 +27,12 @@ static SPEC: Spec = Spec::new("leakage", Stage::Load, "drifts toward an angle, w
             .between(0.0, 100.0),
         Parameter::new("y0", "angle toward which it drifts", Dimension::Output),
     ])
-    .confused_with(&["gravity_load", "input_offset"]);
+    .confused_with(&["gravity_load", "input_offset"])
+    .equations(Equations::new(&["out = signal - rate * (position - y0)"]));
 
 impl Effect for Leakage {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new("out = signal - rate * (position - y0)"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -64,9 +64,22 @@ static SPEC: Spec = Spec::new(
         .not_fitted(),
 ])
 .memory(2)
+.starting_at_signal()
 .confused_with(&["resonance"])
 .absorbing(&["resonance"])
-.refining("resonance");
+.refining("resonance")
+.equations(
+    Equations::new(&[
+        "away = position + 0.5 * dt * velocity - reference
+             factor = 1 + away * (slope + curvature * away)
+             here = period * min(max(factor, 0.05), 20)
+             at_once = here < 1e-9
+             omega = 2 * pi / max(here, 1e-9)
+             ratio = min(damping + valve_damping * abs(signal), 10)\n",
+        SWING,
+    ])
+    .remembering(&["state", "rate"], "state = signal\nrate = 0"),
+);
 
 /// Largest damping ratio: with more, nothing is left of the swing.
 const MOST_DAMPING: f64 = 10.0;
@@ -77,24 +90,6 @@ const FACTORS: (f64, f64) = (0.05, 20.0);
 impl Effect for OilColumn {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                [
-                    "away = position + 0.5 * dt * velocity - reference
-             factor = 1 + away * (slope + curvature * away)
-             here = period * min(max(factor, 0.05), 20)
-             at_once = here < 1e-9
-             omega = 2 * pi / max(here, 1e-9)
-             ratio = min(damping + valve_damping * abs(signal), 10)\n",
-                    SWING,
-                ]
-                .concat(),
-            )
-            .remembering(&["state", "rate"], "state = signal\nrate = 0"),
-        )
     }
 
     /// The memory is `x`, `x'` in input units per second.
@@ -114,12 +109,6 @@ impl Effect for OilColumn {
         }
         let damping = (damping + valve_damping * at.signal.abs()).min(MOST_DAMPING);
         Swing::over(TAU / period, damping, at.dt_s).advance(at.signal, state, rate)
-    }
-
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let [state, rate] = memory {
-            [*state, *rate] = [at.signal, 0.0];
-        }
     }
 
     fn depends_on_angle(&self) -> bool {

@@ -40,7 +40,9 @@ static SPEC: Spec =
             )
             .not_fitted(),
         ])
-        .confused_with(&["gravity_load"]);
+        .confused_with(&["gravity_load"])
+        .equations(Equations::new(&["away = position - reference
+             out = signal * max(1 + away * (slope + curvature * away), 0.05)"]));
 
 /// Smallest factor that is left of the gain.
 const SMALLEST_FACTOR: f64 = 0.05;
@@ -48,13 +50,6 @@ const SMALLEST_FACTOR: f64 = 0.05;
 impl Effect for PositionGain {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new(
-            "away = position - reference
-             out = signal * max(1 + away * (slope + curvature * away), 0.05)",
-        ))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

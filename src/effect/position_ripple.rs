@@ -36,7 +36,9 @@ static SPEC: Spec = Spec::new(
         .neutral(1.0),
     Parameter::new("phase", "phase at the angle 0, rad", Dimension::One).between(-TAU, TAU),
 ])
-.confused_with(&["position_gain", "gravity_load"]);
+.confused_with(&["position_gain", "gravity_load"])
+.equations(Equations::new(&["ripple = amplitude * sin(2 * pi * position / period + phase)
+             out = signal * max(1 + ripple, 0.05)"]));
 
 /// Smallest factor that is left of the gain.
 const SMALLEST_FACTOR: f64 = 0.05;
@@ -44,13 +46,6 @@ const SMALLEST_FACTOR: f64 = 0.05;
 impl Effect for PositionRipple {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new(
-            "ripple = amplitude * sin(2 * pi * position / period + phase)
-             out = signal * max(1 + ripple, 0.05)",
-        ))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

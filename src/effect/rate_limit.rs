@@ -34,27 +34,24 @@ static SPEC: Spec = Spec::new("rate_limit", Stage::Dynamics, "slew rate of the s
     )
     .between(0.0, UNLIMITED)])
     .memory(1)
-    .confused_with(&["actuator_lag", "variable_delay"]);
+    .starting_at_signal()
+    .confused_with(&["actuator_lag", "variable_delay"])
+    .equations(SLEWING);
 
-impl Effect for RateLimit {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                "way = signal - opening
+/// As the spool has it, too.
+pub(super) const SLEWING: Equations = Equations::new(&["way = signal - opening
              ramp = abs(way) * seconds_per_input
              arrives = ramp <= dt
              moved = sign(way) * dt / seconds_per_input
              behind = if(ramp > 0, way * (0.5 * ramp / dt), 0)
              mean = if(arrives, signal - behind, opening + 0.5 * moved)
              opening = if(arrives, signal, opening + moved)
-             out = mean",
-            )
-            .remembering(&["opening"], "opening = signal"),
-        )
+             out = mean"])
+.remembering(&["opening"], "opening = signal");
+
+impl Effect for RateLimit {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
     }
 
     /// The memory is the opening in input units.
@@ -73,10 +70,6 @@ impl Effect for RateLimit {
         let moved = (at.dt_s / seconds_per_input).copysign(way);
         *opening += moved;
         *opening - 0.5 * moved
-    }
-
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        memory.fill(at.signal);
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {

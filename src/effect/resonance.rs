@@ -31,7 +31,17 @@ static SPEC: Spec =
                 .neutral(1.0),
         ])
         .memory(2 + SWING_MEMORY)
-        .confused_with(&["actuator_lag"]);
+        .starting_at_signal()
+        .confused_with(&["actuator_lag"])
+        .equations(
+            Equations::new(&[
+                "at_once = period < 1e-9
+             omega = 2 * pi / max(period, 1e-9)
+             ratio = damping\n",
+                SWING,
+            ])
+            .remembering(&["state", "rate"], "state = signal\nrate = 0"),
+        );
 
 /// Period below which the output is the input: it is then over before anything moves,
 /// and its square is still far from the ends of what a number can hold.
@@ -50,21 +60,6 @@ impl Effect for Resonance {
         &SPEC
     }
 
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                [
-                    "at_once = period < 1e-9
-             omega = 2 * pi / max(period, 1e-9)
-             ratio = damping\n",
-                    SWING,
-                ]
-                .concat(),
-            )
-            .remembering(&["state", "rate"], "state = signal\nrate = 0"),
-        )
-    }
-
     /// The memory is `x`, `x'` in input units per second, and the response that was
     /// computed last.
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
@@ -77,12 +72,6 @@ impl Effect for Resonance {
         }
         let omega = TAU / period;
         Swing::recall(known, omega, damping, at.dt_s).advance(at.signal, state, rate)
-    }
-
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let [state, rate, ..] = memory {
-            [*state, *rate] = [at.signal, 0.0];
-        }
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {

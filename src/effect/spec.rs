@@ -1,6 +1,6 @@
 //! What an effect says about itself, as data.
 
-use super::{Parameter, Stage};
+use super::{Equations, Parameter, Stage};
 
 /// What an effect is, where it acts, and its parameters.
 ///
@@ -32,6 +32,9 @@ pub struct Spec {
     pub parameters: &'static [Parameter],
     /// How many numbers it remembers.
     pub memory: usize,
+    /// Whether the first number that it remembers is the signal where that was long held, and the
+    /// others zero; if not, [`settle`](super::Effect::settle) says what they are.
+    pub starts_at_signal: bool,
     /// Ids of effects that look alike in a record.
     pub confused_with: &'static [&'static str],
     /// Ids of effects that it contains: to add it to a model is to put it in their
@@ -51,6 +54,14 @@ pub struct Spec {
     /// Whether it follows a curve of any form, so that a search names it only where no effect with a
     /// law explains the record.
     pub is_free_form: bool,
+    /// Whether its signal depends on [`Moment::signal`](super::Moment::signal) and its memory alone,
+    /// and does not change while that is held: a simulation then asks it once for each level of the
+    /// input.
+    pub is_steady: bool,
+    /// What it does, as text of which other languages can be made: the same as its
+    /// [`settle`](super::Effect::settle), [`step`](super::Effect::step) and
+    /// [`extra_delay_s`](super::Effect::extra_delay_s). `None` where it cannot leave the program.
+    pub equations: Option<Equations>,
     /// Whether an effect on the output changes where the joint is, and not only what
     /// is measured of it.
     pub acts_on_state: bool,
@@ -77,6 +88,7 @@ impl Spec {
             drawing: None,
             parameters: &[],
             memory: 0,
+            starts_at_signal: false,
             confused_with: &[],
             absorbs: &[],
             looks_like_both: &[],
@@ -84,6 +96,8 @@ impl Spec {
             refines: None,
             limiting_case: None,
             is_free_form: false,
+            is_steady: false,
+            equations: None,
             acts_on_state: false,
         }
     }
@@ -116,6 +130,12 @@ impl Spec {
     #[must_use]
     pub const fn memory(self, memory: usize) -> Self {
         Self { memory, ..self }
+    }
+
+    /// Its memory [starts at the signal](Self::starts_at_signal).
+    #[must_use]
+    pub const fn starting_at_signal(self) -> Self {
+        Self { starts_at_signal: true, ..self }
     }
 
     /// [Confused](Self::confused_with) with these.
@@ -162,6 +182,18 @@ impl Spec {
     #[must_use]
     pub const fn free_form(self) -> Self {
         Self { is_free_form: true, ..self }
+    }
+
+    /// It is [steady](Self::is_steady).
+    #[must_use]
+    pub const fn steady(self) -> Self {
+        Self { is_steady: true, ..self }
+    }
+
+    /// With these [`equations`](Self::equations).
+    #[must_use]
+    pub const fn equations(self, equations: Equations) -> Self {
+        Self { equations: Some(equations), ..self }
     }
 
     /// It [acts on the state](Self::acts_on_state).

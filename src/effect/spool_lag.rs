@@ -17,9 +17,9 @@
 //! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems: Modelling, Identification and Control
 //! (valve dynamics); Merritt, H. E., 1967, Hydraulic Control Systems (overlapped valves).
 
+use super::actuator_lag::LAGGING;
 use super::{
-    ActuatorLag, Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage,
-    UNLIMITED,
+    ActuatorLag, Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED,
 };
 
 /// See the [module](self).
@@ -40,25 +40,19 @@ static SPEC: Spec = Spec::new(
 )
 .between(0.0, UNLIMITED)])
 .memory(ActuatorLag::MEMORY)
+.starting_at_signal()
 .confused_with(&["actuator_lag", "rate_limit", "variable_delay"])
 .absorbing(&["actuator_lag"])
-.refining("actuator_lag");
+.refining("actuator_lag")
+.equations(LAGGING);
 
 impl Effect for SpoolLag {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn equations(&self) -> Option<Equations> {
-        ActuatorLag.equations()
-    }
-
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
         ActuatorLag.step(parameters, memory, at)
-    }
-
-    fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        ActuatorLag.settle(parameters, memory, at);
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {

@@ -15,9 +15,8 @@
 //! (velocity limit of the valve spool); Merritt, H. E., 1967, Hydraulic Control Systems (overlapped
 //! valves).
 
-use super::{
-    Dimension, Effect, Equations, Moment, Parameter, RateLimit, RecordRange, Spec, Stage, UNLIMITED,
-};
+use super::rate_limit::SLEWING;
+use super::{Dimension, Effect, Moment, Parameter, RateLimit, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -37,25 +36,19 @@ static SPEC: Spec = Spec::new(
 )
 .between(0.0, UNLIMITED)])
 .memory(1)
+.starting_at_signal()
 .confused_with(&["rate_limit", "spool_lag", "variable_delay"])
 .absorbing(&["rate_limit"])
-.refining("rate_limit");
+.refining("rate_limit")
+.equations(SLEWING);
 
 impl Effect for SpoolRateLimit {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn equations(&self) -> Option<Equations> {
-        RateLimit.equations()
-    }
-
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
         RateLimit.step(parameters, memory, at)
-    }
-
-    fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        RateLimit.settle(parameters, memory, at);
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {

@@ -45,7 +45,15 @@ static SPEC: Spec = Spec::new(
         .between(0.0, UNLIMITED),
 ])
 .memory(1)
-.confused_with(&["dead_band", "coulomb_friction"]);
+.confused_with(&["dead_band", "coulomb_friction"])
+.steady()
+.equations(
+    Equations::new(&["goes_on = signal * direction > 0 && abs(signal) >= min(stop, start)
+             moves = goes_on || abs(signal) > start
+             direction = if(moves, sign(signal), 0)
+             out = if(moves, signal, 0)"])
+    .remembering(&["direction"], "direction = if(abs(signal) > start, sign(signal), 0)"),
+);
 
 /// Gaps between input levels in which a fit starts.
 const GAPS: usize = 4;
@@ -56,22 +64,6 @@ impl Effect for Stiction {
     }
 
     /// The memory is the direction of motion: −1, 0 or 1.
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                "goes_on = signal * direction > 0 && abs(signal) >= min(stop, start)
-             moves = goes_on || abs(signal) > start
-             direction = if(moves, sign(signal), 0)
-             out = if(moves, signal, 0)",
-            )
-            .remembering(&["direction"], "direction = if(abs(signal) > start, sign(signal), 0)"),
-        )
-    }
-
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
         let (&[start, stop], [direction]) = (parameters, memory) else { return at.signal };
         let goes_on = at.signal * *direction > 0.0 && at.signal.abs() >= stop.min(start);

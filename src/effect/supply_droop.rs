@@ -28,7 +28,8 @@ static SPEC: Spec =
         )
         .between(0.0, 0.95)
         .typical(0.2)])
-        .confused_with(&["thermal_drift"]);
+        .confused_with(&["thermal_drift"])
+        .equations(Equations::new(&["out = signal * (1 - droop * others)"]));
 
 impl Effect for SupplyDroop {
     fn spec(&self) -> &'static Spec {
@@ -37,10 +38,6 @@ impl Effect for SupplyDroop {
 
     fn depends_on_others(&self) -> bool {
         true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new("out = signal * (1 - droop * others)"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

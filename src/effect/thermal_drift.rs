@@ -30,7 +30,9 @@ static SPEC: Spec =
                 .between(0.0, UNLIMITED)
                 .neutral(UNLIMITED),
         ])
-        .confused_with(&["supply_droop"]);
+        .confused_with(&["supply_droop"])
+        .equations(Equations::new(&["share = -expm1(-time / max(time_constant, 1e-300))
+             out = signal * max(1 + rate * time_constant * share, 0.05)"]));
 
 /// Smallest factor that is left of the gain.
 const SMALLEST_FACTOR: f64 = 0.05;
@@ -49,13 +51,6 @@ impl Effect for ThermalDrift {
 
     fn depends_on_warmth(&self) -> bool {
         true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new(
-            "share = -expm1(-time / max(time_constant, 1e-300))
-             out = signal * max(1 + rate * time_constant * share, 0.05)",
-        ))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -66,24 +66,9 @@ static SPEC: Spec = Spec::new(
     "flow_curve",
     "direction_gain",
 ])
-.free_form();
-
-const fn share(name: &'static str, meaning: &'static str, neutral: f64) -> Parameter {
-    Parameter::new(name, meaning, Dimension::One).between(0.0, 1.0).neutral(neutral)
-}
-
-impl Effect for ValveCurve {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new(
-            "near = if(signal < 0, negative_inner, inner)
+.free_form()
+.steady()
+.equations(Equations::new(&["near = if(signal < 0, negative_inner, inner)
              far = if(signal < 0, negative_outer, outer)
              factor = if(signal < 0, negative_factor, 1)
              size = if(reach > 0, 3 * abs(signal) / reach, 0)
@@ -103,8 +88,15 @@ impl Effect for ValveCurve {
              twist = left + right - 2 * rise
              cubic = base + along * (left + along * (bend + along * twist))
              part = if(size > 3, 1 + (size - 3) * at_end, cubic)
-             out = if(reach > 0, sign(signal) * factor * reach * part, signal)",
-        ))
+             out = if(reach > 0, sign(signal) * factor * reach * part, signal)"]));
+
+const fn share(name: &'static str, meaning: &'static str, neutral: f64) -> Parameter {
+    Parameter::new(name, meaning, Dimension::One).between(0.0, 1.0).neutral(neutral)
+}
+
+impl Effect for ValveCurve {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

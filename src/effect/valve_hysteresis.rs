@@ -34,26 +34,18 @@ static SPEC: Spec = Spec::new(
     .between(0.0, UNLIMITED)
     .typical(0.1)])
 .memory(1)
-.confused_with(&["stiction", "dead_band", "backlash", "variable_delay"]);
+.starting_at_signal()
+.confused_with(&["stiction", "dead_band", "backlash", "variable_delay"])
+.steady()
+.equations(
+    Equations::new(&["opening = min(max(opening, signal - 0.5 * width), signal + 0.5 * width)
+             out = opening"])
+    .remembering(&["opening"], "opening = signal"),
+);
 
 impl Effect for ValveHysteresis {
     fn spec(&self) -> &'static Spec {
         &SPEC
-    }
-
-    /// Of a held command nothing moves on.
-    fn is_steady(&self) -> bool {
-        true
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(
-            Equations::new(
-                "opening = min(max(opening, signal - 0.5 * width), signal + 0.5 * width)
-             out = opening",
-            )
-            .remembering(&["opening"], "opening = signal"),
-        )
     }
 
     /// The memory is the opening.
@@ -61,11 +53,6 @@ impl Effect for ValveHysteresis {
         let (&[width], [opening]) = (parameters, memory) else { return at.signal };
         *opening = opening.max(at.signal - 0.5 * width).min(at.signal + 0.5 * width);
         *opening
-    }
-
-    /// The spool is in the middle of its play: nobody knows from where it came.
-    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        memory.fill(at.signal);
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {

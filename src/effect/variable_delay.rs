@@ -77,23 +77,18 @@ static SPEC: Spec = Spec::new(
         .typical(0.0)
         .not_fitted(),
 ])
-.confused_with(&["actuator_lag", "rate_limit"]);
-
-impl Effect for VariableDelay {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new(
-            "size_s = max(size_scale, 1e-300)
+.confused_with(&["actuator_lag", "rate_limit"])
+.equations(Equations::new(&["size_s = max(size_scale, 1e-300)
              dwell_s = max(dwell_scale, 1e-300)
              drift_s = max(drift_scale, 1e-300)
              grown = -size * size_s * expm1(-abs(after - before) / size_s)
              rested = -dwell * dwell_s * expm1(-held / dwell_s)
              drifted = -drift * drift_s * expm1(-time / drift_s)
-             out = grown + if(after < before, falling, 0) + rested + drifted",
-        ))
+             out = grown + if(after < before, falling, 0) + rested + drifted"]));
+
+impl Effect for VariableDelay {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
     }
 
     /// Names what its law depends on.

@@ -41,7 +41,8 @@ static TRIAL_GAIN: Spec = Spec::new("gain", Stage::Load, "another gain, for each
         Parameter::new("negative", "part by which a negative speed is higher", Dimension::One)
             .between(-0.95, 4.0)
             .typical(-0.2),
-    ]);
+    ])
+    .equations(Equations::new(&["out = signal * (1 + if(signal > 0, positive, negative))"]));
 
 impl Effect for TrialGain {
     fn spec(&self) -> &'static Spec {
@@ -55,10 +56,6 @@ impl Effect for TrialGain {
 
     fn depends_on_angle(&self) -> bool {
         false
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        Some(Equations::new("out = signal * (1 + if(signal > 0, positive, negative))"))
     }
 }
 
@@ -164,10 +161,6 @@ impl Effect for Restricted {
 
     fn depends_on_steps(&self) -> bool {
         self.effect.depends_on_steps()
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        self.effect.equations()
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {

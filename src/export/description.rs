@@ -194,14 +194,13 @@ fn exported(
     if component.takes_measured_delays() {
         return Err(ExportError::MeasuredDelays { effect: spec.id });
     }
-    let equations = component.effect().equations();
-    let equations = equations.ok_or(ExportError::NoEquations { effect: spec.id })?;
+    let equations = spec.equations.ok_or(ExportError::NoEquations { effect: spec.id })?;
     let names: Vec<_> = spec.parameters.iter().map(|parameter| parameter.name).collect();
     let parse = |text: &str| {
         let parsed = Program::parse(text, spec.stage, &names, equations.memory);
         parsed.map_err(|source| ExportError::Equations { effect: spec.id, source })
     };
-    let (settle, step) = (parse(equations.settle)?, parse(&equations.step)?);
+    let (settle, step) = (parse(equations.settle)?, parse(&equations.step.concat())?);
     if !step.gives_result() {
         return Err(ExportError::NoResult { effect: spec.id });
     }

@@ -34,11 +34,6 @@ impl Arrivals {
         self.later.push((index, Arrival { time_s, speed, angle }));
     }
 
-    /// What acts before the first step.
-    pub(super) fn first(&self) -> Arrival {
-        self.first
-    }
-
     /// What acts afterwards, with the number of the step, from 0.
     pub(super) fn later(&self) -> &[(usize, Arrival)] {
         &self.later

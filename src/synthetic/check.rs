@@ -5,7 +5,9 @@ use std::fmt::Debug;
 
 use super::clock::{Clock, MIN_STEPS_PER_LAG, MIN_STEPS_PER_PERIOD, whole};
 use super::delay_law::DelayLaw;
-use super::error::{Allowed, Place, PlantError, above_zero};
+use super::error::{
+    BELOW_ONE, BETWEEN_ONES, FINITE, NOT_NEGATIVE, POSITIVE, Place, PlantError, SHARE,
+};
 use super::input::InputSpec;
 use super::schema::SCHEMA;
 use super::spec::{JointSpec, PlantSpec, Ringing, Spikes, default};
@@ -85,15 +87,15 @@ impl JointSpec {
     fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         self.check_words(place)?;
         self.input.check(clock, place)?;
-        self.delay.check(place)?;
+        self.delay.check(clock, place)?;
         self.check_list(place)?;
-        self.check_range(place)?;
-        self.check_statics(place)?;
+        self.check_range(clock, place)?;
+        self.check_statics(clock, place)?;
         self.check_dynamics(clock, place)?;
         self.check_cylinder(clock, place)?;
-        self.check_sensor(place)?;
-        self.effect.check(place, clock)?;
-        self.outside.check(place, clock)
+        self.check_sensor(clock, place)?;
+        self.effect.check("effect", place, clock)?;
+        self.outside.check("outside", place, clock)
     }
 
     fn check_words(&self, place: &Place) -> Result<(), PlantError> {
@@ -122,8 +124,8 @@ impl JointSpec {
         }
     }
 
-    fn check_range(&self, place: &Place) -> Result<(), PlantError> {
-        place.require("start", self.start, "finite", |start| start.is_finite())?;
+    fn check_range(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
+        place.number("start", self.start, &FINITE, clock)?;
         let Some(range) = self.range else {
             return Ok(());
         };
@@ -139,7 +141,7 @@ impl JointSpec {
         })
     }
 
-    fn check_statics(&self, place: &Place) -> Result<(), PlantError> {
+    fn check_statics(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         place.require("gain", self.gain, "finite, not zero", |gain| {
             gain.is_finite() && gain.abs() > 0.0
         })?;
@@ -151,7 +153,7 @@ impl JointSpec {
         place.require("valve_edge", self.valve_edge, "above 0, 1 or less", |edge| {
             *edge > 0.0 && *edge <= 1.0
         })?;
-        above_zero(place, "saturation", self.saturation)
+        self.saturation.map_or(Ok(()), |limit| place.number("saturation", limit, &POSITIVE, clock))
     }
 
     fn check_dynamics(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
@@ -168,9 +170,7 @@ impl JointSpec {
         place.require("ringing.period_s", period_s, allowed, |period_s| {
             lasts(*period_s, MIN_STEPS_PER_PERIOD)
         })?;
-        place.require("ringing.damping", damping, "0 or more, below 1", |damping| {
-            (0.0..1.0).contains(damping)
-        })
+        place.number("ringing.damping", damping, &BELOW_ONE, clock)
     }
 
     fn check_cylinder(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
@@ -213,18 +213,17 @@ impl JointSpec {
         Ok(())
     }
 
-    fn check_sensor(&self, place: &Place) -> Result<(), PlantError> {
-        place.require("noise", self.noise, "finite, not negative", |noise| {
-            noise.is_finite() && *noise >= 0.0
-        })?;
-        let (key, allowed) = ("noise_correlation", "above -1, below 1");
-        place.require(key, self.noise_correlation, allowed, |phi| phi.abs() < 1.0)?;
-        above_zero(place, "resolution", self.resolution)?;
+    fn check_sensor(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
+        place.number("noise", self.noise, &NOT_NEGATIVE, clock)?;
+        place.number("noise_correlation", self.noise_correlation, &BETWEEN_ONES, clock)?;
+        if let Some(resolution) = self.resolution {
+            place.number("resolution", resolution, &POSITIVE, clock)?;
+        }
         let Some(Spikes { share, size }) = self.spikes else {
             return Ok(());
         };
-        place.number("spikes.share", share, Allowed::Share)?;
-        place.number("spikes.size", size, Allowed::NotNegative)
+        place.number("spikes.share", share, &SHARE, clock)?;
+        place.number("spikes.size", size, &NOT_NEGATIVE, clock)
     }
 }
 

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::{Place, PlantError, above_zero};
+use super::clock::Clock;
+use super::error::{POSITIVE, Place, PlantError};
 
 /// What sets the delay of each step. All times are in seconds.
 ///
@@ -103,7 +104,7 @@ impl DelayLaw {
     }
 
     /// Refuses a negative delay, one that is not finite, and bounds in wrong order.
-    pub(super) fn check(&self, place: &Place) -> Result<(), PlantError> {
+    pub(super) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         for (key, seconds) in self.bounds() {
             let fits = |seconds: &f64| seconds.is_finite() && *seconds >= 0.0;
             place.require(key, seconds, "finite seconds, not negative", fits)?;
@@ -112,7 +113,7 @@ impl DelayLaw {
             place.require("delay.min", *min, "not above `delay.max`", |min| min <= max)?;
         }
         if let Self::StepSize { scale, .. } = self {
-            above_zero(place, "delay.scale", Some(*scale))?;
+            place.number("delay.scale", *scale, &POSITIVE, clock)?;
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ use super::error::{Place, PlantError};
 use super::input::{InputSpec, differ};
 use super::random::{Purpose, stream};
 use super::spec::JointSpec;
-use super::statics::StaticChain;
+use super::statics::Valve;
 
 /// Draws of level and hold before a range is given up. With one draw in a hundred
 /// acceptable, a thousand fail once in 20 000 steps.
@@ -39,23 +39,6 @@ pub(super) struct Drive {
 }
 
 impl Drive {
-    /// Drives `joint`, which has the number `index`, from 0.
-    ///
-    /// # Errors
-    /// [`PlantError::Range`] and [`PlantError::ListedDelays`].
-    pub(super) fn of(
-        joint: &JointSpec,
-        index: usize,
-        seed: u64,
-        clock: Clock,
-    ) -> Result<Self, PlantError> {
-        let mut driver = Driver::new(joint, index, seed, clock);
-        while let Some(sample) = driver.due() {
-            driver.act(sample, &Unhindered)?;
-        }
-        Ok(driver.drive)
-    }
-
     /// The steps, in the order of time.
     pub(super) fn steps(&self) -> &[Step] {
         &self.steps
@@ -114,6 +97,17 @@ impl Drive {
     }
 }
 
+/// What became of one joint that was driven.
+#[derive(Clone, Debug)]
+pub(super) struct Driven {
+    pub(super) drive: Drive,
+    /// Change of speed that each step caused, in output units per second; none for one
+    /// that was overtaken.
+    pub(super) speed_changes: Vec<Option<f64>>,
+    /// What an ideal sensor shows at each sample.
+    pub(super) angles: Vec<f64>,
+}
+
 /// A step that is to be made.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Intent {
@@ -121,7 +115,7 @@ pub(super) struct Intent {
     /// When it acts, in seconds.
     pub(super) acts_s: f64,
     /// Speed that it commands.
-    speed: f64,
+    pub(super) speed: f64,
 }
 
 /// A step to be tried out in advance.
@@ -147,23 +141,6 @@ pub(super) trait Predictor {
     fn max_draws(&self) -> Option<usize>;
 }
 
-/// Of a joint without inertia and load.
-pub(super) struct Unhindered;
-
-impl Predictor for Unhindered {
-    fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError> {
-        let Attempt { intent, range, end_s } = *attempt;
-        let from = drive.arrivals.angle_at(intent.acts_s);
-        let to = from + intent.speed * (end_s - intent.acts_s).max(0.0);
-        Ok(beyond(from, range).max(beyond(to, range)))
-    }
-
-    /// Never: a range that cannot be kept is an error.
-    fn max_draws(&self) -> Option<usize> {
-        None
-    }
-}
-
 /// How far `angle` is outside `range`.
 pub(super) fn beyond(angle: f64, [lowest, highest]: [f64; 2]) -> f64 {
     (lowest - angle).max(angle - highest).max(0.0)
@@ -174,7 +151,7 @@ pub(super) fn beyond(angle: f64, [lowest, highest]: [f64; 2]) -> f64 {
 pub(super) struct Driver<'a> {
     joint: &'a JointSpec,
     clock: Clock,
-    chain: StaticChain<'a>,
+    valve: Valve,
     delays: ChaCha8Rng,
     input: ChaCha8Rng,
     /// Sample of the next step, where it is drawn.
@@ -185,13 +162,13 @@ pub(super) struct Driver<'a> {
 impl<'a> Driver<'a> {
     /// The driver of `joint`, which has the number `index`, from 0.
     pub(super) fn new(joint: &'a JointSpec, index: usize, seed: u64, clock: Clock) -> Self {
-        let chain = StaticChain::of(joint);
+        let valve = Valve::of(joint);
         let initial = joint.input.initial();
-        let arrivals = Arrivals::new(joint.start, chain.speed(initial));
+        let arrivals = Arrivals::new(joint.start, valve.speed(initial));
         let drive = Drive { steps: Vec::new(), arrivals, initial };
         let delays = stream(seed, index, Purpose::Delay);
         let input = stream(seed, index, Purpose::Input);
-        let mut driver = Self { joint, clock, chain, delays, input, next: 0, drive };
+        let mut driver = Self { joint, clock, valve, delays, input, next: 0, drive };
         if let InputSpec::Levels { hold_s, .. } = &joint.input {
             driver.next = driver.draw_hold(*hold_s).saturating_add(1);
         }
@@ -316,18 +293,32 @@ impl<'a> Driver<'a> {
             needed: index + 1,
         })?;
         let step = Step { sample, before, after: level, delay_s };
-        Ok(Intent { step, acts_s: time_s + delay_s, speed: self.chain.speed(level) })
+        Ok(Intent { step, acts_s: time_s + delay_s, speed: self.valve.speed(level) })
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::DelayLaw;
+    use super::super::motion::Motion;
     use super::*;
     use crate::units::SamplePeriod;
 
     fn clock(samples: usize) -> Clock {
         Clock::new(SamplePeriod::from_seconds(0.01).unwrap(), samples, 20)
+    }
+
+    /// All steps of a plain `joint`.
+    pub(in crate::synthetic) fn driven(
+        joint: &JointSpec,
+        clock: Clock,
+    ) -> Result<Drive, PlantError> {
+        let mut driver = Driver::new(joint, 0, 3, clock);
+        let motion = Motion::new(joint, clock);
+        while let Some(sample) = driver.due() {
+            driver.act(sample, &motion)?;
+        }
+        Ok(driver.into_drive())
     }
 
     fn wandering(hold_s: [f64; 2]) -> JointSpec {
@@ -338,7 +329,7 @@ mod tests {
 
     #[test]
     fn drawn_steps_change_the_level_and_hold_it_as_long_as_allowed() {
-        let drive = Drive::of(&wandering([0.9, 2.0]), 0, 3, clock(20_000)).unwrap();
+        let drive = driven(&wandering([0.9, 2.0]), clock(20_000)).unwrap();
         let samples = std::iter::once(1).chain(drive.steps().iter().map(|step| step.sample));
         let samples: Vec<usize> = samples.collect();
         assert!(samples.windows(2).all(|w| (90..=200).contains(&(w[1] - w[0]))));
@@ -349,7 +340,7 @@ mod tests {
 
     #[test]
     fn drawn_holds_and_levels_spread_over_all_that_is_allowed() {
-        let drive = Drive::of(&wandering([0.9, 2.0]), 0, 3, clock(200_000)).unwrap();
+        let drive = driven(&wandering([0.9, 2.0]), clock(200_000)).unwrap();
         let mut holds = drive.steps().windows(2).map(|w| w[1].sample - w[0].sample);
         let mean = holds.by_ref().sum::<usize>() as f64 / (drive.steps().len() - 1) as f64;
         // Some 1400 holds of deviation 32 samples: a standard error of 0.9.
@@ -365,7 +356,7 @@ mod tests {
         let input = InputSpec::Levels { levels, hold_s: [5.0, 5.0] };
         let law = DelayLaw::Constant { seconds: 0.0 };
         let joint = JointSpec { range: Some([-1.0, 1.0]), ..JointSpec::new("a", input, law) };
-        let found = Drive::of(&joint, 0, 0, clock(2000));
+        let found = driven(&joint, clock(2000));
         assert!(matches!(found, Err(PlantError::Range { sample: 501, .. })));
     }
 
@@ -373,7 +364,7 @@ mod tests {
     fn given_steps_are_where_they_are_given() {
         let input = InputSpec::Steps { steps: vec![(3, 1.0), (5, -1.0)], initial: 0.5 };
         let joint = JointSpec::new("a", input, DelayLaw::Constant { seconds: 0.15 });
-        let drive = Drive::of(&joint, 0, 0, clock(6)).unwrap();
+        let drive = driven(&joint, clock(6)).unwrap();
         assert_eq!(drive.input(6), [0.5, 0.5, 1.0, 1.0, -1.0, -1.0]);
         let first = Step { sample: 3, before: 0.5, after: 1.0, delay_s: 0.15 };
         assert_eq!(drive.steps()[0], first);
@@ -385,7 +376,7 @@ mod tests {
             delay: DelayLaw::Listed { seconds: vec![0.1; 2] },
             ..wandering([0.9, 2.0])
         };
-        let found = Drive::of(&joint, 0, 0, clock(2000));
+        let found = driven(&joint, clock(2000));
         assert!(matches!(found, Err(PlantError::ListedDelays { given: 2, needed: 3, .. })));
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::clock::{Clock, MIN_STEPS_PER_LAG, MIN_STEPS_PER_PERIOD};
 use crate::experiment::{TrialError, did_you_mean};
 
 /// Which part of a plant file is meant.
@@ -42,7 +43,7 @@ pub enum PlantError {
         /// What the key belongs to.
         place: Place,
         /// The key, with that of its table before a dot.
-        key: &'static str,
+        key: String,
         /// The value found.
         value: String,
         /// What it may be.
@@ -117,44 +118,47 @@ pub enum PlantError {
 
 /// What a number may be.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Allowed {
-    /// Any finite number.
-    Finite,
-    /// Finite, above zero.
-    Positive,
-    /// Finite, zero or above.
-    NotNegative,
-    /// Finite, zero or below.
-    NotPositive,
-    /// From 0 to 1.
-    Share,
-    /// From 0, below 1.
-    BelowOne,
+pub(super) struct Allowed {
+    pub(super) words: &'static str,
+    fits: fn(f64, &Clock) -> bool,
 }
 
-impl Allowed {
-    fn words(self) -> &'static str {
-        match self {
-            Self::Finite => "finite",
-            Self::Positive => "finite, above zero",
-            Self::NotNegative => "finite, not negative",
-            Self::NotPositive => "finite, zero or below",
-            Self::Share => "0 to 1",
-            Self::BelowOne => "0 or more, below 1",
-        }
-    }
-
-    fn fits(self, value: f64) -> bool {
-        match self {
-            Self::Finite => value.is_finite(),
-            Self::Positive => value.is_finite() && value > 0.0,
-            Self::NotNegative => value.is_finite() && value >= 0.0,
-            Self::NotPositive => value.is_finite() && value <= 0.0,
-            Self::Share => (0.0..=1.0).contains(&value),
-            Self::BelowOne => (0.0..1.0).contains(&value),
-        }
-    }
+const fn allowed(words: &'static str, fits: fn(f64, &Clock) -> bool) -> Allowed {
+    Allowed { words, fits }
 }
+
+pub(super) const FINITE: Allowed = allowed("finite", |x, _| x.is_finite());
+/// An end that may be left out: infinite where it is.
+pub(super) const BOUND: Allowed = allowed("finite", |x, _| !x.is_nan());
+pub(super) const POSITIVE: Allowed = allowed("finite, above zero", |x, _| x.is_finite() && x > 0.0);
+pub(super) const NOT_NEGATIVE: Allowed =
+    allowed("finite, not negative", |x, _| x.is_finite() && x >= 0.0);
+pub(super) const NOT_POSITIVE: Allowed =
+    allowed("finite, zero or below", |x, _| x.is_finite() && x <= 0.0);
+pub(super) const SHARE: Allowed = allowed("0 to 1", |x, _| (0.0..=1.0).contains(&x));
+pub(super) const BELOW_ONE: Allowed = allowed("0 or more, below 1", |x, _| (0.0..1.0).contains(&x));
+pub(super) const OPEN_SHARE: Allowed = allowed("above 0, below 1", |x, _| x > 0.0 && x < 1.0);
+pub(super) const BETWEEN_ONES: Allowed = allowed("above -1, below 1", |x, _| x.abs() < 1.0);
+pub(super) const ABOVE_MINUS_ONE: Allowed =
+    allowed("finite, above -1", |x, _| x.is_finite() && x > -1.0);
+pub(super) const TWO_OR_MORE: Allowed =
+    allowed("finite, 2 or more", |x, _| x.is_finite() && x >= 2.0);
+/// An angle that is not near a dead point.
+pub(super) const MOUNT: Allowed = allowed("10 to 170 degrees", |x, _| (10.0..=170.0).contains(&x));
+/// Seconds of a time constant that the time steps can follow.
+pub(super) const LASTS_A_LAG: Allowed =
+    allowed(LASTS, |x, clock| x.is_finite() && x >= MIN_STEPS_PER_LAG * clock.substep_s());
+/// Seconds of a period that they can follow.
+pub(super) const LASTS_A_PERIOD: Allowed =
+    allowed(LASTS, |x, clock| x.is_finite() && x >= MIN_STEPS_PER_PERIOD * clock.substep_s());
+const LASTS: &str = "finite seconds, long enough for the time steps (sample_period_s / substeps): \
+                     4 or more in a time constant, 40 in a period";
+pub(super) const LASTS_A_SAMPLE: Allowed =
+    allowed("finite, a sample or more", |x, clock| x.is_finite() && x >= clock.period().seconds());
+/// The part of a distance that is lost per second.
+pub(super) const DRAINS: Allowed = allowed("0 or more, below one in a sample", |x, clock| {
+    x >= 0.0 && x * clock.period().seconds() < 1.0
+});
 
 impl Place {
     /// The joint `name`.
@@ -165,7 +169,7 @@ impl Place {
     /// An error about `key` unless its `value` fits.
     pub(super) fn require<T: fmt::Debug>(
         &self,
-        key: &'static str,
+        key: &str,
         value: T,
         allowed: &'static str,
         fits: impl FnOnce(&T) -> bool,
@@ -176,44 +180,24 @@ impl Place {
     /// An error about the number `key` unless its `value` is allowed.
     pub(super) fn number(
         &self,
-        key: &'static str,
+        key: &str,
         value: f64,
-        allowed: Allowed,
+        allowed: &Allowed,
+        clock: &Clock,
     ) -> Result<(), PlantError> {
-        self.require(key, value, allowed.words(), |value| allowed.fits(*value))
-    }
-
-    /// An error unless `range` is finite and in order.
-    pub(super) fn range(
-        &self,
-        [from, to]: [&'static str; 2],
-        range: [f64; 2],
-    ) -> Result<(), PlantError> {
-        self.number(from, range[0], Allowed::Finite)?;
-        let allowed = "finite, above the lower end";
-        self.require(to, range[1], allowed, |to| to.is_finite() && *to > range[0])
+        self.require(key, value, allowed.words, |value| (allowed.fits)(*value, clock))
     }
 
     /// The error that `key` has a value other than `allowed`.
     pub(super) fn refuse(
         &self,
-        key: &'static str,
+        key: &str,
         value: impl fmt::Debug,
         allowed: &'static str,
     ) -> PlantError {
-        let (place, value) = (self.clone(), format!("{value:?}"));
+        let (place, key, value) = (self.clone(), key.to_owned(), format!("{value:?}"));
         PlantError::Value { place, key, value, allowed }
     }
-}
-
-/// Refuses a value that is there but not finite and above zero.
-pub(super) fn above_zero(
-    place: &Place,
-    key: &'static str,
-    value: Option<f64>,
-) -> Result<(), PlantError> {
-    let Some(value) = value else { return Ok(()) };
-    place.require(key, value, "finite, above zero", |value| value.is_finite() && *value > 0.0)
 }
 
 impl fmt::Display for Place {

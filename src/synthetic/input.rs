@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::clock::Clock;
-use super::error::{Place, PlantError};
+use super::error::{FINITE, Place, PlantError};
 
 /// The input of a joint: voltage steps, drawn or given.
 ///
@@ -109,14 +109,14 @@ impl InputSpec {
     pub(super) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         match self {
             Self::Levels { levels, hold_s } => {
-                check_levels(levels, place)?;
+                check_levels(levels, clock, place)?;
                 let allowed = "[shortest, longest] in seconds, finite and above zero";
                 place.require("input.hold_s", *hold_s, allowed, |[shortest, longest]| {
                     *shortest > 0.0 && shortest <= longest && longest.is_finite()
                 })
             }
             Self::Steps { steps, initial } => {
-                place.require("input.initial", *initial, "finite", |level| level.is_finite())?;
+                place.number("input.initial", *initial, &FINITE, clock)?;
                 check_steps(steps, *initial, clock, place)
             }
         }
@@ -128,9 +128,9 @@ pub(super) fn differ(a: f64, b: f64) -> bool {
     (a - b).abs() > 0.0
 }
 
-fn check_levels(levels: &[f64], place: &Place) -> Result<(), PlantError> {
+fn check_levels(levels: &[f64], clock: &Clock, place: &Place) -> Result<(), PlantError> {
     for level in levels {
-        place.require("input.levels", *level, "finite", |level| level.is_finite())?;
+        place.number("input.levels", *level, &FINITE, clock)?;
     }
     place.require("input.levels", levels, "two levels or more that differ", |levels| {
         levels.windows(2).any(|pair| matches!(pair, &[a, b] if differ(a, b)))

@@ -48,8 +48,6 @@ mod clock;
 mod cylinder;
 mod delay_law;
 mod drive;
-mod driven;
-mod dynamics;
 pub mod effects;
 mod error;
 mod input;

@@ -1,61 +1,28 @@
-//! A joint with effects, in time steps finer than a sample.
+//! A joint with its effects, in time steps finer than a sample.
 //!
-//! Everything that moves or remembers is one state of a single system of differential
-//! equations, integrated by Runge and Kutta's method of order four, as in `dynamics`.
-
-use std::f64::consts::TAU;
+//! Everything that moves or remembers is one state of a single system of differential equations,
+//! integrated by Runge and Kutta's method of order four over the pieces in which the command is
+//! constant: a time step is split where a level begins to act. No fitted model uses this code, so
+//! that data and model cannot share a mistake.
 
 use super::clock::Clock;
 use super::drive::{Attempt, Drive, Predictor, beyond};
-use super::effects::{CreepMemory, MEMORIES, SupplyDroop, Valve};
+use super::effects::{At, Instance, Stage, States};
 use super::error::PlantError;
-use super::spec::{JointSpec, Ringing};
-use super::statics::StaticChain;
+use super::spec::JointSpec;
+use super::statics::Valve;
 
 /// All that moves or remembers.
-type State = [f64; STATES];
+#[derive(Clone, Copy, Debug, Default)]
+struct State {
+    /// Angle of the joint.
+    angle: f64,
+    /// The states of its effects.
+    of_effects: [States; MOST_EFFECTS],
+}
 
-/// How far the joint has come loose, from 0 at rest to 1.
-const CONTACT: usize = 0;
-/// Opening of the spool.
-const SPOOL: usize = 1;
-/// After the lag of the actuator.
-const LAG: usize = 2;
-/// Pressure in the oil.
-const PRESSURE: usize = 3;
-/// Flow of the oil.
-const FLOW: usize = 4;
-/// Speed of the mass with friction.
-const MASS: usize = 5;
-/// The friction on it.
-const FRICTION: usize = 6;
-/// Slow states of the creep.
-const MEMORY: std::ops::Range<usize> = 7..7 + MEMORIES;
-/// Speed after the plain lag.
-const LAGGED: usize = 11;
-/// Speed that rings.
-const RINGING: usize = 12;
-/// Its derivative.
-const SURGE: usize = 13;
-/// Temperature of the oil, 0 to 1.
-const WARMTH: usize = 14;
-/// Demand that the pump has followed.
-const DEMAND: usize = 15;
-/// Angle of the joint.
-const ANGLE: usize = 16;
-/// Angle on the other side of the play.
-const MEASURED: usize = 17;
-/// Pressure in an oil column.
-const COLUMN_PRESSURE: usize = 18;
-/// Flow out of it.
-const COLUMN_FLOW: usize = 19;
-/// The command that the spool has followed, in input units.
-const FOLLOWED: usize = 20;
-/// Number of states.
-const STATES: usize = 21;
-
-/// Time steps in which a joint that sticks comes loose.
-const STEPS_TO_LOOSEN: f64 = 2.0;
+/// As many effects as can act beside one another, but for those of delay and valve.
+const MOST_EFFECTS: usize = 20;
 
 /// Draws of a level before the one that goes least beyond the range is taken.
 const PATIENCE: usize = 20;
@@ -65,9 +32,12 @@ const PATIENCE: usize = 20;
 pub(super) struct Motion<'a> {
     joint: &'a JointSpec,
     clock: Clock,
-    chain: StaticChain<'a>,
-    valve: Valve<'a>,
-    radians: f64,
+    valve: Valve,
+    effects: Vec<Instance>,
+    /// What the effects see of it.
+    at: At,
+    /// Whether the spool follows its command with time.
+    has_spool: bool,
     /// Arrivals that act already.
     arrived: usize,
     now_s: f64,
@@ -77,100 +47,92 @@ pub(super) struct Motion<'a> {
     opening: f64,
     /// Direction of motion, 0 where it sticks.
     direction: f64,
-    /// Demand of the other joints, 0 to 1.
-    others: f64,
     state: State,
 }
 
 impl<'a> Motion<'a> {
     /// The joint at the first sample; its first level has long been held.
     pub(super) fn new(joint: &'a JointSpec, clock: Clock) -> Self {
-        let (chain, valve) = (StaticChain::of(joint), joint.valve());
-        let radians = radians(&joint.output_unit);
+        let valve = Valve::of(joint);
+        let moving = |one: &Instance| !matches!(one.twin.stage, Stage::Delay | Stage::Valve);
+        let effects: Vec<_> = joint.effects().filter(moving).collect();
         let mut motion = Self {
             joint,
             clock,
-            chain,
+            at: At { radians: joint.radians(), substep_s: clock.substep_s(), ..valve.edges() },
+            has_spool: effects.iter().any(|effect| effect.twin.stage == Stage::Spool),
             valve,
-            radians,
+            effects,
             arrived: 0,
             now_s: 0.0,
-            command: 0.0,
+            command: joint.input.initial(),
             opening: 0.0,
             direction: 0.0,
-            others: 0.0,
-            state: [0.0; STATES],
+            state: State { angle: joint.start, ..State::default() },
         };
-        motion.state[FOLLOWED] = joint.input.initial();
-        motion.set(joint.input.initial());
         motion.settle();
         motion
     }
 
     /// Angle as it would be measured without noise.
     pub(super) fn shown(&self) -> f64 {
-        let behind = self.joint.effect.backlash.map_or(self.state[ANGLE], |_| self.state[MEASURED]);
-        self.joint.outside.shown(behind)
+        let at = self.at_angle(&self.state, self.now_s);
+        self.behind(Stage::Sensor, self.state.angle, &at, &self.state, &mut State::default())
     }
 
-    /// How far the valve is open, as a part of what the largest level opens it.
-    pub(super) fn demand(&self) -> f64 {
-        share(self.opening, &self.chain, self.joint)
+    /// How far the valve is open, as a part of what the largest level opens it; a level of `drive`
+    /// that begins to act now counts.
+    pub(super) fn demand(&mut self, drive: &Drive) -> f64 {
+        self.arrive(self.now_s.next_up(), drive);
+        self.valve.share(self.opening)
     }
 
     /// Lets the time from `sample` to the next pass.
     pub(super) fn pass(&mut self, sample: usize, drive: &Drive, others: f64) {
-        self.others = others;
+        self.at.others = others;
         for end_s in self.clock.substep_ends(sample) {
-            while let Some((index, arrival)) = drive.arrivals().later().get(self.arrived) {
-                if arrival.time_s >= end_s {
-                    break;
-                }
-                self.integrate_to(arrival.time_s);
-                self.set(drive.level_of(*index));
-                self.arrived += 1;
-            }
+            self.arrive(end_s, drive);
             self.integrate_to(end_s);
         }
     }
 
-    /// Lets `level` act.
-    fn set(&mut self, level: f64) {
-        self.command = level;
-        if self.joint.effect.spool_lag.is_none() {
-            self.open(level);
-        } else {
-            self.open(self.state[FOLLOWED]);
+    /// Lets the levels of `drive` act that begin to before `end_s`.
+    fn arrive(&mut self, end_s: f64, drive: &Drive) {
+        while let Some((index, arrival)) = drive.arrivals().later().get(self.arrived) {
+            if arrival.time_s >= end_s {
+                break;
+            }
+            self.integrate_to(arrival.time_s);
+            self.command = drive.level_of(*index);
+            self.open();
+            self.arrived += 1;
         }
     }
 
-    /// Opens the valve as far as a spool at `level` does.
-    fn open(&mut self, level: f64) {
+    /// Opens the valve as far as its spool has come.
+    fn open(&mut self) {
+        let at = self.at_angle(&self.state, self.now_s);
+        let level =
+            self.behind(Stage::Spool, self.command, &at, &self.state, &mut State::default());
         self.direction = self.valve.direction(level, self.direction);
-        self.opening = self.chain.opening(level);
+        self.opening = self.valve.opening(level);
     }
 
     /// Puts what moves into the state that a level long held has brought about.
     fn settle(&mut self) {
-        let effect = &self.joint.effect;
-        let loose = f64::from(u8::from(self.direction.abs() > 0.0 || effect.stiction.is_none()));
-        let mut signal = loose * self.opening;
-        self.state[CONTACT] = loose;
-        [self.state[SPOOL], self.state[LAG]] = [signal; 2];
-        if let Some(resonance) = effect.resonance {
-            [self.state[PRESSURE], self.state[FLOW]] = resonance.steady(signal);
-        }
-        if let Some(column) = effect.oil_column {
-            let steady = column.steady(signal);
-            [self.state[COLUMN_PRESSURE], self.state[COLUMN_FLOW]] = steady;
-        }
-        if let Some(friction) = effect.friction() {
-            [self.state[MASS], self.state[FRICTION]] = friction.steady(signal);
-            signal = self.state[MASS];
-        }
-        self.state[MEMORY].fill(signal);
-        [self.state[LAGGED], self.state[RINGING]] = [self.joint.gain * signal; 2];
-        [self.state[ANGLE], self.state[MEASURED]] = [self.joint.start; 2];
+        self.settle_behind(Stage::Spool, self.command);
+        self.open();
+        let signal = self.settle_behind(Stage::Dynamics, self.opening);
+        self.settle_behind(Stage::Speed, self.joint.gain * signal);
+        self.settle_behind(Stage::Sensor, self.joint.start);
+    }
+
+    /// Settles the effects of a stage; the signal behind them where `signal` has long been held.
+    fn settle_behind(&mut self, stage: Stage, signal: f64) -> f64 {
+        let at = self.at_angle(&self.state, self.now_s);
+        let effects = self.effects.iter().zip(&mut self.state.of_effects);
+        let effects = effects.filter(|(effect, _)| effect.twin.stage == stage);
+        effects.fold(signal, |signal, (effect, own)| effect.settle(signal, &at, own))
     }
 
     fn integrate_to(&mut self, end_s: f64) {
@@ -180,120 +142,64 @@ impl<'a> Motion<'a> {
         }
         let (start, half) = (self.state, self.now_s + dt / 2.0);
         let k1 = self.rate(&start, self.now_s);
-        let k2 = self.rate(&moved(&start, &k1, dt / 2.0), half);
-        let k3 = self.rate(&moved(&start, &k2, dt / 2.0), half);
-        let k4 = self.rate(&moved(&start, &k3, dt), end_s);
-        for (i, state) in self.state.iter_mut().enumerate() {
-            *state += dt / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+        let k2 = self.rate(&self.moved(&start, &k1, dt / 2.0), half);
+        let k3 = self.rate(&self.moved(&start, &k2, dt / 2.0), half);
+        let k4 = self.rate(&self.moved(&start, &k3, dt), end_s);
+        let mean = |k1, k2, k3, k4| dt / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
+        self.state.angle += mean(k1.angle, k2.angle, k3.angle, k4.angle);
+        for (effect, own) in self.state.of_effects.iter_mut().enumerate().take(self.effects.len()) {
+            let [k1, k2, k3, k4] = [&k1, &k2, &k3, &k4].map(|rate| &rate.of_effects[effect]);
+            for (i, state) in own.iter_mut().enumerate() {
+                *state += mean(k1[i], k2[i], k3[i], k4[i]);
+            }
         }
         self.now_s = end_s;
-        if self.joint.effect.spool_lag.is_some() {
-            self.open(self.state[FOLLOWED]);
+        if self.has_spool {
+            self.open();
         }
+    }
+
+    /// `state` after `dt` seconds of change at `rate`.
+    fn moved(&self, state: &State, rate: &State, dt: f64) -> State {
+        let mut moved = *state;
+        moved.angle += rate.angle * dt;
+        let own = moved.of_effects.iter_mut().zip(&rate.of_effects).take(self.effects.len());
+        for (state, rate) in own.flat_map(|(state, rate)| state.iter_mut().zip(rate)) {
+            *state += rate * dt;
+        }
+        moved
     }
 
     /// Derivative of `state` by time.
     fn rate(&self, state: &State, time_s: f64) -> State {
-        let mut rate = [0.0; STATES];
-        let opening = self.opened(state, &mut rate);
-        let signal = self.loosened(opening, state, &mut rate);
-        let signal = self.followed(signal, state, &mut rate);
-        let speed = self.rung(self.joint.gain * signal, state, &mut rate);
-        rate[ANGLE] = self.loaded(speed, state, time_s, &mut rate);
-        if let Some(backlash) = self.joint.effect.backlash {
-            rate[MEASURED] = backlash.rate(state[ANGLE], state[MEASURED], self.clock.substep_s());
-        }
+        let mut rate = State::default();
+        let at = self.at_angle(state, time_s);
+        let mut behind = |stage, signal| self.behind(stage, signal, &at, state, &mut rate);
+        let opening = if self.has_spool {
+            self.valve.opening(behind(Stage::Spool, self.command))
+        } else {
+            self.opening
+        };
+        let speed = self.joint.gain * behind(Stage::Dynamics, opening);
+        let driven = behind(Stage::Speed, speed);
+        let moves = behind(Stage::Load, driven);
+        behind(Stage::Sensor, state.angle);
+        rate.angle = moves;
         rate
     }
 
-    /// The opening of the valve, as far as its spool has come.
-    fn opened(&self, state: &State, rate: &mut State) -> f64 {
-        let Some(lag) = self.joint.effect.spool_lag else { return self.opening };
-        rate[FOLLOWED] = lag.rate(self.command, state[FOLLOWED]);
-        self.chain.opening(state[FOLLOWED])
+    /// What the effects of a stage make of `signal`, and the derivatives of their states.
+    fn behind(&self, stage: Stage, signal: f64, at: &At, state: &State, rate: &mut State) -> f64 {
+        let own = state.of_effects.iter().zip(&mut rate.of_effects);
+        let effects = self.effects.iter().zip(own);
+        let effects = effects.filter(|(effect, _)| effect.twin.stage == stage);
+        effects.fold(signal, |signal, (effect, (own, rate))| effect.act(signal, at, own, rate))
     }
 
-    /// The opening of the valve, nothing where the joint sticks.
-    fn loosened(&self, opening: f64, state: &State, rate: &mut State) -> f64 {
-        if self.joint.effect.stiction.is_none() {
-            return opening;
-        }
-        let wanted = f64::from(u8::from(self.direction.abs() > 0.0));
-        rate[CONTACT] = (wanted - state[CONTACT]) / (STEPS_TO_LOOSEN * self.clock.substep_s());
-        state[CONTACT] * opening
-    }
-
-    /// The effects on how the speed follows, in input units.
-    fn followed(&self, opening: f64, state: &State, rate: &mut State) -> f64 {
-        let (effect, mut signal) = (&self.joint.effect, opening);
-        let substep_s = self.clock.substep_s();
-        if let Some(limit) = effect.rate_limit {
-            rate[SPOOL] = limit.rate(signal, state[SPOOL], substep_s);
-            signal = state[SPOOL];
-        }
-        if let Some(lag) = effect.actuator_lag {
-            rate[LAG] = lag.rate(signal, state[LAG]);
-            signal = state[LAG];
-        }
-        if let Some(resonance) = effect.resonance {
-            let now = [state[PRESSURE], state[FLOW]];
-            [rate[PRESSURE], rate[FLOW]] = resonance.rate(signal, now);
-            signal = state[FLOW];
-        }
-        if let Some(column) = effect.oil_column {
-            let now = [state[COLUMN_PRESSURE], state[COLUMN_FLOW]];
-            let moved = column.rate(signal, now, state[ANGLE]);
-            [rate[COLUMN_PRESSURE], rate[COLUMN_FLOW]] = moved;
-            signal = state[COLUMN_FLOW];
-        }
-        if let Some(friction) = effect.friction() {
-            let now = [state[MASS], state[FRICTION]];
-            [rate[MASS], rate[FRICTION]] = friction.rate(signal, now, substep_s);
-            signal = state[MASS];
-        }
-        if let Some(creep) = self.joint.outside.creep_memory {
-            CreepMemory::rates(signal, &state[MEMORY], &mut rate[MEMORY]);
-            signal = creep.out(signal, &state[MEMORY]);
-        }
-        signal
-    }
-
-    /// The plain lag and ringing, in output units per second.
-    fn rung(&self, mut speed: f64, state: &State, rate: &mut State) -> f64 {
-        if let Some(lag_s) = self.joint.lag_s {
-            rate[LAGGED] = (speed - state[LAGGED]) / lag_s;
-            speed = state[LAGGED];
-        }
-        let Some(Ringing { period_s, damping }) = self.joint.ringing else {
-            return speed;
-        };
-        let omega = TAU / period_s;
-        rate[RINGING] = state[SURGE];
-        rate[SURGE] = omega * (omega * (speed - state[RINGING]) - 2.0 * damping * state[SURGE]);
-        state[RINGING]
-    }
-
-    /// What the load leaves of a speed, and what it adds.
-    fn loaded(&self, mut speed: f64, state: &State, time_s: f64, rate: &mut State) -> f64 {
-        let (effect, outside) = (&self.joint.effect, &self.joint.outside);
-        let (angle, substep_s) = (state[ANGLE], self.clock.substep_s());
-        if let Some(drift) = effect.thermal_drift {
-            rate[WARMTH] = drift.rate(state[WARMTH]);
-            speed *= drift.factor(state[WARMTH]);
-        }
-        if let Some(droop) = effect.supply_droop {
-            rate[DEMAND] = SupplyDroop::rate(self.others, state[DEMAND], substep_s);
-            speed *= droop.factor(state[DEMAND]);
-        }
-        speed *= effect.position_gain.map_or(1.0, |linkage| linkage.factor(angle, self.radians));
-        speed *= outside.sticky_spot.map_or(1.0, |spot| spot.factor(angle));
-        if let Some(gravity) = effect.gravity_load {
-            let edge = self.joint.gain.abs() * self.valve.edge();
-            speed = gravity.speed(speed, angle, self.radians, edge);
-        }
-        speed += effect.leakage.map_or(0.0, |leakage| leakage.drift(angle));
-        speed += outside.disturbance.map_or(0.0, |push| push.push(time_s));
-        speed + effect.end_stop.map_or(0.0, |stop| stop.push(angle, substep_s))
+    /// What the effects see of the joint in this state.
+    fn at_angle(&self, state: &State, time_s: f64) -> At {
+        let sticks = self.direction.abs() <= 0.0;
+        At { time_s, angle: state.angle, moves: if sticks { 0.0 } else { 1.0 }, ..self.at }
     }
 }
 
@@ -304,6 +210,12 @@ impl<'a> Motion<'a> {
 impl Predictor for Motion<'_> {
     fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError> {
         let Attempt { intent, range, end_s } = *attempt;
+        if self.joint.is_plain() {
+            // Without inertia and load: known beforehand.
+            let from = drive.arrivals().angle_at(intent.acts_s);
+            let to = from + intent.speed * (end_s - intent.acts_s).max(0.0);
+            return Ok(beyond(from, range).max(beyond(to, range)));
+        }
         let mut drive = drive.clone();
         drive.push(intent);
         let mut ahead = self.clone();
@@ -311,9 +223,9 @@ impl Predictor for Motion<'_> {
         let (mut allowed, mut excess) = (f64::INFINITY, 0.0_f64);
         let mut sample = self.clock.sample_at(self.now_s);
         while ahead.now_s < end_s {
-            ahead.pass(sample, &drive, self.others);
+            ahead.pass(sample, &drive, self.at.others);
             sample += 1;
-            let outside = beyond(ahead.state[ANGLE], range);
+            let outside = beyond(ahead.state.angle, range);
             if ahead.now_s + period_s > intent.acts_s {
                 allowed = allowed.min(outside);
                 excess = excess.max(outside - allowed);
@@ -322,49 +234,89 @@ impl Predictor for Motion<'_> {
         Ok(excess)
     }
 
-    /// A joint that coasts or creeps may have to leave its range.
+    /// A joint that coasts or creeps may have to leave its range; of a plain one a range that
+    /// cannot be kept is an error.
     fn max_draws(&self) -> Option<usize> {
-        Some(PATIENCE)
+        (!self.joint.is_plain()).then_some(PATIENCE)
     }
 }
 
-/// How far `opening` is of what the largest level of `joint` opens.
-fn share(opening: f64, chain: &StaticChain<'_>, joint: &JointSpec) -> f64 {
-    let largest = joint.input.largest();
-    let full = chain.opening(largest).abs().max(chain.opening(-largest).abs());
-    if full > 0.0 { (opening.abs() / full).min(1.0) } else { 0.0 }
-}
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
 
-/// The demand of a joint without effects, at each sample.
-pub(super) fn demands(joint: &JointSpec, drive: &Drive, clock: &Clock) -> Vec<f64> {
-    let chain = StaticChain::of(joint);
-    let mut pending = drive.arrivals().later().iter().peekable();
-    let mut level = joint.input.initial();
-    let demand = |sample| {
-        let now_s = clock.time_s(sample);
-        while let Some((index, _)) = pending.next_if(|(_, arrival)| arrival.time_s <= now_s) {
-            level = drive.level_of(*index);
+    use super::super::spec::Ringing;
+    use super::super::{DelayLaw, InputSpec};
+    use super::*;
+    use crate::units::SamplePeriod;
+
+    /// Angles at 1 kHz for 4 s with the input stepping from 0 to 1 at 0.5 s, at a gain of 10.
+    fn step_response(lag_s: Option<f64>, ringing: Option<Ringing>) -> (Clock, Vec<f64>) {
+        let input = InputSpec::Steps { steps: vec![(501, 1.0)], initial: 0.0 };
+        let law = DelayLaw::Constant { seconds: 0.0 };
+        let joint = JointSpec { lag_s, ringing, ..JointSpec::new("a", input, law) };
+        let clock = Clock::new(SamplePeriod::from_seconds(1e-3).unwrap(), 4000, 20);
+        (clock, angles(&joint, clock))
+    }
+
+    fn angles(joint: &JointSpec, clock: Clock) -> Vec<f64> {
+        let drive = super::super::drive::tests::driven(joint, clock).unwrap();
+        let mut motion = Motion::new(joint, clock);
+        let angle = |sample| {
+            let angle = motion.shown();
+            motion.pass(sample, &drive, 0.0);
+            angle
+        };
+        (1..=clock.samples()).map(angle).collect()
+    }
+
+    #[test]
+    fn all_effects_together_find_their_place() {
+        let moving = super::super::effects::in_order()
+            .filter(|twin| !matches!(twin.stage, Stage::Delay | Stage::Valve));
+        // With a plain lag and ringing, and one of two frictions.
+        assert!(moving.count() + 2 - 1 <= MOST_EFFECTS);
+    }
+
+    #[test]
+    fn a_lag_follows_its_closed_form() {
+        let (clock, angles) = step_response(Some(0.1), None);
+        for sample in [501, 520, 600, 900, 4000] {
+            let t = clock.time_s(sample) - 0.5;
+            let expected = 10.0 * (t - 0.1 * (1.0 - (-t / 0.1).exp()));
+            assert!((angles[sample - 1] - expected).abs() < 1e-9, "sample {sample}");
         }
-        share(chain.opening(level), &chain, joint)
-    };
-    (1..=clock.samples()).map(demand).collect()
-}
-
-/// `state` after `dt` seconds of change at `rate`.
-fn moved(state: &State, rate: &State, dt: f64) -> State {
-    let mut moved = *state;
-    for (state, rate) in moved.iter_mut().zip(rate) {
-        *state += rate * dt;
     }
-    moved
-}
 
-/// Radians in an angle of one `unit`; degrees where the unit is no angle.
-fn radians(unit: &str) -> f64 {
-    match unit {
-        "rad" => 1.0,
-        "mrad" => 1e-3,
-        "turn" | "rev" => TAU,
-        _ => 1_f64.to_radians(),
+    /// 1-based samples and heights of the peaks of the speed above the steady one.
+    fn peaks(angles: &[f64]) -> Vec<(usize, f64)> {
+        let speeds: Vec<f64> = angles.windows(2).map(|w| (w[1] - w[0]) * 1e3 - 10.0).collect();
+        let tops = (1..speeds.len() - 1).filter(|k| {
+            speeds[*k] > 1e-3 && speeds[*k] > speeds[k - 1] && speeds[*k] >= speeds[k + 1]
+        });
+        tops.map(|k| (k + 1, speeds[k])).collect()
+    }
+
+    #[test]
+    fn ringing_has_its_period_and_decay() {
+        let (period_s, damping) = (0.4, 0.1);
+        let (_, angles) = step_response(None, Some(Ringing { period_s, damping }));
+        let peaks = peaks(&angles);
+        let root = (1.0_f64 - damping * damping).sqrt();
+        // Peaks are found to a sample, here 1 ms.
+        let spacing = (peaks[3].0 - peaks[0].0) as f64 * 1e-3 / 3.0;
+        assert!((spacing - period_s / root).abs() < 1e-3, "peaks {spacing} s apart");
+        // A mean over 1 ms near a peak differs from its top by some 1e-5 of it.
+        let decay = (peaks[0].1 / peaks[1].1).ln();
+        assert!((decay - TAU * damping / root).abs() < 1e-3, "decays by {decay}");
+    }
+
+    #[test]
+    fn a_joint_that_already_moves_starts_steady() {
+        let input = InputSpec::Steps { steps: Vec::new(), initial: 0.5 };
+        let law = DelayLaw::Constant { seconds: 0.0 };
+        let joint = JointSpec { lag_s: Some(0.1), start: 3.0, ..JointSpec::new("a", input, law) };
+        let clock = Clock::new(SamplePeriod::from_seconds(0.01).unwrap(), 11, 20);
+        assert!((angles(&joint, clock)[10] - 3.5).abs() < 1e-12);
     }
 }

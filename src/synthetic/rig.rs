@@ -2,8 +2,7 @@
 
 use super::clock::Clock;
 use super::cylinder::{CylinderSpec, Machine, State};
-use super::drive::{Attempt, Drive, Driver, Predictor, beyond};
-use super::driven::Driven;
+use super::drive::{Attempt, Drive, Driven, Driver, Predictor, beyond};
 use super::error::{Place, PlantError};
 use super::spec::JointSpec;
 
@@ -59,7 +58,7 @@ impl<'a> Rig<'a> {
     /// The cylinder of `joint` at the first sample, at rest.
     fn new(joint: &'a JointSpec, cylinder: &CylinderSpec, clock: Clock) -> Self {
         let machine = Machine::of(cylinder);
-        let radians = radians_per_output_unit(joint);
+        let radians = joint.radians();
         let level = joint.input.initial();
         Self {
             joint,
@@ -156,9 +155,4 @@ impl Predictor for Rig<'_> {
     fn max_draws(&self) -> Option<usize> {
         None
     }
-}
-
-/// Radians in the output's unit, which is `deg` or `rad`.
-fn radians_per_output_unit(joint: &JointSpec) -> f64 {
-    if joint.output_unit == "rad" { 1.0 } else { 1.0_f64.to_radians() }
 }

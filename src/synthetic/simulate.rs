@@ -1,7 +1,7 @@
 //! From a plant to the logs of its joints.
 
 use super::clock::Clock;
-use super::driven::Driven;
+use super::drive::Driven;
 use super::error::{Place, PlantError};
 use super::random::{Purpose, stream};
 use super::spec::{JointSpec, PlantSpec};

@@ -1,10 +1,12 @@
 //! The plant file: which joints, how they move, what drives them.
 
+use std::f64::consts::TAU;
+
 use serde::{Deserialize, Serialize};
 
 use super::cylinder::CylinderSpec;
 use super::delay_law::{DelayLaw, Occasion};
-use super::effects::{self, Change, Effects, Outside, Valve};
+use super::effects::{self, Hidden, Instance, LAG, OUTSIDE, RINGING, Stage, Twin};
 use super::error::PlantError;
 use super::input::InputSpec;
 use super::schema::SCHEMA;
@@ -85,11 +87,19 @@ pub struct JointSpec {
     /// Samples that are far off.
     pub spikes: Option<Spikes>,
     /// Effects that the catalogue of models has.
-    #[serde(default, skip_serializing_if = "Effects::is_empty")]
-    pub effect: Effects,
+    #[serde(
+        default,
+        deserialize_with = "effects::catalogue",
+        skip_serializing_if = "Hidden::is_empty"
+    )]
+    pub effect: Hidden,
     /// Effects that it does not have.
-    #[serde(default, skip_serializing_if = "Outside::is_empty")]
-    pub outside: Outside,
+    #[serde(
+        default,
+        deserialize_with = "effects::outside",
+        skip_serializing_if = "Hidden::is_empty"
+    )]
+    pub outside: Hidden,
 }
 
 /// Single samples that are far off, as of a loose contact.
@@ -223,8 +233,8 @@ impl JointSpec {
             noise_correlation: 0.0,
             resolution: None,
             spikes: None,
-            effect: Effects::default(),
-            outside: Outside::default(),
+            effect: Hidden::default(),
+            outside: Hidden::default(),
         }
     }
 
@@ -239,43 +249,64 @@ impl JointSpec {
     /// # use tauscope::synthetic::scenario::ideal;
     /// let mut plant = ideal(1);
     /// plant.joints[0].hide("backlash", &[("width".to_owned(), 1.5)])?;
-    /// assert!(plant.joints[0].effect.backlash.is_some());
+    /// assert_eq!(plant.joints[0].effect.get("backlash"), Some(&[1.5][..]));
     /// # Ok::<(), tauscope::synthetic::PlantError>(())
     /// ```
     pub fn hide(&mut self, name: &str, numbers: &[(String, f64)]) -> Result<(), PlantError> {
-        let name = effects::name(name)?;
-        if effects::CATALOGUE.contains(&name) || effects::FINER.contains(&name) {
-            self.effect = effects::with_part(&self.effect, name, numbers)?;
-        } else {
-            self.outside = effects::with_part(&self.outside, name, numbers)?;
-        }
+        let twin = effects::find(name)?;
+        let numbers = effects::numbers(twin, &numbers.iter().cloned().collect());
+        let numbers = numbers
+            .map_err(|cause| PlantError::Numbers { name: twin.name, cause: Box::new(cause) })?;
+        self.put(twin, &numbers);
         Ok(())
     }
 
-    /// Whether its motion is that of valve, lag and ringing alone.
-    pub(super) fn is_plain(&self) -> bool {
-        self.effect.only_delay() && self.outside.is_empty()
+    /// Hides an effect with these numbers.
+    pub(super) fn put(&mut self, twin: &'static Twin, numbers: &[f64]) {
+        let is_outside = OUTSIDE.contains(&twin.name);
+        let group = if is_outside { &mut self.outside } else { &mut self.effect };
+        group.put(twin, numbers);
     }
 
-    /// Its valve.
-    pub(super) fn valve(&self) -> Valve<'_> {
-        Valve::new(&self.effect, &self.outside, self.valve_edge * self.input.largest())
+    /// Its effects that act, in the order in which the signal passes them; plain lag and ringing
+    /// are two of them.
+    pub(super) fn effects(&self) -> impl Iterator<Item = Instance> {
+        let mut all: Vec<_> = self.effect.acting().chain(self.outside.acting()).cloned().collect();
+        all.sort_by_key(|one| effects::in_order().position(|twin| twin.name == one.twin.name));
+        let lag = self.lag_s.map(|lag_s| Instance::new(&LAG, &[lag_s]));
+        let ringing = self
+            .ringing
+            .map(|Ringing { period_s, damping }| Instance::new(&RINGING, &[period_s, damping]));
+        all.into_iter().chain(lag).chain(ringing)
+    }
+
+    /// Radians in an angle of one output unit; degrees where the unit is no angle.
+    pub(super) fn radians(&self) -> f64 {
+        match self.output_unit.as_str() {
+            "rad" => 1.0,
+            "mrad" => 1e-3,
+            "turn" | "rev" => TAU,
+            _ => 1_f64.to_radians(),
+        }
+    }
+
+    /// Whether its motion is that of dead band, saturation, lag and ringing alone.
+    pub(super) fn is_plain(&self) -> bool {
+        self.effects().all(|one| matches!(one.twin.stage, Stage::Delay | Stage::Speed))
     }
 
     /// Delay of one step in seconds; `None` where the list of delays is too short.
     pub(super) fn delay_s(&self, at: &Occasion) -> Option<f64> {
         let law_s = self.delay.delay_s(at)?;
-        let variable_s = self.effect.variable_delay.map_or(0.0, |variable| {
-            let (rise, held_s, time_s) = (at.after - at.before, at.held_s, at.time_s);
-            variable.extra_s(&Change { rise, held_s, time_s })
-        });
+        let variable = self.effect.get("variable_delay");
+        let variable_s = variable.map_or(0.0, |numbers| effects::extra_s(numbers, at));
         let pilot_s = self.cylinder.as_ref().map_or(0.0, |spec| spec.pilot_s(at.before, at.after));
         Some(law_s + variable_s + pilot_s)
     }
 
     /// A delay in seconds that no step exceeds.
     pub(super) fn longest_delay_s(&self) -> f64 {
-        let variable_s = self.effect.variable_delay.map_or(0.0, |variable| variable.longest_s());
+        let variable_s = self.effect.get("variable_delay").map_or(0.0, effects::longest_s);
         let pilot_s = self.cylinder.as_ref().map_or(0.0, CylinderSpec::longest_pilot_s);
         self.delay.longest_s() + variable_s + pilot_s
     }

@@ -14,19 +14,19 @@ const OUTPUT_DECIMALS: usize = 6;
 /// Decimals of what the truth derives from other numbers.
 const TRUTH_DECIMALS: usize = 9;
 
-/// The columns of the truth.
-const TRUTH_COLUMNS: [&str; 11] = [
-    "joint",
-    "trial",
-    "i",
-    "p",
-    "input_before",
-    "input_after",
-    "hold_samples",
-    "delay_samples",
-    "delay_s",
-    "slope_change",
-    "overtaken",
+/// The columns of the truth, and what stands in them.
+const TRUTH_COLUMNS: [(&str, fn(&StepTruth) -> String); 11] = [
+    ("joint", |step| step.joint.clone()),
+    ("trial", |step| step.trial.clone()),
+    ("i", |step| step.i.to_string()),
+    ("p", |step| step.p.to_string()),
+    ("input_before", |step| step.input_before.to_string()),
+    ("input_after", |step| step.input_after.to_string()),
+    ("hold_samples", |step| step.hold_samples.to_string()),
+    ("delay_samples", |step| decimal(step.delay_samples, TRUTH_DECIMALS)),
+    ("delay_s", |step| step.delay_s.to_string()),
+    ("slope_change", |step| decimal(step.slope_change, TRUTH_DECIMALS)),
+    ("overtaken", |step| step.overtaken.to_string()),
 ];
 
 /// Writes the first trial of each joint as one CSV table, as long as the first joint's.
@@ -65,21 +65,9 @@ pub fn write_log(made: &Synthetic, out: impl Write) -> Result<(), csv::Error> {
 /// What writing to `out` gives.
 pub fn write_truth(truth: &[StepTruth], out: impl Write) -> Result<(), csv::Error> {
     let mut table = csv::Writer::from_writer(out);
-    table.write_record(TRUTH_COLUMNS)?;
+    table.write_record(TRUTH_COLUMNS.map(|(name, _)| name))?;
     for step in truth {
-        table.write_record([
-            step.joint.clone(),
-            step.trial.clone(),
-            step.i.to_string(),
-            step.p.to_string(),
-            step.input_before.to_string(),
-            step.input_after.to_string(),
-            step.hold_samples.to_string(),
-            decimal(step.delay_samples, TRUTH_DECIMALS),
-            step.delay_s.to_string(),
-            decimal(step.slope_change, TRUTH_DECIMALS),
-            step.overtaken.to_string(),
-        ])?;
+        table.write_record(TRUTH_COLUMNS.map(|(_, cell)| cell(step)))?;
     }
     table.flush()?;
     Ok(())

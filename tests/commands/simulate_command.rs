@@ -42,9 +42,9 @@ fn numbers_and_options_arrive_in_the_plant() {
     let text = fs::read_to_string(folder.path().join("truth.toml")).unwrap();
     let plant = PlantSpec::from_toml(&text).unwrap();
     let joint = &plant.joints[0];
-    let band = joint.effect.dead_band.unwrap();
-    let found = [band.lower, band.upper, joint.noise, joint.noise_correlation, plant.duration_s];
-    assert_eq!(found.map(|x| x.to_string()), ["-0.5", "0.5", "0.1", "0.9", "20"]);
+    assert_eq!(joint.effect.get("dead_band"), Some(&[-0.5, 0.5][..]));
+    let found = [joint.noise, joint.noise_correlation, plant.duration_s];
+    assert_eq!(found.map(|x| x.to_string()), ["0.1", "0.9", "20"]);
     assert_eq!(plant.seed, 3);
 }
 

@@ -5,7 +5,7 @@ use tauscope::effect::{Dimension, Effect, Moment, Parameter, Spec, Stage};
 
 /// A hose that throttles: the faster the flow, the more of it is lost.
 #[derive(Debug)]
-struct Hose;
+pub(super) struct Hose;
 
 static HOSE: Spec = Spec::new("hose", Stage::Load, "pressure lost in a long hose")
     .equation("out = in / (1 + loss abs(in))")

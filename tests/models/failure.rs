@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use tauscope::diagnosis::failure::{
-    Clause, EvenColumn, FailsWhere, Feature, Relation, ResidualRecord, Samples, Units, diagnose,
-    fails_where, regions, worst_segments,
+    Clause, FailsWhere, Feature, Relation, ResidualRecord, Samples, Units, diagnose, fails_where,
+    regions, worst_segments,
 };
 
 const PERIOD_S: f64 = 0.01;
@@ -54,9 +54,10 @@ impl Made {
                 samples.speed.push(10.0 * input + 0.5 * random.normal());
                 samples.trial.push(u32::try_from(sample * trials / count).unwrap());
             }
-            samples.time_s.push_even(start as f64 * PERIOD_S, PERIOD_S, end - start);
-            samples.since_step_s.push_even(0.0, PERIOD_S, end - start);
-            samples.hold_s.push_even(hold_s, 0.0, end - start);
+            samples.time_s.extend((start..end).map(|sample| sample as f64 * PERIOD_S));
+            let since = (0..end - start).map(|sample| sample as f64 * PERIOD_S);
+            samples.since_step_s.extend(since);
+            samples.hold_s.extend(std::iter::repeat_n(hold_s, end - start));
             segments.push(start..end);
         }
         Self { samples, segments, trials, random }
@@ -142,7 +143,7 @@ fn an_error_above_an_angle_is_found() {
 
 #[test]
 fn an_error_just_after_a_step_is_found() {
-    let first = found(4, |s, k| s.since_step_s.get(k).unwrap() < 0.3);
+    let first = found(4, |s, k| s.since_step_s[k] < 0.3);
     assert_eq!(first.clauses.len(), 1, "{}", first.condition);
     assert_eq!(first.clauses[0].feature, Feature::SinceStep);
     assert_eq!(first.clauses[0].relation, Relation::Below);
@@ -152,8 +153,7 @@ fn an_error_just_after_a_step_is_found() {
 #[test]
 fn an_error_just_after_steps_of_one_rhythm_is_found() {
     let made = Made::new(5, 12_000, 1, [1.5, 1.5]);
-    let record =
-        made.with_noise(0.5, |s, k| if s.since_step_s.get(k).unwrap() < 0.3 { 1.0 } else { 0.2 });
+    let record = made.with_noise(0.5, |s, k| if s.since_step_s[k] < 0.3 { 1.0 } else { 0.2 });
     let first = fails_where(&record).remove(0);
     assert_eq!(first.clauses[0].feature, Feature::SinceStep, "{}", first.condition);
 }
@@ -165,7 +165,7 @@ fn an_error_in_one_trial_is_found() {
 
 #[test]
 fn an_error_in_a_window_of_time_is_found() {
-    let first = found(7, |s, k| (70.0..84.0).contains(&s.time_s.get(k).unwrap()));
+    let first = found(7, |s, k| (70.0..84.0).contains(&s.time_s[k]));
     let features: Vec<_> = first.clauses.iter().map(|clause| clause.feature).collect();
     assert_eq!(features, [Feature::Time; 2], "{}", first.condition);
     assert!((number(&first.clauses[0]) - 70.0).abs() < 3.0, "{}", first.condition);
@@ -182,7 +182,7 @@ fn an_error_of_two_clauses_is_found() {
 
 #[test]
 fn two_failures_are_told_apart() {
-    let inside = |s: &Samples, k: usize| s.trial[k] == 1 || s.since_step_s.get(k).unwrap() < 0.15;
+    let inside = |s: &Samples, k: usize| s.trial[k] == 1 || s.since_step_s[k] < 0.15;
     let (record, _) = failing(9, inside);
     let found = fails_where(&record);
     let features: Vec<_> = found.iter().map(|one| one.clauses[0].feature).collect();
@@ -226,7 +226,7 @@ fn holds_shorter_than_the_correlation_give_no_report() {
 #[test]
 fn steps_that_fail_by_chance_give_no_report() {
     // Each segment has an error of its own size, whatever its level, hold or angle.
-    let deviation = |s: &Samples, k: usize| (1.5 * (7919.0 * s.hold_s.get(k).unwrap()).sin()).exp();
+    let deviation = |s: &Samples, k: usize| (1.5 * (7919.0 * s.hold_s[k]).sin()).exp();
     let make = |seed| Made::new(seed, 6000, 2, [0.6, 2.4]).with_noise(0.5, deviation);
     assert_seldom_reported("segments of random size", make);
 }
@@ -244,13 +244,8 @@ fn a_perfect_model_fails_nowhere() {
 #[test]
 fn what_is_not_known_is_in_no_region() {
     let mut made = Made::usual(10);
-    let mut since_step_s = EvenColumn::from(vec![f64::NAN; 500]);
-    for sample in 500..made.samples.since_step_s.len() {
-        since_step_s.push_even(made.samples.since_step_s.get(sample).unwrap(), 0.0, 1);
-    }
-    made.samples.since_step_s = since_step_s;
-    let record =
-        made.with_noise(0.5, |s, k| if s.since_step_s.get(k).unwrap() < 0.3 { 1.0 } else { 0.2 });
+    made.samples.since_step_s[..500].fill(f64::NAN);
+    let record = made.with_noise(0.5, |s, k| if s.since_step_s[k] < 0.3 { 1.0 } else { 0.2 });
     let since = regions(&record).into_iter().filter(|region| region.feature == Feature::SinceStep);
     let share: f64 = since.map(|region| region.share_of_time).sum();
     assert!((share - 11_500.0 / 12_000.0).abs() < 1e-12);
@@ -282,9 +277,9 @@ fn holds(record: &ResidualRecord, clause: &Clause, index: usize) -> bool {
         Feature::Output => s.output[index],
         Feature::Speed => s.speed[index],
         Feature::AbsSpeed => s.speed[index].abs(),
-        Feature::SinceStep => s.since_step_s.get(index).unwrap(),
-        Feature::Hold => s.hold_s.get(index).unwrap(),
-        Feature::Time => s.time_s.get(index).unwrap(),
+        Feature::SinceStep => s.since_step_s[index],
+        Feature::Hold => s.hold_s[index],
+        Feature::Time => s.time_s[index],
         Feature::Trial => {
             return clause.to_string()
                 == format!("trial = {}", record.trials()[s.trial[index] as usize]);
@@ -382,7 +377,7 @@ proptest! {
     fn regions_of_a_feature_share_everything(seed in 0_u64..1000) {
         let record = Made::new(seed, 2000, 3, [0.3, 1.0]).with_noise(0.5, |s, k| s.input[k].abs());
         let regions = regions(&record);
-        for feature in Feature::ALL {
+        for feature in Feature::all() {
             let of: Vec<_> = regions.iter().filter(|region| region.feature == feature).collect();
             let sum = |share: fn(&tauscope::diagnosis::failure::Region) -> f64| {
                 of.iter().map(|region| share(region)).sum::<f64>()

@@ -13,7 +13,7 @@ fn plant() -> PlantSpec {
 
 /// The table of the effect that the boom hides, and its name.
 fn hidden() -> (String, toml::Table) {
-    let effects = toml::Table::try_from(plant().joints[0].effect).unwrap();
+    let effects = toml::Table::try_from(&plant().joints[0].effect).unwrap();
     let mut effects = effects.into_iter();
     let (name, numbers) = effects.next().unwrap();
     assert!(effects.next().is_none(), "one effect is hidden");

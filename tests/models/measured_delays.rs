@@ -9,7 +9,6 @@ use tauscope::fit::Horizon;
 use tauscope::study::{
     JointEstimate, Mode, Protocol, add_to_joints, estimate_joints, explain_joints, improve_joints,
 };
-use tauscope::synthetic::effects::Effects;
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
 
 const NOISE: f64 = 0.05;
@@ -19,17 +18,23 @@ const PROTOCOL: Protocol =
 
 type Estimates = Vec<Result<JointEstimate, EstimateError>>;
 
+/// An effect and its numbers.
+type Hidden<'a> = (&'a str, &'a [(&'a str, f64)]);
+
 /// A joint with these delays and effects.
-fn made(seed: u64, delay: DelayLaw, effect: &Effects) -> (Vec<Joint>, Estimates) {
+fn made(seed: u64, delay: DelayLaw, hidden: &[Hidden<'_>]) -> (Vec<Joint>, Estimates) {
     let levels = vec![-3.0, -2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0, 3.0];
     let input = InputSpec::Levels { levels, hold_s: [0.6, 2.0] };
-    let joint = JointSpec {
+    let mut joint = JointSpec {
         gain: 8.0,
         range: Some([-50.0, 50.0]),
         noise: NOISE,
-        effect: *effect,
         ..JointSpec::new("boom", input, delay)
     };
+    for (name, numbers) in hidden {
+        let numbers: Vec<_> = numbers.iter().map(|(key, x)| ((*key).to_owned(), *x)).collect();
+        joint.hide(name, &numbers).unwrap();
+    }
     let joints = simulate(&PlantSpec::new(seed, 90.0, vec![joint])).unwrap().joints;
     let estimates = estimate_joints(&joints, &Settings::default(), || (), &Threads);
     (joints, estimates)
@@ -44,7 +49,7 @@ fn ids(model: &tauscope::model::JointModel) -> Vec<&'static str> {
 
 #[test]
 fn random_delays_are_told_and_taken_from_the_record() {
-    let (joints, estimates) = made(11, RANDOM, &Effects::default());
+    let (joints, estimates) = made(11, RANDOM, &[]);
     let options = Options::default();
     let found = explain_joints(&joints, &estimates, |_| None, PROTOCOL, &options, &Threads);
     let found = found.into_iter().next().unwrap().unwrap().unwrap();
@@ -61,7 +66,7 @@ fn random_delays_are_told_and_taken_from_the_record() {
 
 #[test]
 fn what_random_delays_hide_is_found_behind_them() {
-    let banded = toml::from_str("[dead_band]\nlower = -0.6\nupper = 0.5").unwrap();
+    let banded = [("dead_band", &[("lower", -0.6), ("upper", 0.5)][..])];
     let (joints, estimates) = made(13, RANDOM, &banded);
     let goes_on = |_: usize, _: &_| true;
     let options = Options::default();
@@ -77,7 +82,7 @@ fn what_random_delays_hide_is_found_behind_them() {
 
 #[test]
 fn a_law_is_preferred_to_measured_delays_where_it_does_as_well() {
-    let law = toml::from_str("[variable_delay]\nfalling_s = 0.1").unwrap();
+    let law = [("variable_delay", &[("falling_s", 0.1)][..])];
     let (joints, estimates) = made(12, DelayLaw::Constant { seconds: 0.1 }, &law);
     let found =
         explain_joints(&joints, &estimates, |_| None, PROTOCOL, &Options::default(), &Threads);

@@ -6,7 +6,7 @@ use crate::sample::size;
 use proptest::prelude::*;
 use tauscope::effect::expression::define;
 use tauscope::effect::{Definition, OwnParameter};
-use tauscope::effect::{Effect, Placebo, REGISTRY, Stage, find};
+use tauscope::effect::{Effect, REGISTRY, Stage, find};
 use tauscope::experiment::Joint;
 use tauscope::model::{Component, JointModel, ModelFile, Revision, RevisionErrors, Value};
 
@@ -244,7 +244,7 @@ fn what_could_not_be_read_again_is_not_written() {
         let message = error.unwrap_err().to_string();
         assert!(message.contains("joint `arm`: `integrator.gain` = "), "{message}");
     }
-    let unknown = arm.with(Component::neutral(&Placebo));
+    let unknown = arm.with(Component::neutral(&crate::custom_effect::Hose));
     let error = file.revised("arm", &unknown, &Revision::default()).unwrap_err();
     assert!(error.to_string().contains("lists the catalogue"), "{error}");
 }

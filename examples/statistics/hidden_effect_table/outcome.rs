@@ -215,7 +215,7 @@ fn truth(plant: &JointSpec, name: &str) -> Option<f64> {
         (None, DelayLaw::Constant { seconds }) if name == "delay" => Some(*seconds),
         (None, _) => (name == "gain").then_some(plant.gain),
         (Some((effect, key)), _) => {
-            let effects = toml::Table::try_from(plant.effect).ok()?;
+            let effects = toml::Table::try_from(&plant.effect).ok()?;
             effects.get(effect)?.get(key)?.as_float()
         }
     }

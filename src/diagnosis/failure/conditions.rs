@@ -401,9 +401,9 @@ mod tests {
             input: vec![1.0; samples],
             output,
             speed: vec![1.0; samples],
-            since_step_s: vec![0.0; samples].into(),
-            hold_s: vec![1.0; samples].into(),
-            time_s: vec![0.0; samples].into(),
+            since_step_s: vec![0.0; samples],
+            hold_s: vec![1.0; samples],
+            time_s: vec![0.0; samples],
             trial: vec![0; samples],
             speed_error: Vec::new(),
         };

@@ -4,15 +4,16 @@ use std::fmt;
 
 use super::record::{Samples, Units};
 
-/// Something that is known of every sample.
+/// Something that is known of every sample. Of conditions that say the same, the one of the feature
+/// that is first here is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Feature {
     /// Sign of the input.
     Direction,
+    /// Magnitude of the input.
+    AbsInput,
     /// The input as it acts.
     Input,
-    /// Its magnitude.
-    AbsInput,
     /// The output.
     Output,
     /// Magnitude of the speed.
@@ -29,50 +30,34 @@ pub enum Feature {
     Trial,
 }
 
+/// All features in their order, with their names in files and in conditions.
+const NAMED: [(Feature, &str, &str); 10] = [
+    (Feature::Direction, "direction", "input"),
+    (Feature::AbsInput, "abs_input", "|input|"),
+    (Feature::Input, "input", "input"),
+    (Feature::Output, "output", "output"),
+    (Feature::AbsSpeed, "abs_speed", "|speed|"),
+    (Feature::Speed, "speed", "speed"),
+    (Feature::SinceStep, "since_step", "time since step"),
+    (Feature::Hold, "hold", "hold"),
+    (Feature::Time, "time", "time"),
+    (Feature::Trial, "trial", "trial"),
+];
+
 impl Feature {
-    /// All features. Of conditions that say the same, the one that is first here is kept.
-    pub const ALL: [Self; 10] = [
-        Self::Direction,
-        Self::AbsInput,
-        Self::Input,
-        Self::Output,
-        Self::AbsSpeed,
-        Self::Speed,
-        Self::SinceStep,
-        Self::Hold,
-        Self::Time,
-        Self::Trial,
-    ];
+    /// All features in their order.
+    pub fn all() -> impl Iterator<Item = Self> {
+        NAMED.iter().map(|(feature, ..)| *feature)
+    }
 
     /// Its name in files.
     pub fn id(self) -> &'static str {
-        match self {
-            Self::Direction => "direction",
-            Self::Input => "input",
-            Self::AbsInput => "abs_input",
-            Self::Output => "output",
-            Self::AbsSpeed => "abs_speed",
-            Self::Speed => "speed",
-            Self::SinceStep => "since_step",
-            Self::Hold => "hold",
-            Self::Time => "time",
-            Self::Trial => "trial",
-        }
+        NAMED[self as usize].1
     }
 
     /// Its name in a condition.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Direction | Self::Input => "input",
-            Self::AbsInput => "|input|",
-            Self::Output => "output",
-            Self::AbsSpeed => "|speed|",
-            Self::Speed => "speed",
-            Self::SinceStep => "time since step",
-            Self::Hold => "hold",
-            Self::Time => "time",
-            Self::Trial => "trial",
-        }
+        NAMED[self as usize].2
     }
 
     /// Its name for people, who see the record on clocks of other beginnings.
@@ -105,9 +90,9 @@ impl Feature {
             Self::Output => of(&samples.output),
             Self::AbsSpeed => of(&samples.speed).map(f64::abs),
             Self::Speed => of(&samples.speed),
-            Self::SinceStep => samples.since_step_s.get(row),
-            Self::Hold => samples.hold_s.get(row),
-            Self::Time => samples.time_s.get(row),
+            Self::SinceStep => of(&samples.since_step_s),
+            Self::Hold => of(&samples.hold_s),
+            Self::Time => of(&samples.time_s),
             Self::Trial => samples.trial.get(row).copied().map(f64::from),
         }
     }

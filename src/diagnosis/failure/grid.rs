@@ -72,21 +72,8 @@ pub(super) enum Family {
     OneFeature,
 }
 
-/// The best score of each family.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct BestScores {
-    one_clause: f64,
-    one_feature: f64,
-}
-
-impl BestScores {
-    pub(super) fn of(self, family: Family) -> f64 {
-        match family {
-            Family::OneClause => self.one_clause,
-            Family::OneFeature => self.one_feature,
-        }
-    }
-}
+/// The best score of each [`Family`].
+pub(super) type BestScores = [f64; 2];
 
 /// Features of a record, cut into parts.
 #[derive(Debug)]
@@ -117,7 +104,7 @@ impl Grid {
             Feature::AbsSpeed => turns(&samples.speed),
             _ => true,
         };
-        let all = Feature::ALL.into_iter().filter(|feature| takes_part(*feature));
+        let all = Feature::all().filter(|feature| takes_part(*feature));
         let features = all.filter(useful);
         let axes = features.filter_map(|feature| Axis::new(record, feature, PARTS));
         let axes: Vec<_> = axes.collect();
@@ -157,12 +144,11 @@ impl Grid {
     }
 
     /// The best condition on one feature, from the sums in its parts.
-    pub(super) fn best_of(&self, sums: &[Vec<f64>], family: Family) -> Choice {
+    pub(super) fn best_of(&self, sums: &[Vec<f64>]) -> Choice {
         let mut best = Choice::NONE;
         for (axis, (sums, spans)) in sums.iter().zip(&self.spans).enumerate() {
             let cumulative = cumulative(sums);
-            let offered = spans.iter().filter(|span| family.has(**span));
-            for &span in offered {
+            for &span in spans {
                 let score = span.of(&cumulative) - self.cost(&[axis], span.clauses);
                 best.offer(score, &[Selection { axis, span }]);
             }
@@ -172,15 +158,13 @@ impl Grid {
 
     /// The scores of the best conditions on one feature, of either family.
     pub(super) fn best_scores(&self, sums: &[Vec<f64>]) -> BestScores {
-        let mut best = BestScores::default();
+        let mut best = [0.0_f64; 2];
         for (axis, (sums, spans)) in sums.iter().zip(&self.spans).enumerate() {
             let cumulative = cumulative(sums);
             for span in spans {
                 let score = span.of(&cumulative) - self.cost(&[axis], span.clauses);
-                best.one_feature = best.one_feature.max(score);
-                if span.clauses == 1 {
-                    best.one_clause = best.one_clause.max(score);
-                }
+                let families = if span.clauses == 1 { 0..2 } else { 1..2 };
+                best[families].iter_mut().for_each(|best| *best = best.max(score));
             }
         }
         best
@@ -266,12 +250,6 @@ impl Grid {
     }
 }
 
-impl Family {
-    fn has(self, span: Span) -> bool {
-        self == Self::OneFeature || span.clauses == 1
-    }
-}
-
 fn cumulative(sums: &[f64]) -> Vec<f64> {
     let running = sums.iter().scan(0.0, |sum, value| {
         *sum += value;
@@ -311,9 +289,9 @@ mod tests {
             input: column(6),
             output: column(90),
             speed: column(8),
-            time_s: column(1000).into(),
-            since_step_s: column(4).into(),
-            hold_s: column(2).into(),
+            time_s: column(1000),
+            since_step_s: column(4),
+            hold_s: column(2),
             trial: column(3).into_iter().map(|value| u32::from(value > -2.0)).collect(),
             speed_error: Vec::new(),
         };
@@ -359,8 +337,8 @@ mod tests {
             });
             let best = one.map(|one| value(&[one], one.span.clauses)).fold(0.0, f64::max);
             let sums = grid.part_sums(&rows, excess);
-            assert!((grid.best_of(&sums, Family::OneFeature).score - best).abs() < 1e-9);
-            assert!((grid.best_scores(&sums).of(Family::OneFeature) - best).abs() < 1e-9);
+            assert!((grid.best_of(&sums).score - best).abs() < 1e-9);
+            assert!((grid.best_scores(&sums)[Family::OneFeature as usize] - best).abs() < 1e-9);
         }
     }
 }

@@ -10,7 +10,6 @@
 //! call the model wrong, is decided elsewhere.
 
 mod axis;
-mod column;
 mod conditions;
 mod feature;
 mod grid;
@@ -21,7 +20,6 @@ mod segments;
 mod significance;
 mod threshold;
 
-pub use column::EvenColumn;
 pub use conditions::{Bound, Clause, FailsWhere, Relation, fails_where};
 pub use feature::Feature;
 pub use record::{RecordError, ResidualRecord, Samples, Units};

@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use super::column::EvenColumn;
-
 /// The index of a sample, from 0: half as long as a `usize`, and there are columns of them.
 pub(super) type Row = u32;
 
@@ -27,34 +25,16 @@ pub struct Samples {
     /// Speed of the output with its sign, output units per second.
     pub speed: Vec<f64>,
     /// Seconds in the record.
-    pub time_s: EvenColumn,
+    pub time_s: Vec<f64>,
     /// Seconds since the step that acts.
-    pub since_step_s: EvenColumn,
+    pub since_step_s: Vec<f64>,
     /// How long its level is held, seconds.
-    pub hold_s: EvenColumn,
+    pub hold_s: Vec<f64>,
     /// Index of the trial in [`ResidualRecord::trials`].
     pub trial: Vec<u32>,
     /// Measured minus simulated speed, output units per second: where an error arises. Empty
     /// where it is not known.
     pub speed_error: Vec<f64>,
-}
-
-impl Samples {
-    /// None yet, with room for so many.
-    pub(crate) fn with_capacity(samples: usize) -> Self {
-        let room = || Vec::with_capacity(samples);
-        Self {
-            residual: room(),
-            input: room(),
-            output: room(),
-            speed: room(),
-            time_s: EvenColumn::default(),
-            since_step_s: EvenColumn::default(),
-            hold_s: EvenColumn::default(),
-            trial: Vec::with_capacity(samples),
-            speed_error: room(),
-        }
-    }
 }
 
 /// Units of input and output, where they are known.
@@ -68,48 +48,15 @@ pub struct Units {
 
 /// Why samples do not make a [`ResidualRecord`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RecordError {
-    /// A column is not as long as the residual.
-    #[error("`{column}` has {found} samples, the residual {expected}")]
-    UnequalLengths {
-        /// Name of the column.
-        column: &'static str,
-        /// Its samples.
-        found: usize,
-        /// Samples of the residual.
-        expected: usize,
-    },
-    /// A residual, or an error of the speed, is NaN or infinite.
-    #[error("residual {index} is not a finite number")]
-    NotFinite {
-        /// Its index, from 0.
-        index: usize,
-    },
-    /// There are more samples than are counted.
-    #[error("there are {samples} samples, which is more than {}", u32::MAX)]
-    TooMany {
-        /// Number of samples.
-        samples: usize,
-    },
-    /// A sample belongs to a trial that has no label.
-    #[error("sample {index} is of trial {trial}, but there are {trials} trials")]
-    UnknownTrial {
-        /// Index of the sample, from 0.
-        index: usize,
-        /// The trial's index, from 0.
-        trial: usize,
-        /// Number of trials.
-        trials: usize,
-    },
-    /// A segment is empty, out of order, or reaches beyond the samples.
-    #[error("segment {number} is not a part of the {samples} samples behind the one before it")]
-    Segment {
-        /// Number of the segment, from 1.
-        number: usize,
-        /// Number of samples.
-        samples: usize,
-    },
+#[error("`{what}` does not go with {samples} samples of the residual, at {index}")]
+pub struct RecordError {
+    /// A column, or `segments`.
+    pub what: &'static str,
+    /// The first value or segment that is no finite number, of no known trial, or not behind the
+    /// one before; the length of a column with another one.
+    pub index: usize,
+    /// Samples of the residual.
+    pub samples: usize,
 }
 
 /// The residual of one joint with all that it is held against.
@@ -133,26 +80,27 @@ impl ResidualRecord {
         trials: Vec<String>,
         segments: Vec<Range<usize>>,
     ) -> Result<Self, RecordError> {
-        let expected = samples.residual.len();
-        if Row::try_from(expected).is_err() {
-            return Err(RecordError::TooMany { samples: expected });
+        let count = samples.residual.len();
+        let error = |what: &'static str, index: usize| RecordError { what, index, samples: count };
+        if Row::try_from(count).is_err() {
+            return Err(error("residual", count));
         }
-        let odd = samples.lengths().find(|(_, found)| *found != expected);
-        if let Some((column, found)) = odd {
-            return Err(RecordError::UnequalLengths { column, found, expected });
+        if let Some((column, length)) = samples.lengths().find(|(_, length)| *length != count) {
+            return Err(error(column, length));
         }
-        let mut residuals = samples.residual.iter().chain(&samples.speed_error);
-        if let Some(index) = residuals.position(|value| !value.is_finite()) {
-            return Err(RecordError::NotFinite { index: index % expected });
+        for (column, values) in
+            [("residual", &samples.residual), ("speed_error", &samples.speed_error)]
+        {
+            if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+                return Err(error(column, index));
+            }
         }
         let is_unknown = |trial: &u32| *trial as usize >= trials.len();
-        let unknown = samples.trial.iter().position(is_unknown);
-        if let Some((index, trial)) = unknown.and_then(|at| Some((at, *samples.trial.get(at)?))) {
-            let trial = trial as usize;
-            return Err(RecordError::UnknownTrial { index, trial, trials: trials.len() });
+        if let Some(index) = samples.trial.iter().position(is_unknown) {
+            return Err(error("trial", index));
         }
-        if let Some(number) = misplaced(&segments, expected) {
-            return Err(RecordError::Segment { number, samples: expected });
+        if let Some(index) = misplaced(&segments, count) {
+            return Err(error("segments", index));
         }
         Ok(Self { samples, trials, segments })
     }
@@ -232,12 +180,12 @@ impl Samples {
     }
 }
 
-/// The number, from 1, of the first segment that is not behind the one before it.
+/// The index of the first segment that is not behind the one before it.
 fn misplaced(segments: &[Range<usize>], samples: usize) -> Option<usize> {
     let mut end = 0;
-    for (segment, number) in segments.iter().zip(1..) {
+    for (index, segment) in segments.iter().enumerate() {
         if segment.start < end || segment.is_empty() || segment.end > samples {
-            return Some(number);
+            return Some(index);
         }
         end = segment.end;
     }
@@ -255,9 +203,9 @@ mod tests {
             input: zeros.clone(),
             output: zeros.clone(),
             speed: zeros.clone(),
-            time_s: zeros.clone().into(),
-            since_step_s: zeros.clone().into(),
-            hold_s: zeros.into(),
+            time_s: zeros.clone(),
+            since_step_s: zeros.clone(),
+            hold_s: zeros,
             trial: vec![0; count],
             speed_error: Vec::new(),
         }
@@ -267,18 +215,15 @@ mod tests {
     fn what_does_not_fit_is_named() {
         let record = |samples, segments| ResidualRecord::new(samples, vec!["a".into()], segments);
         assert!(record(samples(4), vec![0..2, 2..4]).is_ok());
+        let error = |what, index, samples| Err(RecordError { what, index, samples });
         let short = Samples { speed: vec![0.0; 3], ..samples(4) };
-        let expected = RecordError::UnequalLengths { column: "speed", found: 3, expected: 4 };
-        assert_eq!(record(short, vec![]), Err(expected));
+        assert_eq!(record(short, vec![]), error("speed", 3, 4));
         let infinite = Samples { residual: vec![0.0, f64::INFINITY], ..samples(2) };
-        assert_eq!(record(infinite, vec![]), Err(RecordError::NotFinite { index: 1 }));
+        assert_eq!(record(infinite, vec![]), error("residual", 1, 2));
         let strange = Samples { trial: vec![0, 1], ..samples(2) };
-        let expected = RecordError::UnknownTrial { index: 1, trial: 1, trials: 1 };
-        assert_eq!(record(strange, vec![]), Err(expected));
+        assert_eq!(record(strange, vec![]), error("trial", 1, 2));
         for segments in [vec![0..2, 1..3], vec![0..1, 3..5], vec![0..1, 2..2]] {
-            let number = segments.len();
-            let expected = RecordError::Segment { number, samples: 4 };
-            assert_eq!(record(samples(4), segments), Err(expected));
+            assert_eq!(record(samples(4), segments), error("segments", 1, 4));
         }
     }
 

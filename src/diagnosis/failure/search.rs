@@ -49,7 +49,7 @@ impl Search {
 
     fn best_of_one(&self, rows: &[Row], excess: &Excess<'_>) -> Option<(Choice, f64, Chance)> {
         let sums = self.grid.part_sums(rows, |row| excess.of(row));
-        let one = self.grid.best_of(&sums, Family::OneFeature);
+        let one = self.grid.best_of(&sums);
         if one.selections.is_empty() {
             return None;
         }
@@ -89,7 +89,7 @@ impl Search {
         let excess = |row| excess.of(row);
         let grid = self.grid.about(record, choice)?;
         let sharp = match choice.selections.len() {
-            1 => grid.best_of(&grid.part_sums(rows, excess), Family::OneFeature),
+            1 => grid.best_of(&grid.part_sums(rows, excess)),
             _ => grid.best_pair(rows, excess),
         };
         (sharp.score > choice.score + DIGITS_COST).then_some((grid, sharp))
@@ -142,7 +142,6 @@ impl Search {
 
     /// The gain of `rows` among the rows of a part of the record.
     pub(super) fn gain_among(&self, part: &[Row], rows: &[Row]) -> f64 {
-        let sum = |rows: &[Row]| rows.iter().map(|row| of_row(&self.shares, *row)).sum::<f64>();
-        sum(rows) / sum(part) - rows.len() as f64 / part.len() as f64
+        self.share(rows) / self.share(part) - rows.len() as f64 / part.len() as f64
     }
 }

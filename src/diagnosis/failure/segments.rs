@@ -93,7 +93,7 @@ fn segment(
     if share_of_squared_error.is_nan() {
         return None;
     }
-    let time_s = |sample: usize| record.samples().time_s.get(sample);
+    let time_s = |sample: usize| record.samples().time_s.get(sample).copied();
     let trial = *record.samples().trial.get(span.start)? as usize;
     Some(WorstSegment {
         trial: record.trials().get(trial)?.clone(),

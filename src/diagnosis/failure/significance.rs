@@ -130,7 +130,7 @@ pub(super) struct Chance {
 impl Chance {
     /// `p = (1 + shuffles that are as good) / (1 + shuffles)`; none above the level.
     pub(super) fn p_value(&self, family: Family, score: f64) -> Option<f64> {
-        let as_good = self.best.iter().filter(|best| best.of(family) >= score).count();
+        let as_good = self.best.iter().filter(|best| best[family as usize] >= score).count();
         let p_value = (1.0 + as_good as f64) / (1.0 + self.best.len() as f64);
         (p_value <= LEVEL).then_some(p_value)
     }
@@ -193,7 +193,7 @@ impl<'a> Shuffler<'a> {
         for _ in 0..SHUFFLES {
             self.shuffle(&mut order, &mut random, &mut cumulative);
             let scores = self.grid.best_scores(&self.part_sums(&cumulative));
-            as_good += u32::from(scores.of(family) >= score);
+            as_good += u32::from(scores[family as usize] >= score);
             // Two of 199 as good: p = 3/200 > LEVEL, whatever follows.
             if as_good > ALLOWED {
                 return None;

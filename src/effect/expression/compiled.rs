@@ -23,8 +23,6 @@ struct Expression {
     spec: &'static Spec,
     node: Node,
     states: Vec<State>,
-    /// Names of the states.
-    memory: &'static [&'static str],
     nests: bool,
 }
 
@@ -87,13 +85,11 @@ impl Expression {
         for (known, name) in named {
             let is_it = |node: &Node| matches!(node, Node::Named(used) if *used == known);
             if !nodes(&node, &parsed).any(|node| node.has(&is_it)) {
-                return Err(DefinitionError::Unused { name: (*name).to_owned() });
+                return Err(unusable(name, "is in no expression: use it, or take it out"));
             }
         }
         let spec = part_of_interned(specified(&definition));
-        let memory = states.iter().map(|name| text_of_interned(*name)).collect::<Vec<_>>();
-        let memory = part_of_interned(memory);
-        let mut new = Self { definition, spec, node, states: parsed, memory, nests: true };
+        let mut new = Self { definition, spec, node, states: parsed, nests: true };
         if let Some(fault) = new.neutral_fault() {
             if new.definition.parameters.iter().any(|parameter| parameter.neutral.is_some()) {
                 return Err(fault);
@@ -165,25 +161,6 @@ impl Effect for Expression {
         }
         let signals = of_change(change);
         self.or_else(0.0, &Scope { signals: &signals, parameters, ..Scope::default() })
-    }
-
-    fn equations(&self) -> Option<Equations> {
-        let unchanged = if self.spec.stage == Stage::Transport { "0" } else { "signal" };
-        let Definition { states, expression, .. } = &self.definition;
-        // Capital letters: its parameters have none. All states change together.
-        let finite = |name: &str, other: &str| format!("if(is_finite({name}), {name}, {other})");
-        let next =
-            states.iter().map(|OwnState { name, next, .. }| format!("NEXT_{name} = {next}\n"));
-        let becomes = states.iter().map(|OwnState { name, .. }| {
-            format!("{name} = {}\n", finite(&format!("NEXT_{name}"), name))
-        });
-        let settle = states.iter().map(|OwnState { name, start, .. }| {
-            format!("START_{name} = {start}\n{name} = {}\n", finite(&format!("START_{name}"), "0"))
-        });
-        let (settle, states): (String, String) = (settle.collect(), next.chain(becomes).collect());
-        let out = finite("VALUE", unchanged);
-        let equations = Equations::new(format!("{states}VALUE = {expression}\nOUT = {out}"));
-        Some(equations.remembering(self.memory, text_of_interned(settle)))
     }
 
     fn nests(&self) -> bool {
@@ -269,22 +246,28 @@ fn finite_or(value: f64, other: f64) -> f64 {
     if value.is_finite() { value } else { other }
 }
 
+fn unusable(name: &str, problem: &'static str) -> DefinitionError {
+    DefinitionError::Name { name: name.to_owned(), problem }
+}
+
 fn check_names(definition: &Definition, signals: &[&str]) -> Result<(), DefinitionError> {
     let Definition { id, parameters, states, .. } = definition;
     let own = parameters.iter().map(|each| &each.name);
     let own: Vec<&String> = own.chain(states.iter().map(|each| &each.name)).collect();
     let mut names = std::iter::once(id).chain(own.iter().copied());
     if let Some(name) = names.find(|name| !contract::is_snake_case(name)) {
-        return Err(DefinitionError::Name { name: name.clone() });
+        let problem = "is not in snake case: small letters, digits and `_`, a letter first";
+        return Err(unusable(name, problem));
     }
     if by_id(id).is_some() || id == KIND {
-        return Err(DefinitionError::TakenId { id: id.clone() });
+        return Err(unusable(id, "is taken; give the effect an id of its own"));
     }
     for (index, name) in own.iter().enumerate() {
         let mut before = own.iter().take(index);
         let is_taken = signals.contains(&name.as_str()) || grammar::is_taken(name);
         if is_taken || before.any(|other| other == name) {
-            return Err(DefinitionError::TakenName { name: (*name).clone() });
+            let problem = "is a name that is taken: rename the parameter or the state";
+            return Err(unusable(name, problem));
         }
     }
     if definition.stage == Stage::Transport && !states.is_empty() {
@@ -309,6 +292,27 @@ fn specified(definition: &Definition) -> Spec {
         .memory(definition.states.len())
         .source("the model file")
         .parameters(part_of_interned(parameters))
+        .equations(equations(definition))
+}
+
+/// The equations of a definition. Names in capital letters are free: its parameters have none.
+fn equations(Definition { stage, states, expression, .. }: &Definition) -> Equations {
+    let unchanged = if *stage == Stage::Transport { "0" } else { "signal" };
+    let finite = |name: &str, other: &str| format!("if(is_finite({name}), {name}, {other})");
+    // All states change together.
+    let next = states.iter().map(|OwnState { name, next, .. }| format!("NEXT_{name} = {next}\n"));
+    let becomes = states.iter().map(|OwnState { name, .. }| {
+        format!("{name} = {}\n", finite(&format!("NEXT_{name}"), name))
+    });
+    let settle = states.iter().map(|OwnState { name, start, .. }| {
+        format!("START_{name} = {start}\n{name} = {}\n", finite(&format!("START_{name}"), "0"))
+    });
+    let (settle, states_next): (String, String) = (settle.collect(), next.chain(becomes).collect());
+    let out = finite("VALUE", unchanged);
+    let step = text_of_interned(format!("{states_next}VALUE = {expression}\nOUT = {out}"));
+    let memory: Vec<_> = states.iter().map(|state| text_of_interned(state.name.as_str())).collect();
+    Equations::new(part_of_interned([step]))
+        .remembering(part_of_interned(memory), text_of_interned(settle))
 }
 
 /// Moments at which an effect without an effect is seen to have one: signals of either
@@ -499,7 +503,7 @@ mod tests {
     fn a_parameter_without_a_use_is_refused() {
         let k = OwnParameter::new("k", 1.0);
         let error = define(definition(Stage::Load, "if(signal > 0, signal, -signal)", &[k]));
-        assert!(matches!(error, Err(DefinitionError::Unused { name }) if name == "k"));
+        assert!(matches!(error, Err(DefinitionError::Name { name, .. }) if name == "k"));
     }
 
     /// A first-order lag, sampled at the ends of intervals.

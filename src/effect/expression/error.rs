@@ -6,24 +6,13 @@ use super::grammar::SyntaxError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DefinitionError {
-    /// A name is not in snake case.
-    #[error("`{name}` is not in snake case: small letters, digits and `_`, a letter first")]
+    /// A name is not in snake case, is taken, or is in no expression.
+    #[error("`{name}` {problem}")]
     Name {
-        /// The id, or the name of a parameter.
+        /// The id, or the name of a parameter or a state.
         name: String,
-    },
-    /// The id is one of the catalogue's, or has a meaning of its own in a model file.
-    #[error("`{id}` is taken; give the effect an id of its own")]
-    TakenId {
-        /// The id.
-        id: String,
-    },
-    /// A parameter or a state has the name of a signal, a function or a constant, or of another
-    /// parameter or state.
-    #[error("`{name}` is a name that is taken: rename the parameter or the state")]
-    TakenName {
-        /// The name.
-        name: String,
+        /// What is wrong with it, and what to do.
+        problem: &'static str,
     },
     /// Numbers of a parameter do not go together.
     #[error(
@@ -45,12 +34,6 @@ pub enum DefinitionError {
     /// The expression cannot be computed.
     #[error("the expression cannot be computed")]
     Syntax(#[from] SyntaxError),
-    /// No expression depends on a parameter or a state.
-    #[error("`{name}` is in no expression: use it, or take it out")]
-    Unused {
-        /// The parameter or the state.
-        name: String,
-    },
     /// An effect on the delay has states.
     #[error(
         "an effect of stage `transport` has no states: it is asked once at each step of the input"

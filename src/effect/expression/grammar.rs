@@ -10,7 +10,7 @@ use winnow::error::{ErrMode, ModalResult, ParserError};
 use winnow::stream::{Stateful, Stream as _};
 use winnow::token::{one_of, take_while};
 
-use super::tree::{Function, Name, Node, Operator};
+use super::tree::{FUNCTIONS, Function, Name, Node, Operator};
 use crate::experiment::{did_you_mean, nearest_name};
 
 /// The longest expression, in bytes: longer than anyone reads.
@@ -32,24 +32,6 @@ const SIGN: i64 = 60;
 /// Names of numbers.
 const CONSTANTS: [(&str, f64); 1] = [("pi", std::f64::consts::PI)];
 
-/// Functions of one number.
-const UNARY: [(&str, Function); 14] = [
-    ("abs", Function::Abs),
-    ("sign", Function::Sign),
-    ("sqrt", Function::Sqrt),
-    ("exp", Function::Exp),
-    ("expm1", Function::Expm1),
-    ("ln", Function::Ln),
-    ("ln1p", Function::Ln1p),
-    ("sin", Function::Sin),
-    ("cos", Function::Cos),
-    ("tan", Function::Tan),
-    ("atan", Function::Atan),
-    ("tanh", Function::Tanh),
-    ("floor", Function::Floor),
-    ("is_finite", Function::IsFinite),
-];
-
 /// Functions of two numbers or more.
 const SEVERAL: [(&str, Operator); 2] = [("min", Operator::Min), ("max", Operator::Max)];
 
@@ -62,7 +44,9 @@ pub(super) fn is_taken(name: &str) -> bool {
 }
 
 fn functions() -> impl Iterator<Item = &'static str> {
-    let of_one = UNARY.iter().map(|(name, _)| *name);
+    // The signs are no names.
+    let of_one = FUNCTIONS.iter().map(|(_, name, _)| *name);
+    let of_one = of_one.filter(|name| name.starts_with(char::is_alphabetic));
     of_one.chain(SEVERAL.map(|(name, _)| name)).chain([CONDITIONAL])
 }
 
@@ -294,7 +278,7 @@ fn call(name: &str, arguments: Vec<Node>, names: Names<'_>) -> Result<Node, Prob
         let all = arguments.into_iter().reduce(pair).filter(|_| found > 1);
         return all.ok_or_else(|| wrong("two values or more"));
     }
-    if let Some((_, function)) = UNARY.iter().find(|(known, _)| *known == name) {
+    if let Some((function, ..)) = FUNCTIONS.iter().find(|(_, known, _)| *known == name) {
         let argument = <[Node; 1]>::try_from(arguments).ok();
         let [argument] = argument.ok_or_else(|| wrong("one value"))?;
         return Ok(Node::unary(*function, argument));

@@ -96,12 +96,13 @@ mod tests {
     impl Runner {
         fn new(effect: &dyn Effect) -> Self {
             let id = effect.spec().id;
-            let equations = effect.equations().unwrap_or_else(|| panic!("{id} has no equations"));
+            let equations =
+                effect.spec().equations.unwrap_or_else(|| panic!("{id} has no equations"));
             let names: Vec<_> = effect.spec().parameters.iter().map(|p| p.name).collect();
             let parse = |text: &str| {
                 Program::parse(text, effect.spec().stage, &names, equations.memory).unwrap()
             };
-            let (settle, step) = (parse(equations.settle), parse(&equations.step));
+            let (settle, step) = (parse(equations.settle), parse(&equations.step.concat()));
             assert!(step.gives_result(), "{id}");
             Self { settle, step, memory: vec![0.0; equations.memory.len()] }
         }

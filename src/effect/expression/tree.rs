@@ -24,27 +24,30 @@ pub(crate) enum Function {
     Not,
 }
 
+/// Each function with its name in expressions and what it computes, in their order.
+pub(super) const FUNCTIONS: [(Function, &str, fn(f64) -> f64); 16] = [
+    (Function::Abs, "abs", f64::abs),
+    (Function::Sign, "sign", sign),
+    (Function::Sqrt, "sqrt", f64::sqrt),
+    (Function::Exp, "exp", f64::exp),
+    (Function::Expm1, "expm1", f64::exp_m1),
+    (Function::Ln, "ln", f64::ln),
+    (Function::Ln1p, "ln1p", f64::ln_1p),
+    (Function::Sin, "sin", f64::sin),
+    (Function::Cos, "cos", f64::cos),
+    (Function::Tan, "tan", f64::tan),
+    (Function::Atan, "atan", f64::atan),
+    (Function::Tanh, "tanh", f64::tanh),
+    (Function::Floor, "floor", f64::floor),
+    (Function::IsFinite, "is_finite", |x| f64::from(x.is_finite())),
+    (Function::Neg, "-", |x| -x),
+    (Function::Not, "!", |x| f64::from(!is_true(x))),
+];
+
 impl Function {
     /// Its value at `x`.
     pub(super) fn value(self, x: f64) -> f64 {
-        match self {
-            Self::Abs => x.abs(),
-            Self::Sign => sign(x),
-            Self::Sqrt => x.sqrt(),
-            Self::Exp => x.exp(),
-            Self::Expm1 => x.exp_m1(),
-            Self::Ln => x.ln(),
-            Self::Ln1p => x.ln_1p(),
-            Self::Sin => x.sin(),
-            Self::Cos => x.cos(),
-            Self::Tan => x.tan(),
-            Self::Atan => x.atan(),
-            Self::Tanh => x.tanh(),
-            Self::Floor => x.floor(),
-            Self::IsFinite => f64::from(x.is_finite()),
-            Self::Neg => -x,
-            Self::Not => f64::from(!is_true(x)),
-        }
+        (FUNCTIONS[self as usize].2)(x)
     }
 }
 

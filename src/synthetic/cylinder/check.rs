@@ -1,7 +1,7 @@
 //! Which numbers a cylinder may have.
 
 use super::super::clock::Clock;
-use super::super::error::{Place, PlantError};
+use super::super::error::{NOT_NEGATIVE, POSITIVE, Place, PlantError};
 use super::CylinderSpec;
 use super::machine::Machine;
 
@@ -15,14 +15,7 @@ const MAX_STEP_TIMES_RATE: f64 = 1.5;
 impl CylinderSpec {
     /// Refuses numbers that no cylinder has, and a time step that is too long for them.
     pub(in super::super) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
-        for (key, value) in self.above_zero() {
-            let fits = |value: &f64| value.is_finite() && *value > 0.0;
-            place.require(key, value, "finite, above zero", fits)?;
-        }
-        for (key, value) in self.not_negative() {
-            let fits = |value: &f64| value.is_finite() && *value >= 0.0;
-            place.require(key, value, "finite, not negative", fits)?;
-        }
+        self.check_numbers(clock, place)?;
         self.check_valve(place)?;
         self.check_piston(place)?;
         self.check_load(place)?;
@@ -30,45 +23,22 @@ impl CylinderSpec {
         self.check_time_step(clock, place)
     }
 
-    fn above_zero(&self) -> [(&'static str, f64); 23] {
-        [
-            ("cylinder.pilot_small_input", self.pilot_small_input),
-            ("cylinder.time_step_s", self.time_step_s),
-            ("cylinder.full_input", self.full_input),
-            ("cylinder.spool_hz", self.spool_hz),
-            ("cylinder.spool_damping", self.spool_damping),
-            ("cylinder.full_stroke_s", self.full_stroke_s),
-            ("cylinder.rated_flow_l_min", self.rated_flow_l_min),
-            ("cylinder.supply_bar", self.supply_bar),
-            ("cylinder.pump_flow_l_min", self.pump_flow_l_min),
-            ("cylinder.pump_control_bar", self.pump_control_bar),
-            ("cylinder.supply_volume_l", self.supply_volume_l),
-            ("cylinder.bore_mm", self.bore_mm),
-            ("cylinder.bulk_modulus_mpa", self.bulk_modulus_mpa),
-            ("cylinder.hose_volume_l", self.hose_volume_l),
-            ("cylinder.relief_bar", self.relief_bar),
-            ("cylinder.stribeck_m_s", self.stribeck_m_s),
-            ("cylinder.mass_kg", self.mass_kg),
-            ("cylinder.centre_m", self.centre_m),
-            ("cylinder.inertia_kg_m2", self.inertia_kg_m2),
-            ("cylinder.foot_m", self.foot_m),
-            ("cylinder.eye_m", self.eye_m),
-            ("cylinder.cushion_mm", self.cushion_mm),
-            ("cylinder.linkage_deg", self.linkage_deg),
-        ]
-    }
-
-    fn not_negative(&self) -> [(&'static str, f64); 8] {
-        [
-            ("cylinder.pilot_small_s", self.pilot_small_s),
-            ("cylinder.pilot_falling_s", self.pilot_falling_s),
-            ("cylinder.tank_bar", self.tank_bar),
-            ("cylinder.rod_mm", self.rod_mm),
-            ("cylinder.leakage_l_min", self.leakage_l_min),
-            ("cylinder.coulomb_n", self.coulomb_n),
-            ("cylinder.static_n", self.static_n),
-            ("cylinder.viscous_n_s_m", self.viscous_n_s_m),
-        ]
+    /// All numbers are above zero, but for some that may be zero, and those with limits of their own.
+    fn check_numbers(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
+        let numbers = toml::Table::try_from(self)
+            .map_err(|source| PlantError::Write { source: Box::new(source) })?;
+        for (key, value) in &numbers {
+            let allowed = match key.as_str() {
+                "overlap" | "null_offset" => continue,
+                "pilot_small_s" | "pilot_falling_s" | "tank_bar" | "rod_mm" | "leakage_l_min"
+                | "coulomb_n" | "static_n" | "viscous_n_s_m" => NOT_NEGATIVE,
+                _ => POSITIVE,
+            };
+            if let Some(value) = value.as_float() {
+                place.number(&format!("cylinder.{key}"), value, &allowed, clock)?;
+            }
+        }
+        Ok(())
     }
 
     fn check_valve(&self, place: &Place) -> Result<(), PlantError> {

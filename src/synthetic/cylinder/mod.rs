@@ -18,8 +18,5 @@ mod si;
 mod spec;
 mod valve;
 
-#[cfg(test)]
-mod physics;
-
 pub(super) use machine::{Machine, State};
 pub use spec::{CylinderSpec, Part};

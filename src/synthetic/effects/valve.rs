@@ -1,203 +1,111 @@
 //! Effects on a held level of the input.
 //!
-//! Corners are rounded over an `edge`, a small part of the largest level.
+//! Corners are rounded over an edge, a small part of the largest level; `ramp` is a rounded
+//! `max(x, 0)`.
 
-use serde::{Deserialize, Serialize};
-
-use super::super::clock::Clock;
-use super::super::error::{Allowed, Place, PlantError};
-use super::part::Part;
+use super::super::error::{FINITE, NOT_NEGATIVE, NOT_POSITIVE, POSITIVE, SHARE, TWO_OR_MORE};
 use super::shapes::{ramp, rise, window};
+use super::twin::{LARGEST_LEVEL, Stage, Twin, rises};
 
-/// Sharpness of a saturation with a hard corner: within 2 % of the limit.
+/// The valve is open a little at zero input: `u + offset`.
+pub(super) static INPUT_OFFSET: Twin = Twin {
+    act: |&[offset, ..], u, _, _, _| u + offset,
+    drawn: |draw| vec![draw.sign(0) * draw.strength],
+    ..Twin::new("input_offset", Stage::Valve, &["offset"], &[FINITE])
+};
+
+/// No flow between two levels, `lower` ≤ 0 ≤ `upper`: `ramp(u - upper) - ramp(lower - u)`.
+pub(super) static DEAD_BAND: Twin = Twin {
+    act: |&[lower, upper, ..], u, at, _, _| ramp(u - upper, at.edge) - ramp(lower - u, at.edge),
+    drawn: |draw| {
+        let end = |index| 1.5 * draw.strength * draw.between(index, 0.6, 1.0);
+        vec![-end(0), end(1)]
+    },
+    ..Twin::new("dead_band", Stage::Valve, &["lower", "upper"], &[NOT_POSITIVE, NOT_NEGATIVE])
+};
+
+/// A flow that grows with a power of the opening; 1 is a straight line:
+/// `u ((u² + e²) / (1 + e²))^((exponent - 1) / 2)`, e: the edge.
+pub(super) static FLOW_CURVE: Twin = Twin {
+    act: |&[exponent, ..], u, at, _, _| {
+        let square = at.edge * at.edge;
+        u * ((u * u + square) / (1.0 + square)).powf(0.5 * (exponent - 1.0))
+    },
+    drawn: |draw| vec![(draw.sign(0) * draw.strength).exp()],
+    ..Twin::new("flow_curve", Stage::Valve, &["exponent"], &[POSITIVE])
+};
+
+/// Speed for a negative input over that for a positive one:
+/// `u (1 + (negative_factor - 1) rise(-u))`.
+pub(super) static DIRECTION_GAIN: Twin = Twin {
+    act: |&[factor, ..], u, at, _, _| u * (1.0 + (factor - 1.0) * rise(-u, at.edge)),
+    drawn: |draw| vec![(draw.sign(0) * draw.strength).exp()],
+    ..Twin::new("direction_gain", Stage::Valve, &["negative_factor"], &[POSITIVE])
+};
+
+/// Not in the catalogue: a worn land passes the part `share` in a range of the input.
+pub(super) static INPUT_NOTCH: Twin = Twin {
+    related: rises,
+    act: |&[from, to, share, ..], u, at, _, _| {
+        u * (1.0 - (1.0 - share) * window(u, from, to, at.edge))
+    },
+    // Around one of the levels between the largest and the smallest, of either sign.
+    drawn: |draw| {
+        let middle = draw.sign(0) * draw.between(1, 0.9, 1.5);
+        vec![middle - 0.35, middle + 0.35, 1.0 - draw.strength]
+    },
+    ..Twin::new("input_notch", Stage::Valve, &["from", "to", "share"], &[FINITE, FINITE, SHARE])
+};
+
+/// The flow ends at a limit: `u (1 + abs(u / limit)^p)^(-1/p)`.
+///
+/// At the limit `2^(-1/p)` of it is passed, with the sharpness p.
+pub(super) static INPUT_SATURATION: Twin = Twin {
+    optional: &[HARD],
+    act: |&[limit, sharpness, ..], u, _, _, _| limited(u, limit, sharpness),
+    // Where the corners of the valve are rounded, this one is as a rule, too.
+    drawn: |draw| {
+        let sharp = HARD * (0.004 / draw.valve_edge).sqrt();
+        vec![drawn_limit(draw.strength), if draw.sign(0) > 0.0 { sharp } else { SOFT }]
+    },
+    ..Twin::new("input_saturation", Stage::Valve, &["limit", "sharpness"], &[POSITIVE, TWO_OR_MORE])
+};
+
+/// The flow ends at another limit in each direction; `negative_ratio` is the negative one over the
+/// positive one.
+pub(super) static ASYMMETRIC_SATURATION: Twin = Twin {
+    instead_of: Some("input_saturation"),
+    optional: &[HARD],
+    act: |&[limit, ratio, sharpness, ..], u, _, _, _| {
+        limited(u, if u < 0.0 { ratio * limit } else { limit }, sharpness)
+    },
+    // The limits differ by a quarter or more.
+    drawn: |draw| {
+        let apart = draw.between(1, 1.25, 1.6);
+        let ratio = if draw.sign(2) > 0.0 { apart } else { apart.recip() };
+        vec![drawn_limit(draw.strength), ratio, if draw.sign(0) > 0.0 { HARD } else { SOFT }]
+    },
+    ..Twin::new(
+        "asymmetric_saturation",
+        Stage::Valve,
+        &["limit", "negative_ratio", "sharpness"],
+        &[POSITIVE, POSITIVE, TWO_OR_MORE],
+    )
+};
+
+/// Sharpness of a saturation with a hard corner, within 2 % of the limit, and of a soft one.
 const HARD: f64 = 40.0;
+const SOFT: f64 = 8.0;
 
-/// The valve is open a little at zero input.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct InputOffset {
-    /// Opening at zero input, in input units.
-    pub offset: f64,
+fn drawn_limit(strength: f64) -> f64 {
+    LARGEST_LEVEL * (1.05 - 0.95 * strength)
 }
 
-/// The joint starts above one level and stops below a lower one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Stiction {
-    /// Level that is needed to start, in input units.
-    pub start: f64,
-    /// Level below which it stops, in input units.
-    pub stop: f64,
-}
-
-/// No flow between two levels.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct DeadBand {
-    /// Lower end, zero or below, in input units.
-    pub lower: f64,
-    /// Upper end, zero or above, in input units.
-    pub upper: f64,
-}
-
-/// A flow that grows with a power of the opening.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FlowCurve {
-    /// The power; 1 is a straight line.
-    pub exponent: f64,
-}
-
-/// The joint is faster or slower where the input is negative.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct DirectionGain {
-    /// Speed for a negative input over that for a positive one.
-    pub negative_factor: f64,
-}
-
-/// The flow ends at a limit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct InputSaturation {
-    /// The limit, in input units.
-    pub limit: f64,
-    /// How sharp the knee is, 2 or more: at the limit `2^(-1/sharpness)` of it is
-    /// passed. 40 where a file leaves it out.
-    #[serde(default = "hard")]
-    pub sharpness: f64,
-}
-
-/// The flow ends at another limit in each direction. It takes the place of an
-/// [`InputSaturation`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AsymmetricSaturation {
-    /// The limit of the positive direction, in input units.
-    pub limit: f64,
-    /// That of the negative direction over it.
-    pub negative_ratio: f64,
-    /// As in [`InputSaturation`].
-    #[serde(default = "hard")]
-    pub sharpness: f64,
-}
-
-fn hard() -> f64 {
-    HARD
-}
-
-/// Not in the catalogue: a worn land passes less in a range of the input.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct InputNotch {
-    /// Lower end of the range, in input units.
-    pub from: f64,
-    /// Upper end of the range, in input units.
-    pub to: f64,
-    /// Part that is passed in the range.
-    pub share: f64,
-}
-
-impl DeadBand {
-    pub(super) fn opening(self, u: f64, edge: f64) -> f64 {
-        ramp(u - self.upper, edge) - ramp(self.lower - u, edge)
+fn limited(u: f64, limit: f64, power: f64) -> f64 {
+    let ratio = u.abs() / limit;
+    if ratio <= 1.0 {
+        return u * (1.0 + ratio.powf(power)).powf(-1.0 / power);
     }
-}
-
-impl FlowCurve {
-    pub(super) fn opening(self, u: f64, edge: f64) -> f64 {
-        let square = edge * edge;
-        u * ((u * u + square) / (1.0 + square)).powf(0.5 * (self.exponent - 1.0))
-    }
-}
-
-impl DirectionGain {
-    pub(super) fn opening(self, u: f64, edge: f64) -> f64 {
-        u * (1.0 + (self.negative_factor - 1.0) * rise(-u, edge))
-    }
-}
-
-impl InputNotch {
-    pub(super) fn opening(self, u: f64, edge: f64) -> f64 {
-        u * (1.0 - (1.0 - self.share) * window(u, self.from, self.to, edge))
-    }
-}
-
-impl InputSaturation {
-    pub(super) fn opening(self, u: f64) -> f64 {
-        let (ratio, power) = (u.abs() / self.limit, self.sharpness);
-        if ratio <= 1.0 {
-            return u * (1.0 + ratio.powf(power)).powf(-1.0 / power);
-        }
-        // Multiplied out, so that no power overflows.
-        (self.limit * (1.0 + ratio.powf(-power)).powf(-1.0 / power)).copysign(u)
-    }
-}
-
-impl AsymmetricSaturation {
-    pub(super) fn opening(self, u: f64) -> f64 {
-        let ratio = if u < 0.0 { self.negative_ratio } else { 1.0 };
-        InputSaturation { limit: ratio * self.limit, sharpness: self.sharpness }.opening(u)
-    }
-}
-
-impl Part for InputOffset {
-    fn check(&self, place: &Place, _clock: &Clock) -> Result<(), PlantError> {
-        place.number("effect.input_offset.offset", self.offset, Allowed::Finite)
-    }
-}
-
-impl Part for Stiction {
-    fn check(&self, place: &Place, _clock: &Clock) -> Result<(), PlantError> {
-        place.number("effect.stiction.start", self.start, Allowed::NotNegative)?;
-        place.number("effect.stiction.stop", self.stop, Allowed::NotNegative)?;
-        let allowed = "not above `effect.stiction.start`";
-        place.require("effect.stiction.stop", self.stop, allowed, |stop| *stop <= self.start)
-    }
-}
-
-impl Part for DeadBand {
-    fn check(&self, place: &Place, _clock: &Clock) -> Result<(), PlantError> {
-        place.number("effect.dead_band.lower", self.lower, Allowed::NotPositive)?;
-        place.number("effect.dead_band.upper", self.upper, Allowed::NotNegative)
-    }
-}
-
-impl Part for FlowCurve {
-    fn check(&self, place: &Place, _clock: &Clock) -> Result<(), PlantError> {
-        place.number("effect.flow_curve.exponent", self.exponent, Allowed::Positive)
-    }
-}
-
-impl Part for DirectionGain {
-    fn check(&self, place: &Place, _clock: &Clock) -> Result<(), PlantError> {
-        let key = "effect.direction_gain.negative_factor";
-        place.number(key, self.negative_factor, Allowed::Positive)
-    }
-}
-
-impl Part for InputSaturation {
-    fn check(&self, place: &Place, _clock: &Clock) -> Result<(), PlantError> {
-        place.number("effect.input_saturation.limit", self.limit, Allowed::Positive)?;
-        let (key, allowed) = ("effect.input_saturation.sharpness", "finite, 2 or more");
-        place.require(key, self.sharpness, allowed, |p| p.is_finite() && *p >= 2.0)
-    }
-}
-
-impl Part for AsymmetricSaturation {
-    fn check(&self, place: &Place, _clock: &Clock) -> Result<(), PlantError> {
-        place.number("effect.asymmetric_saturation.limit", self.limit, Allowed::Positive)?;
-        let key = "effect.asymmetric_saturation.negative_ratio";
-        place.number(key, self.negative_ratio, Allowed::Positive)?;
-        let (key, allowed) = ("effect.asymmetric_saturation.sharpness", "finite, 2 or more");
-        place.require(key, self.sharpness, allowed, |p| p.is_finite() && *p >= 2.0)
-    }
-}
-
-impl Part for InputNotch {
-    fn check(&self, place: &Place, _clock: &Clock) -> Result<(), PlantError> {
-        let range = [self.from, self.to];
-        place.range(["outside.input_notch.from", "outside.input_notch.to"], range)?;
-        place.number("outside.input_notch.share", self.share, Allowed::Share)
-    }
+    // Multiplied out, so that no power overflows.
+    (limit * (1.0 + ratio.powf(-power)).powf(-1.0 / power)).copysign(u)
 }

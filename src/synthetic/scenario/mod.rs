@@ -6,20 +6,17 @@
 //! explains them later is judged by other formulas.
 
 mod integrator;
-mod recipe;
 
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
 use super::delay_law::DelayLaw;
-use super::effects::{self, CATALOGUE, FINER, OUTSIDE};
+use super::effects::{self, CATALOGUE, Draw, FINER, LARGEST_LEVEL, OUTSIDE, Twin};
 use super::error::PlantError;
 use super::input::InputSpec;
 use super::random::{Purpose, stream};
 use super::spec::{JointSpec, PlantSpec};
 use super::{Synthetic, simulate};
-
-use recipe::{Chances, LARGEST_LEVEL};
 
 /// Length of a record in seconds.
 const DURATION_S: f64 = 120.0;
@@ -151,8 +148,9 @@ impl Noise {
 /// An effect that is hidden, and how much of it.
 #[derive(Clone, Debug)]
 struct HiddenEffect {
-    name: &'static str,
-    chances: Chances,
+    twin: &'static Twin,
+    /// Drawn from 0 to 1.
+    chances: [f64; 3],
     amount: f64,
     /// Where the next chances come from.
     random: ChaCha8Rng,
@@ -161,14 +159,17 @@ struct HiddenEffect {
 impl HiddenEffect {
     /// The effect `name`, its particulars drawn by `seed`.
     fn new(name: &str, seed: u64) -> Result<Self, PlantError> {
-        let name = effects::name(name)?;
-        let index = CATALOGUE.iter().chain(&OUTSIDE).chain(&FINER).position(|known| *known == name);
-        let mut random = stream(seed, index.unwrap_or_default(), Purpose::Scenario);
-        Ok(Self { name, chances: Chances(random.random()), amount: FIRST_AMOUNT, random })
+        let twin = effects::find(name)?;
+        let names = CATALOGUE.iter().chain(&OUTSIDE).chain(&FINER);
+        let index = names.into_iter().position(|known| *known == twin.name).unwrap_or_default();
+        let mut random = stream(seed, index, Purpose::Scenario);
+        Ok(Self { twin, chances: random.random(), amount: FIRST_AMOUNT, random })
     }
 
     fn put_on(&self, joint: &mut JointSpec) {
-        recipe::hide(self.name, joint, self.amount, self.chances);
+        let (strength, chances) = (self.amount, self.chances);
+        let draw = Draw { strength, chances, valve_edge: joint.valve_edge, start: joint.start };
+        joint.put(self.twin, &(self.twin.drawn)(&draw));
     }
 }
 
@@ -212,7 +213,7 @@ impl Scenario {
     /// use tauscope::synthetic::simulate;
     ///
     /// let hidden = Scenario::new(&["dead_band"], Strength::Clear, Noise::white(0.05), 1)?;
-    /// assert!(hidden.plant.joints[0].effect.dead_band.is_some());
+    /// assert!(hidden.plant.joints[0].effect.get("dead_band").is_some());
     /// assert!(hidden.error_over_noise > 8.0);
     /// let log = simulate(&hidden.plant)?;
     /// assert_eq!(log.joints[0].trials[0].len(), 12_000);
@@ -254,8 +255,8 @@ impl Scenario {
         let effects = hidden.iter().map(|name| HiddenEffect::new(name, bare.seed));
         let mut effects = effects.collect::<Result<Vec<_>, _>>()?;
         for (index, effect) in effects.iter().enumerate() {
-            if effects.iter().skip(index + 1).any(|other| other.name == effect.name) {
-                return Err(PlantError::Twice { name: effect.name }.into());
+            if effects.iter().skip(index + 1).any(|other| other.twin.name == effect.twin.name) {
+                return Err(PlantError::Twice { name: effect.twin.name }.into());
             }
         }
         let mut alone = None;
@@ -266,7 +267,7 @@ impl Scenario {
             Some(alone) if effects.len() == 1 => alone,
             _ => together(bare, &effects, noise.deviation)?,
         };
-        let hidden = effects.iter().map(|effect| effect.name).collect();
+        let hidden = effects.iter().map(|effect| effect.twin.name).collect();
         Ok(Self { plant: noisy(with(&given, &effects), noise), hidden, error_over_noise })
     }
 }
@@ -354,10 +355,10 @@ fn settle(
             return Ok((given, sized.error));
         }
         if round % ROUNDS_EACH == 0 {
-            effect.chances = Chances(effect.random.random());
+            effect.chances = effect.random.random();
         }
     }
-    let (name, wanted) = (effect.name, strength.wanted());
+    let (name, wanted) = (effect.twin.name, strength.wanted());
     Err(ScenarioError::OutOfReach { name, found: nearest, wanted })
 }
 

@@ -1,0 +1,142 @@
+//! What is stated of an effect that a plant can hide.
+
+use super::super::clock::Clock;
+use super::super::error::Allowed;
+
+/// Where an effect acts; the signal passes the stages in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in super::super) enum Stage {
+    /// On the delay of each step.
+    Delay,
+    /// On the command of the valve, in input units, with time.
+    Spool,
+    /// On the opening of the valve at a held level, in input units.
+    Valve,
+    /// On how the speed follows the opening, in input units.
+    Dynamics,
+    /// On the speed, in output units per second, before the load.
+    Speed,
+    /// On the speed, by what the joint moves and where it is.
+    Load,
+    /// On the angle as it is measured, in output units.
+    Sensor,
+}
+
+/// What an effect sees of its joint beside the signal.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in super::super) struct At {
+    /// Seconds since the first sample.
+    pub(in super::super) time_s: f64,
+    /// Angle of the joint, in output units.
+    pub(in super::super) angle: f64,
+    /// Length of a time step in seconds.
+    pub(in super::super) substep_s: f64,
+    /// Radians in an angle of one output unit.
+    pub(in super::super) radians: f64,
+    /// Width of the rounded corners, in input units.
+    pub(in super::super) edge: f64,
+    /// The same in output units per second.
+    pub(in super::super) speed_edge: f64,
+    /// 1 where the valve is far enough open to move the joint, 0 where it sticks.
+    pub(in super::super) moves: f64,
+    /// Demand of the other joints, 0 to 1.
+    pub(in super::super) others: f64,
+}
+
+/// The numbers of an effect in the order of its keys, then zeros.
+pub(in super::super) type Numbers = [f64; 7];
+
+/// What moves or remembers in an effect; those that it does not need stay zero.
+pub(in super::super) type States = [f64; 4];
+
+/// The signal behind an effect with these numbers, for the signal before it and the states of the
+/// effect; the last is where the derivatives of the states go.
+type Act = fn(&Numbers, f64, &At, &States, &mut States) -> f64;
+
+/// Puts the states where a signal that is long held has brought them; the signal behind.
+type Settle = fn(&Numbers, f64, &At, &mut States) -> f64;
+
+/// What a number may be beside another one: the index of the one that is not, and what is allowed.
+type Related = fn(&Numbers, &Clock) -> Option<(usize, &'static str)>;
+
+/// An effect that a plant can hide.
+#[derive(Debug)]
+pub(in super::super) struct Twin {
+    pub(in super::super) name: &'static str,
+    pub(in super::super) stage: Stage,
+    /// Keys of its numbers in a plant file.
+    pub(in super::super) keys: &'static [&'static str],
+    /// What each number may be.
+    pub(super) allowed: &'static [Allowed],
+    /// The last numbers, where a file leaves them out.
+    pub(super) optional: &'static [f64],
+    pub(super) related: Related,
+    /// An effect that does not act beside it.
+    pub(super) instead_of: Option<&'static str>,
+    pub(super) settle: Settle,
+    pub(super) act: Act,
+    /// Its numbers in a scenario.
+    pub(in super::super) drawn: fn(&Draw) -> Vec<f64>,
+}
+
+impl Twin {
+    /// An effect that does nothing yet.
+    pub(super) const fn new(
+        name: &'static str,
+        stage: Stage,
+        keys: &'static [&'static str],
+        allowed: &'static [Allowed],
+    ) -> Self {
+        Self {
+            name,
+            stage,
+            keys,
+            allowed,
+            optional: &[],
+            related: |_, _| None,
+            instead_of: None,
+            settle: |_, signal, _, _| signal,
+            act: |_, signal, _, _, _| signal,
+            drawn: |_| Vec::new(),
+        }
+    }
+}
+
+/// The states of lags, which in the end are the signal.
+pub(super) fn followed(_: &Numbers, signal: f64, _: &At, states: &mut States) -> f64 {
+    states.fill(signal);
+    signal
+}
+
+/// The second number must be above the first.
+pub(super) fn rises(&[from, to, ..]: &Numbers, _: &Clock) -> Option<(usize, &'static str)> {
+    (to.is_nan() || to <= from).then_some((1, "finite, above the lower end"))
+}
+
+/// Largest level of the input that numbers are drawn for, in input units.
+pub(in super::super) const LARGEST_LEVEL: f64 = 2.5;
+
+/// How the numbers of an effect are drawn.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Draw {
+    /// From 0, no effect, to 1, all that is plausible.
+    pub(in super::super) strength: f64,
+    /// What makes one instance of an effect differ from the next: drawn from 0 to 1.
+    pub(in super::super) chances: [f64; 3],
+    /// The [`valve_edge`](super::super::JointSpec::valve_edge) of the joint.
+    pub(in super::super) valve_edge: f64,
+    /// Angle of the joint at the first sample.
+    pub(in super::super) start: f64,
+}
+
+impl Draw {
+    /// Chance `index` between `from` and `to`.
+    pub(super) fn between(&self, index: usize, from: f64, to: f64) -> f64 {
+        from + (to - from) * self.chances.get(index).copied().unwrap_or(0.5)
+    }
+
+    /// 1 or -1.
+    pub(super) fn sign(&self, index: usize) -> f64 {
+        if self.between(index, -1.0, 1.0) < 0.0 { -1.0 } else { 1.0 }
+    }
+}
