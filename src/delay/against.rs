@@ -6,6 +6,8 @@
 
 use std::sync::Arc;
 
+use serde::{Serialize, Serializer};
+
 use super::estimate::TrialEstimate;
 use super::neutral::{Neutral, Transition};
 use crate::experiment::{Joint, Trial};
@@ -18,9 +20,10 @@ const COVARIATE_SAMPLES: usize = 5;
 const LEVEL: f64 = 0.05;
 
 /// An accepted step: its delay, and the joint's state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepState {
     /// Label of the trial; all steps of a trial share it.
+    #[serde(serialize_with = "label")]
     pub trial: Arc<str>,
     /// `i`: number of the step in its trial, from 1.
     pub number: usize,
@@ -37,16 +40,23 @@ pub struct StepState {
     /// Output at the breakpoint, smoothed if the estimate was made so; output units.
     pub angle: f64,
     /// Time of the input step, in seconds since the [origin](Trial::origin_s).
+    #[serde(skip)]
     pub time_s: f64,
     /// Time of the input step by the clock of the log, seconds.
+    #[serde(rename = "time_s")]
     pub logged_time_s: f64,
     /// Mean of each further signal over the five samples before the input step, in the
     /// order of [`Joint::covariates`]; none where it was not measured.
     pub covariates: Vec<Option<f64>>,
 }
 
+/// As text: serde does so for no `Arc`.
+fn label<S: Serializer>(label: &Arc<str>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(label)
+}
+
 /// How the delay goes with one variable.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Correlation {
     /// Its name.
     pub variable: String,
@@ -66,7 +76,7 @@ pub struct Correlation {
 }
 
 /// How the delay differs between steps up and steps down.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Direction {
     /// Accepted steps to a higher level.
     pub up: usize,
@@ -84,7 +94,7 @@ pub struct Direction {
 }
 
 /// The accepted delays of a joint against its state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgainstState {
     /// The accepted steps of all trials, in their order.
     pub steps: Vec<StepState>,
@@ -94,11 +104,12 @@ pub struct AgainstState {
     /// Steps up against steps down, of all kinds.
     pub direction: Direction,
     /// Correlations and directions for the steps of each kind that there is.
+    #[serde(rename = "by_transition")]
     pub kinds: Vec<AgainstOfKind>,
 }
 
 /// The accepted delays of one kind of step against the joint's state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgainstOfKind {
     /// Which kind.
     pub transition: Transition,

@@ -39,6 +39,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use serde::Serialize;
+
 use super::decision::{Decision, Verdict};
 use super::input_motion::InputMotion;
 use super::interval::FineDelay;
@@ -52,7 +54,7 @@ use crate::numerics::{
 use crate::units::ceil_to_index;
 
 /// Which settings are chosen from the record.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Automatic {
     /// α is.
     pub alpha: bool,
@@ -70,7 +72,7 @@ impl Automatic {
 }
 
 /// What settings were chosen from.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RecordStatistics {
     /// The delay that nine of ten exceed, samples.
     pub short_delay: Option<f64>,
@@ -83,11 +85,12 @@ pub struct RecordStatistics {
 }
 
 /// Which settings of a joint were chosen, and from what.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Chosen {
     /// Which settings.
     pub automatic: Automatic,
     /// What the record showed.
+    #[serde(rename = "grounds")]
     pub statistics: RecordStatistics,
 }
 

@@ -23,12 +23,15 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
+use serde::Serialize;
+
 use super::input_noise::{Levels, in_samples};
 use crate::experiment::{Property, Record, Trial};
 use crate::numerics::{limits, median};
 
 /// How an input is to be taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum InputKind {
     /// As its record shows: see [`InputMotion`].
     #[default]
@@ -40,7 +43,7 @@ pub enum InputKind {
 }
 
 /// How the input of a joint moves.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct InputMotion {
     /// The part of the samples at which the input differs from the sample before.
     pub changes: f64,

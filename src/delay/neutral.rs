@@ -6,12 +6,14 @@
 use std::cmp::Ordering;
 use std::fmt;
 
+use serde::Serialize;
+
 use super::hold::{Hold, alike, holds, level_tolerance};
 use super::steps::InputStep;
 use crate::experiment::{Property, Record};
 
 /// Where the input of a joint is neutral: at a level, and within a dead band about it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Neutral {
     /// The level, input units.
     pub level: f64,
@@ -67,7 +69,8 @@ impl Neutral {
 }
 
 /// The kind of a step of the input, by the sides of [neutral](Neutral) that it joins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Transition {
     /// From neutral to elsewhere.
     Start,

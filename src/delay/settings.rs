@@ -4,9 +4,11 @@ use super::input_motion::{InputKind, InputMotion};
 use super::method::Method;
 use crate::numerics::LowPass;
 use crate::units::SamplePeriod;
+use serde::Serialize;
 
 /// How `τ_k` goes on between two steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Interpolation {
     /// `τ_k = δ_i` for `k = p_i … p_(i+1)`: the paper's.
     #[default]
@@ -18,7 +20,8 @@ pub enum Interpolation {
 
 /// Whether the first and the last step of a trial are judged, which have no neighbour on one
 /// side: the paper's condition 1.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FirstLast {
     /// Rejected in a trial of more than three steps; judged like the others in one of three or
     /// fewer, such as a stroke from rest to rest, which has hardly any others.

@@ -1,5 +1,7 @@
 //! A designed input: how its levels follow one another, what it separates, and how surely.
 
+use serde::Serialize;
+
 use super::limits::Limits;
 use super::power::Expected;
 use super::schedule::Schedule;
@@ -18,7 +20,7 @@ pub enum Order {
 }
 
 /// A level of the input at which an effect switches, and where a record allows it to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OpenThreshold {
     /// Id of the effect.
     pub effect: &'static str,

@@ -19,13 +19,15 @@
 //! T. Hastie, R. Tibshirani and J. Friedman, "The Elements of Statistical Learning", 2009, sections
 //! 5.2 (piecewise bases), 7.10 (cross-validation) and 9.1 (taking turns: backfitting).
 
+use serde::Serialize;
+
 use crate::experiment::Trial;
 use crate::fit::FitRecord;
 use crate::model::{JointModel, Simulated};
 use crate::units::floor_to_index;
 
 /// A curve, with its band, and the model's.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Curve {
     /// Of what it is.
     pub of: CurveOf,
@@ -42,7 +44,8 @@ pub struct Curve {
 }
 
 /// Of what a curve is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum CurveOf {
     /// Of the delayed input.
     Input,

@@ -20,11 +20,13 @@
 
 use std::ops::Range;
 
+use serde::Serialize;
+
 use super::lags::{BAND, CONFIDENCE, Lags, TrialSignals, autocovariance, means, products};
 use crate::numerics::chi_square_tail;
 
 /// Whether the changes of the input move the residual.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct InputCorrelation {
     /// Part of the correlations of independent signals that lies within the band.
     pub confidence: f64,
@@ -39,7 +41,7 @@ pub struct InputCorrelation {
 }
 
 /// Correlations of the residual with one input, lag by lag.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CrossCorrelation {
     /// Part of the lags whose correlation is outside the band.
     pub share_outside: f64,

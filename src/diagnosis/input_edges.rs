@@ -17,18 +17,21 @@
 //! K. J. Åström and B. Wittenmark, "Computer-Controlled Systems", 1997, chapter 1 (asynchronous
 //! sampling).
 
+use serde::Serialize;
+
 use super::lags::centre;
 use crate::fit::{Evaluation, FitRecord, Window, follows_input};
 use crate::numerics::{Regression, dot, quantile, spearman};
 
 /// Steps of the input whose times are known to no better than a sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct InputEdges {
     /// Steps whose times were found.
     pub steps: usize,
     /// Seconds over which the middle 80 % of them are spread.
     pub spread_s: f64,
     /// The part of the squared residual that they explain.
+    #[serde(rename = "share_of_squared_residual")]
     pub share: f64,
 }
 

@@ -31,6 +31,8 @@
 //! T. Bohlin, "Practical Grey-box Process Identification", 2006, chapter 2 (falsification
 //! by alternative models). G. Schwarz, "Estimating the dimension of a model", 1978.
 
+use serde::Serialize;
+
 use super::input_edges::InputEdges;
 use super::local_misfit::LocalMisfit;
 use super::residual_size::{
@@ -41,7 +43,7 @@ use crate::numerics::fisher_tail;
 use crate::numerics::{Regression, residuals_of};
 
 /// Whether the residual shows that a model lacks something.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LackOfFit {
     /// F of all shapes together.
     pub statistic: f64,
@@ -59,6 +61,7 @@ pub struct LackOfFit {
     /// What shows it, where it is shown; the first of these that does.
     pub shown_by: Option<ShownBy>,
     /// Where no lack of fit is left but for the times of the steps, what they explain.
+    #[serde(rename = "input_edges", skip_serializing_if = "Option::is_none")]
     pub edges: Option<InputEdges>,
     /// No lack of fit is shown at [`SIGNIFICANCE`], or one that is below [`NEGLIGIBLE`]; near
     /// the noise always, far beyond it never, nor where the error is larger on data that were

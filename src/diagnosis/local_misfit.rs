@@ -19,12 +19,14 @@
 
 use std::collections::BTreeMap;
 
+use serde::Serialize;
+
 use super::residual_size::BEYOND_NOISE;
 use crate::numerics::NoiseModel;
 use crate::numerics::dot;
 
 /// The part of a record in which a residual stands out most.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LocalMisfit {
     /// The probability that noise stands out as much anywhere.
     pub p_value: f64,

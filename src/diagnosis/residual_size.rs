@@ -1,5 +1,7 @@
 //! How large a residual is: beside the noise, and beside itself on data not fitted to.
 
+use serde::Serialize;
+
 use crate::fit::{Evaluation, FitRecord, Part};
 use crate::numerics::{fisher_tail, robust_scale};
 
@@ -11,7 +13,8 @@ pub(crate) const BEYOND_NOISE: f64 = 3.0;
 pub(crate) const NEAR_NOISE: f64 = 1.15;
 
 /// What shows that a model lacks something.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ShownBy {
     /// Shapes that missing effects have explain more than noise would.
     Shapes,

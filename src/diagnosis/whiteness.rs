@@ -14,11 +14,13 @@
 
 use std::ops::Range;
 
+use serde::Serialize;
+
 use super::lags::{BAND, CONFIDENCE, Lags, TrialSignals, autocovariance, centre, means};
 use crate::numerics::chi_square_tail;
 
 /// Whether the residual is white noise.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Whiteness {
     /// Ljung and Box's statistic of all lags together.
     pub statistic: f64,

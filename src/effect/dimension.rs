@@ -1,7 +1,10 @@
 //! The unit of a parameter, whatever the units of the log.
 
+use serde::Serialize;
+
 /// The unit of a parameter, in terms of the units of the log.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Dimension {
     /// A number without a unit.
     #[default]

@@ -1,5 +1,7 @@
 //! One parameter of an effect: its unit, its limits, where a fit starts.
 
+use serde::Serialize;
+
 use super::{Dimension, RecordRange};
 
 /// Stands for "no limit" in a parameter, in any unit: finite, so that it can be written
@@ -12,7 +14,7 @@ pub(crate) fn is_unlimited(value: f64) -> bool {
 }
 
 /// One parameter of an effect.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Parameter {
     /// Its name in files, in snake case.
     pub name: &'static str,
@@ -31,6 +33,7 @@ pub struct Parameter {
     pub typical: f64,
     /// Lowest and highest value that physics allows, in parts of [`RecordRange::size`] of its
     /// dimension: a fit may go beyond, and is then not believed.
+    #[serde(skip)]
     pub plausible: (f64, f64),
     /// Whether a fit may change it. If not it is a choice, such as a reference angle,
     /// and stays where the start put it.

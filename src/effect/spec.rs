@@ -1,5 +1,7 @@
 //! What an effect says about itself, as data.
 
+use serde::Serialize;
+
 use super::{Equations, Parameter, Stage};
 
 /// What an effect is, where it acts, and its parameters.
@@ -14,7 +16,7 @@ use super::{Equations, Parameter, Stage};
 ///     .parameters(&[Parameter::new("loss", "part lost", Dimension::One).between(0.0, 1.0)]);
 /// assert_eq!(LOSS.neutral(), [0.0]);
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Spec {
     /// Its name in files and on the command line, in snake case.
     pub id: &'static str,
@@ -42,25 +44,31 @@ pub struct Spec {
     pub absorbs: &'static [&'static str],
     /// Ids of pairs of effects that look like it together: where one fits better, it takes its
     /// place.
+    #[serde(skip)]
     pub looks_like_both: &'static [[&'static str; 2]],
     /// Ids of effects of its stage before which it may act, though it was added after them.
+    #[serde(skip)]
     pub upstream_of: &'static [&'static str],
     /// Id of an effect of which it is a finer form: where that is looked for, too, this one is
     /// only in models that have that.
     pub refines: Option<&'static str>,
     /// What it is, exactly, where one of its parameters is 0: a record that does not show that parameter
     /// shows no more than this.
+    #[serde(skip)]
     pub limiting_case: Option<LimitingCase>,
     /// Whether it follows a curve of any form, so that a search names it only where no effect with a
     /// law explains the record.
+    #[serde(skip)]
     pub is_free_form: bool,
     /// Whether its signal depends on [`Moment::signal`](super::Moment::signal) and its memory alone,
     /// and does not change while that is held: a simulation then asks it once for each level of the
     /// input.
+    #[serde(skip)]
     pub is_steady: bool,
     /// What it does, as text of which other languages can be made: the same as its
     /// [`settle`](super::Effect::settle), [`step`](super::Effect::step) and
     /// [`extra_delay_s`](super::Effect::extra_delay_s). `None` where it cannot leave the program.
+    #[serde(skip)]
     pub equations: Option<Equations>,
     /// Whether an effect on the output changes where the joint is, and not only what
     /// is measured of it.

@@ -1,7 +1,10 @@
 //! Where an effect acts.
 
+use serde::Serialize;
+
 /// Where an effect acts, in the order the stages are computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Stage {
     /// On the time at which a change of the input arrives.
     Transport,

@@ -1,9 +1,11 @@
 //! What is thought of a candidate: whether it is worth adding, and why.
 
+use serde::Serialize;
+
 use crate::effect::LimitingCase;
 
 /// The judgement of one candidate.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judgement {
     /// Twice the log-likelihood by which the model with it is ahead of the one without, less
     /// Schwarz's penalty for its parameters: above 0 the record favours it.
@@ -17,6 +19,7 @@ pub struct Judgement {
     /// The part of the misfit of the first model that it takes away, in percent.
     pub consequence_percent: f64,
     /// Why it is refused; none where it is added.
+    #[serde(skip)]
     pub refusal: Option<Refusal>,
 }
 

@@ -1,7 +1,10 @@
 //! What would separate two effects: an experiment in numbers, and how far apart it brings them.
 
+use serde::Serialize;
+
 /// How the levels of an input follow one another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Pattern {
     /// Rising and then falling, first in one direction and then in the other.
     Ladder,

@@ -3,12 +3,16 @@
 //! What is drawn, and in which role, stands here once: a segment with its lines, shares of an error,
 //! the errors of revisions, delays by level. A report draws a [`Panel`] as SVG; a recording draws the
 //! same data in Rerun's own views, which scale and label themselves.
+//!
+//! Recordings show some of it that is not shown elsewhere, which is unused in a program without them.
 
-#[cfg(feature = "rrd")]
+#![cfg_attr(
+    not(feature = "rrd"),
+    expect(dead_code, unused_imports, reason = "what only recordings show")
+)]
+
 pub(crate) mod correlogram;
-#[cfg(feature = "rrd")]
 pub(crate) mod course;
-#[cfg(feature = "rrd")]
 pub(crate) mod delay_against;
 pub(crate) mod delay_levels;
 pub(crate) mod error_share;
@@ -19,6 +23,4 @@ mod span;
 
 pub(crate) use panel::{Axis, Mark, Panel, Place, Shape};
 pub(crate) use role::{Revision, Role};
-#[cfg(feature = "rrd")]
-pub(crate) use span::power_of_ten;
-pub(crate) use span::{Span, thinned_to};
+pub(crate) use span::{Span, power_of_ten, thinned_places, thinned_to};

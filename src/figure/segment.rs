@@ -68,7 +68,6 @@ impl<'a> SegmentFigure<'a> {
     }
 
     /// What the chosen lines leave of `output`, the trial's that they were fitted to.
-    #[cfg(feature = "rrd")]
     pub(crate) fn residual(&self, output: &[f64]) -> Vec<Place> {
         let Some(best) = self.decision.candidates.best() else { return Vec::new() };
         let segment = self.decision.segment;

@@ -72,6 +72,12 @@ pub(crate) fn thinned_to(values: &[f64], points: usize) -> Vec<usize> {
     kept
 }
 
+/// `places` thinned to at most so many points.
+pub(crate) fn thinned_places<X: Copy>(places: &[(X, f64)], points: usize) -> Vec<(X, f64)> {
+    let values: Vec<f64> = places.iter().map(|place| place.1).collect();
+    thinned_to(&values, points).into_iter().filter_map(|k| places.get(k)).copied().collect()
+}
+
 /// What a tick of a logarithmic axis stands for, to two digits.
 pub(crate) fn power_of_ten(tick: f64) -> f64 {
     as_written(10_f64.powf(tick), 2)

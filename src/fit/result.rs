@@ -4,6 +4,8 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
+use serde::Serialize;
+
 use super::evaluation::Evaluation;
 use crate::effect::UNLIMITED;
 use crate::model::JointModel;
@@ -68,7 +70,8 @@ pub struct Parameter {
 }
 
 /// What a fit could do with a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Status {
     /// It was fitted.
     Fitted,
@@ -80,6 +83,7 @@ pub enum Status {
     Undetermined,
     /// It lies beyond what the record reaches: a level above all of the input, or a limit of the
     /// output where it never comes. The data do not determine it.
+    #[serde(rename = "undetermined")]
     BeyondReach,
 }
 

@@ -1,5 +1,7 @@
 //! Zero-phase low-pass filter: it smooths without adding a delay of its own.
 
+use serde::Serialize;
+
 use crate::units::SamplePeriod;
 use sci_rs::signal::filter::design::{
     DigitalFilter, FilterBandType, FilterOutputType, Sos, butter_dyn,
@@ -7,7 +9,7 @@ use sci_rs::signal::filter::design::{
 use sci_rs::signal::filter::{sosfilt_dyn, sosfilt_zi_dyn};
 
 /// A Butterworth low-pass, to be run forward and backward over a signal.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LowPass {
     /// Frequency in Hz at which one pass damps to 1/√2 (and two passes to 1/2).
     pub cutoff_hz: f64,

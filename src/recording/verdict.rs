@@ -35,7 +35,7 @@ pub(super) fn add(
         let name = plain(&layout.joint.name);
         let text = match dead_time_sentences(&estimated).as_slice() {
             [] => {
-                let why = JointSummary::of(estimated).without_steps();
+                let why = JointSummary::of(estimated).without_steps;
                 format!("### {name}\n## no step to decide: {why}\n")
             }
             // What was found comes first, then what makes it doubtful, then why there are no steps.

@@ -22,7 +22,7 @@ pub(crate) fn delay_answer(estimated: EstimatedJoint<'_>) -> String {
 fn delay_sentence(summary: &JointSummary) -> String {
     let JointSummary { steps, accepted, rejected, delay_s, headline, .. } = summary;
     if *steps == 0 {
-        return format!("No step: {}.", summary.without_steps());
+        return format!("No step: {}.", summary.without_steps);
     }
     let counted = |(why, count): &(Condition, usize)| format!("{}: {count}", why.meaning());
     let why = match rejected.as_slice() {

@@ -6,11 +6,12 @@ use crate::experiment::{Role, Survey, SurveyedColumn};
 /// A row per column: what it is taken for and why; what is open; as `options` the mapping, then those that
 /// could be meant as well; and what is `mended` in the log.
 pub(crate) fn columns_table(survey: &Survey, options: &[String], mended: &[String]) -> String {
-    let mut table = TextTable::new(["column", "taken for", "unit", "why"], &[]);
-    for column in &survey.columns {
+    let row = |column: &SurveyedColumn| {
         let unit = column.unit.clone().unwrap_or_default();
-        table.row([column.name.clone(), role(column), unit, column.why.clone()]);
-    }
+        [column.name.clone(), role(column), unit, column.why.clone()]
+    };
+    let rows = survey.columns.iter().map(row);
+    let table = TextTable::of(["column", "taken for", "unit", "why"], &[], rows);
     let mut text = format!("{table}\n");
     let mut lines = survey.open.clone();
     for (place, options) in options.iter().enumerate() {

@@ -1,8 +1,7 @@
 //! `compare` as text.
 
-use super::ladder::{errors_of, figures};
+use super::ladder::{errors_of, errors_table, figures};
 use super::parameters::model_text;
-use super::text_table::TextTable;
 use crate::diagnosis::{Comparison, ModelDifference};
 use crate::experiment::Joint;
 use crate::fit::Horizon;
@@ -25,45 +24,30 @@ pub struct ComparedJoint<'a> {
 /// of each joint compares with its others.
 pub(crate) fn compare_text(joints: &[ComparedJoint<'_>]) -> String {
     let differences = model_differences(joints);
-    let differences: Vec<_> = differences.iter().flat_map(ComparedModels::lines).collect();
-    if differences.is_empty() {
-        return compare_table(joints);
-    }
-    format!("{}\none model against another:\n{}\n", compare_table(joints), differences.join("\n"))
+    let differences = differences.iter().flat_map(ComparedModels::lines);
+    compare_table(joints) + &section("one model against another", differences)
+}
+
+/// Lines below an empty one and a heading; nothing where there are no lines.
+fn section(heading: &str, lines: impl Iterator<Item = String>) -> String {
+    let lines: Vec<_> = lines.collect();
+    if lines.is_empty() { String::new() } else { format!("\n{heading}:\n{}\n", lines.join("\n")) }
 }
 
 /// A table of errors, one row per joint and model, and the parameters below it.
 pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
-    let header = [
-        "joint",
-        "model",
-        "training",
-        "validation",
-        "raw",
-        "free run",
-        "fit",
-        "noise",
-        "lack of fit",
-    ];
-    let mut table = TextTable::new(header, &[2, 3, 4, 5, 6, 7]);
-    for compared in joints {
-        table.row(row(compared));
-    }
+    let row = |of: &ComparedJoint<'_>| {
+        let effects = effects_text(&of.comparison.fit.model);
+        ([of.joint.name.clone(), effects], figures(of.joint, &errors_of(of.comparison)))
+    };
+    let table = errors_table(["joint", "model"], joints.iter().map(row));
     let model = |of: &ComparedJoint<'_>| model_text(of.joint, of.comparison, Some(of.model));
     let models: Vec<_> = joints.iter().map(model).collect();
-    let failures: Vec<_> = joints.iter().flat_map(failure_sentences).collect();
-    let failures = if failures.is_empty() {
-        String::new()
-    } else {
-        let horizon = horizons_of(joints.iter().copied(), |comparison| comparison.arising);
-        format!("\nwhere the error arises ({horizon}):\n{}\n", failures.join("\n"))
-    };
-    let residuals: Vec<_> = joints.iter().filter_map(residual_line).collect();
-    let residuals = if residuals.is_empty() {
-        String::new()
-    } else {
-        format!("\nresidual of the training part:\n{}\n", residuals.join("\n"))
-    };
+    let arising = horizons_of(joints.iter().copied(), |comparison| comparison.arising);
+    let failures = joints.iter().flat_map(failure_sentences);
+    let failures = section(&format!("where the error arises ({arising})"), failures);
+    let residuals =
+        section("residual of the training part", joints.iter().filter_map(residual_line));
     let models = models.join("\n");
     let horizon = horizons(joints.iter().copied());
     format!("{table}\n{}\n\n{models}\n{residuals}{failures}", errors_note(&horizon))
@@ -150,13 +134,6 @@ fn failure_sentences(compared: &ComparedJoint<'_>) -> Vec<String> {
     sentences
         .map(|sentence| format!("{} ({}) {fails} {sentence}", joint.name, compared.model))
         .collect()
-}
-
-fn row(compared: &ComparedJoint<'_>) -> [String; 9] {
-    let effects = effects_text(&compared.comparison.fit.model);
-    let [training, validation, raw, free, fit, noise, lack] =
-        figures(compared.joint, &errors_of(compared.comparison));
-    [compared.joint.name.clone(), effects, training, validation, raw, free, fit, noise, lack]
 }
 
 /// What the errors of a table are.

@@ -26,7 +26,6 @@ pub(crate) fn dead_time_sentences(joint: &EstimatedJoint<'_>) -> Vec<String> {
 }
 
 /// The dead time of a joint in a line, where its input moves all the time, and what may bias it.
-#[cfg(feature = "rrd")]
 pub(super) fn dead_time_answer(joint: EstimatedJoint<'_>) -> Option<String> {
     let found = joint.estimate.dead_time.as_ref()?;
     Some(

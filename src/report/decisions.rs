@@ -6,7 +6,7 @@ use super::{DataTable, EstimatedJoint, Kind};
 use crate::delay::{Check, Condition, Decision, Method, Settings, Verdict};
 use crate::experiment::Trial;
 use crate::numerics::to_nanoseconds;
-use crate::wording::remedy_text;
+use crate::wording::{number, remedy_text};
 
 /// One row of `--decisions`; sample numbers count from 1 within the trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -88,6 +88,15 @@ impl DecisionDetail {
             accepted_with: remedies.join("; "),
         }
     }
+
+    /// The delay's interval as `11.2 … 12.9`, samples; `-` where there is none.
+    pub(super) fn interval_text(&self) -> String {
+        let ends = self.delta_low.zip(self.delta_high);
+        ends.map_or_else(
+            || "-".to_owned(),
+            |(low, high)| format!("{} … {}", number(low), number(high)),
+        )
+    }
 }
 
 impl<'a> DecisionRow<'a> {
@@ -143,67 +152,31 @@ fn samples<S: Serializer>(value: &Option<f64>, serializer: S) -> Result<S::Ok, S
 pub fn decision_rows(
     joint: EstimatedJoint<'_>,
 ) -> impl Iterator<Item = (&Trial, DecisionRow<'_>)> + '_ {
-    let EstimatedJoint { joint, estimate } = joint;
-    let trials = joint.trials.iter().zip(&estimate.trials);
-    let estimated = trials.filter_map(|(trial, result)| Some((trial, result.as_ref().ok()?)));
-    estimated.flat_map(move |(trial, estimate)| {
-        let row = move |decision| (trial, DecisionRow::new(&joint.name, trial, decision));
-        estimate.decisions.iter().map(row)
-    })
-}
-
-/// The verdict on each step of a joint, and its delay in samples and in seconds.
-pub(super) fn verdicts(
-    joint: EstimatedJoint<'_>,
-) -> impl Iterator<Item = (Verdict, Option<f64>, Option<f64>)> + '_ {
-    let trials = joint.joint.trials.iter().zip(&joint.estimate.trials);
-    let estimated = trials.filter_map(|(trial, result)| Some((trial, result.as_ref().ok()?)));
-    estimated.flat_map(|(trial, estimate)| {
-        let period_s = trial.period().seconds();
-        estimate.decisions.iter().map(move |decision| {
-            let delay = decision.delay();
-            (decision.verdict(), delay, delay.map(|delay| to_nanoseconds(delay * period_s)))
-        })
-    })
+    let name = joint.joint.name.as_str();
+    joint.decisions().map(|(trial, _, decision)| (trial, DecisionRow::new(name, trial, decision)))
 }
 
 /// The rows of one joint with their details.
 pub(super) fn detailed_rows(
     joint: EstimatedJoint<'_>,
-) -> impl Iterator<Item = (DecisionRow<'_>, DecisionDetail)> + '_ {
+) -> impl Iterator<Item = DetailedRow<'_>> + '_ {
     let settings = &joint.estimate.settings;
-    let trials = joint.joint.trials.iter().zip(&joint.estimate.trials);
-    let estimated = trials.filter_map(|(trial, result)| Some((trial, result.as_ref().ok()?)));
-    estimated.flat_map(move |(trial, estimate)| {
-        let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
-        let row = move |decision| {
-            let row = DecisionRow::new(&joint.joint.name, trial, decision);
-            (row, DecisionDetail::new(decision, settings, output))
-        };
-        estimate.decisions.iter().map(row)
+    joint.decisions().map(move |(trial, found, decision)| {
+        let output = found.smoothed.as_deref().unwrap_or(trial.output());
+        DetailedRow {
+            row: DecisionRow::new(&joint.joint.name, trial, decision),
+            detail: DecisionDetail::new(decision, settings, output),
+        }
     })
 }
 
-/// The columns of [`decision_table`] for decisions of these methods.
-pub(crate) fn decision_columns(methods: Methods) -> impl Iterator<Item = (&'static str, Kind)> {
-    let count = if methods == Methods::PaperOnly { OF_THE_PAPER } else { COLUMNS.len() };
-    COLUMNS.into_iter().take(count)
-}
-
-/// Which methods the decisions are of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Methods {
-    /// The paper's.
-    PaperOnly,
-    /// Others, which have further details.
-    Others,
-}
-
-impl Methods {
-    fn of(runs: &[(&Settings, &[EstimatedJoint<'_>])]) -> Self {
-        let paper = runs.iter().all(|(settings, _)| settings.method == Method::TWO_LINE);
-        if paper { Self::PaperOnly } else { Self::Others }
-    }
+/// The columns of [`decision_table`] for decisions of the methods with these ids: of the paper's alone
+/// without those of the details.
+pub(crate) fn decision_columns<'a>(
+    mut methods: impl Iterator<Item = &'a str>,
+) -> impl Iterator<Item = (&'static str, Kind)> {
+    let is_of_paper = methods.all(|id| id == Method::TWO_LINE.id());
+    COLUMNS.into_iter().take(if is_of_paper { OF_THE_PAPER } else { COLUMNS.len() })
 }
 
 /// The decisions of all joints, those of one run of settings below those of another. With a method
@@ -214,21 +187,21 @@ impl Methods {
 pub(crate) fn decision_table(
     runs: &[(&Settings, &[EstimatedJoint<'_>])],
 ) -> serde_json::Result<DataTable> {
-    let mut table = DataTable::new(decision_columns(Methods::of(runs)));
-    for (_, joints) in runs {
-        for (row, detail) in joints.iter().flat_map(|joint| detailed_rows(*joint)) {
-            table.push_fields(DetailedRow { row, detail })?;
-        }
+    let methods = runs.iter().map(|(settings, _)| settings.method.id());
+    let mut table = DataTable::new(decision_columns(methods));
+    for row in runs.iter().flat_map(|(_, joints)| *joints).flat_map(|joint| detailed_rows(*joint)) {
+        table.push_fields(row)?;
     }
     Ok(table)
 }
 
-#[derive(Serialize)]
-struct DetailedRow<'a> {
+/// A decision with its details.
+#[derive(Debug, Serialize)]
+pub(super) struct DetailedRow<'a> {
     #[serde(flatten)]
-    row: DecisionRow<'a>,
+    pub(super) row: DecisionRow<'a>,
     #[serde(flatten)]
-    detail: DecisionDetail,
+    pub(super) detail: DecisionDetail,
 }
 
 /// Names of the columns, and what they hold: those of [`DecisionRow`], then those of

@@ -1,29 +1,11 @@
 //! The delays by kind of step and level, as a typed table and for people.
 
-use serde::Serialize;
+use serde_json::{Map, Value};
 
 use super::text_table::TextTable;
 use super::{DataTable, EstimatedJoint, JointSummary, Kind};
 use crate::delay::{Condition, DelayRow, DelayTable, KindDelay, Remedy, Transition, TypicalDelay};
 use crate::wording::{number, remedy_text, unit_suffix};
-
-/// One row of `--table`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct DelayTableRow<'a> {
-    joint: &'a str,
-    transition: &'static str,
-    /// Mean of a bin.
-    level_from: f64,
-    level_to: f64,
-    steps: usize,
-    accepted: usize,
-    delay_median_s: Option<f64>,
-    /// Lower end of the median's 95 % interval.
-    delay_low_s: Option<f64>,
-    delay_high_s: Option<f64>,
-    delay_min_s: Option<f64>,
-    delay_max_s: Option<f64>,
-}
 
 /// Names and kinds of the columns.
 const COLUMNS: [(&str, Kind); 11] = [
@@ -40,38 +22,35 @@ const COLUMNS: [(&str, Kind); 11] = [
     ("delay_max_s", Kind::Real),
 ];
 
-impl<'a> DelayTableRow<'a> {
-    pub(super) fn new(joint: &'a str, row: &DelayRow) -> Self {
-        let delay = row.delay;
-        let interval = delay.and_then(|delay| delay.interval_s);
-        Self {
-            joint,
-            transition: row.transition.id(),
-            level_from: row.level_from,
-            level_to: row.level_to,
-            steps: row.steps,
-            accepted: row.accepted,
-            delay_median_s: delay.map(|delay| delay.median_s),
-            delay_low_s: interval.map(|(low, _)| low),
-            delay_high_s: interval.map(|(_, high)| high),
-            delay_min_s: delay.map(|delay| delay.min_s),
-            delay_max_s: delay.map(|delay| delay.max_s),
-        }
-    }
+/// One row of `--table`: levels are means of a bin, low and high bound the median at 95 %.
+pub(super) fn row_json(joint: &str, row: &DelayRow) -> Map<String, Value> {
+    let delay = row.delay;
+    let interval = delay.and_then(|delay| delay.interval_s);
+    let cells: [Value; COLUMNS.len()] = [
+        joint.into(),
+        row.transition.id().into(),
+        row.level_from.into(),
+        row.level_to.into(),
+        row.steps.into(),
+        row.accepted.into(),
+        delay.map(|delay| delay.median_s).into(),
+        interval.map(|(low, _)| low).into(),
+        interval.map(|(_, high)| high).into(),
+        delay.map(|delay| delay.min_s).into(),
+        delay.map(|delay| delay.max_s).into(),
+    ];
+    COLUMNS.into_iter().map(|(name, _)| name.to_owned()).zip(cells).collect()
 }
 
 /// The rows of all joints, as a table with types.
-///
-/// # Errors
-/// Never: the rows have fields.
-pub(crate) fn level_table(joints: &[EstimatedJoint<'_>]) -> serde_json::Result<DataTable> {
+pub(crate) fn level_table(joints: &[EstimatedJoint<'_>]) -> DataTable {
     let mut table = DataTable::new(COLUMNS);
     for joint in joints {
         for row in &joint.delay_table().rows {
-            table.push_fields(DelayTableRow::new(&joint.joint.name, row))?;
+            table.push(&row_json(&joint.joint.name, row));
         }
     }
-    Ok(table)
+    table
 }
 
 /// What the cells of [`level_cells`] are.
@@ -98,6 +77,11 @@ pub(crate) fn level_cells(row: &DelayRow) -> [String; 8] {
     ]
 }
 
+/// The rows of a joint for people.
+pub(super) fn level_table_text(rows: &[DelayRow]) -> TextTable {
+    TextTable::of(LEVEL_HEADER, &[1, 2, 3, 4, 5], rows.iter().map(level_cells))
+}
+
 /// The tables of all joints for the terminal.
 pub(crate) fn delay_levels_text(joints: &[EstimatedJoint<'_>]) -> String {
     joints.iter().map(joint_text).collect()
@@ -105,16 +89,13 @@ pub(crate) fn delay_levels_text(joints: &[EstimatedJoint<'_>]) -> String {
 
 fn joint_text(joint: &EstimatedJoint<'_>) -> String {
     let found = joint.delay_table();
-    let mut table = TextTable::new(LEVEL_HEADER, &[1, 2, 3, 4, 5]);
-    for row in &found.rows {
-        table.row(level_cells(row));
-    }
     let name = &joint.joint.name;
     if found.rows.is_empty() {
-        let why = JointSummary::of(*joint).without_steps();
+        let why = JointSummary::of(*joint).without_steps;
         return format!("\n{name}: no delay table: {why}\n");
     }
     let neutral = neutral_sentence(&found, joint.joint.input_unit.as_deref());
+    let table = level_table_text(&found.rows);
     let kinds: Vec<_> = found.kinds.iter().map(kind_sentence).collect();
     format!("\n{name}: {neutral}\n{table}\n{}\n", kinds.join("\n"))
 }

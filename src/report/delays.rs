@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 use std::io::Write;
 
-use super::table::Cell;
+use serde_json::Value;
+
 use super::{DataTable, EstimatedJoint, Kind};
 use crate::delay::DelayProfile;
 use crate::experiment::Trial;
@@ -16,49 +17,62 @@ use crate::numerics::to_nanoseconds;
 /// When `out` cannot be written.
 pub fn write_delays(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    let taus = joints.iter().map(|joint| format!("{}.tau", joint.joint.name));
-    let header = ["trial", "sample", "time_s"].into_iter().map(str::to_owned).chain(taus);
-    writer.write_record(header)?;
-    for run in runs(joints) {
-        let columns: Vec<_> = joints.iter().map(|joint| find(*joint, run)).collect();
-        let trials = columns.iter().flatten().map(|(trial, _)| *trial);
-        let Some(longest) = trials.max_by_key(|trial| trial.len()) else { continue };
-        for sample in 1..=longest.len() {
-            writer.write_field(run.label())?;
-            writer.write_field(sample.to_string())?;
-            writer.write_field(to_nanoseconds(longest.logged_time_s(sample)).to_string())?;
-            for column in &columns {
-                let tau = column.and_then(|(_, profile)| profile.at(sample));
-                writer.write_field(tau.map_or_else(String::new, |tau| tau.to_string()))?;
-            }
-            writer.write_record(None::<&[u8]>)?;
+    let header = ["trial", "sample", "time_s"].into_iter().map(str::to_owned);
+    writer.write_record(header.chain(joints.iter().map(tau)))?;
+    for Row { trial, sample, time_s, delays } in rows(joints) {
+        writer.write_field(trial)?;
+        writer.write_field(sample.to_string())?;
+        writer.write_field(time_s.to_string())?;
+        for delay in delays {
+            writer.write_field(delay.map_or_else(String::new, |tau| tau.to_string()))?;
         }
+        writer.write_record(None::<&[u8]>)?;
     }
     Ok(writer.flush()?)
 }
 
 /// The delays that [`write_delays`] writes, as a table with types.
 pub(crate) fn delay_table(joints: &[EstimatedJoint<'_>]) -> DataTable {
-    let taus: Vec<_> = joints.iter().map(|joint| format!("{}.tau", joint.joint.name)).collect();
+    let taus: Vec<_> = joints.iter().map(tau).collect();
     let first = [("trial", Kind::Text), ("sample", Kind::Whole), ("time_s", Kind::Real)];
-    let mut table = DataTable::new(
-        first.into_iter().chain(taus.iter().map(|tau| (tau.as_str(), Kind::Samples))),
-    );
-    for run in runs(joints) {
-        let columns: Vec<_> = joints.iter().map(|joint| find(*joint, run)).collect();
-        let trials = columns.iter().flatten().map(|(trial, _)| *trial);
-        let Some(longest) = trials.max_by_key(|trial| trial.len()) else { continue };
-        for sample in 1..=longest.len() {
-            let time_s = to_nanoseconds(longest.logged_time_s(sample));
-            let delays =
-                columns.iter().map(|column| column.and_then(|(_, profile)| profile.at(sample)));
-            let mut cells =
-                vec![Cell::Text(run.label()), Cell::Whole(sample), Cell::Real(Some(time_s))];
-            cells.extend(delays.map(Cell::Real));
-            table.push_cells(cells);
-        }
+    let taus = taus.iter().map(|tau| (tau.as_str(), Kind::Samples));
+    let mut table = DataTable::new(first.into_iter().chain(taus));
+    for Row { trial, sample, time_s, delays } in rows(joints) {
+        let first = [Value::from(trial), sample.into(), time_s.into()];
+        table.push_cells(first.into_iter().chain(delays.into_iter().map(Value::from)));
     }
     table
+}
+
+/// The column of a joint.
+fn tau(joint: &EstimatedJoint<'_>) -> String {
+    format!("{}.tau", joint.joint.name)
+}
+
+/// A sample of a trial, and the delay of each joint there.
+struct Row<'a> {
+    trial: &'a str,
+    sample: usize,
+    time_s: f64,
+    delays: Vec<Option<f64>>,
+}
+
+/// All samples of all trials.
+fn rows<'a>(joints: &[EstimatedJoint<'a>]) -> impl Iterator<Item = Row<'a>> {
+    runs(joints).into_iter().flat_map(|run| {
+        let columns: Vec<_> = joints.iter().map(|joint| find(*joint, run)).collect();
+        let trials = columns.iter().flatten().map(|(trial, _)| *trial);
+        let longest = trials.max_by_key(|trial| trial.len());
+        let samples = longest.into_iter().flat_map(|longest| {
+            (1..=longest.len()).map(|sample| (sample, longest.logged_time_s(sample)))
+        });
+        samples.map(move |(sample, time_s)| Row {
+            trial: run.label(),
+            sample,
+            time_s: to_nanoseconds(time_s),
+            delays: columns.iter().map(|found| found.and_then(|(_, of)| of.at(sample))).collect(),
+        })
+    })
 }
 
 /// All trials, each once, in the order they first appear. Where joints were split at

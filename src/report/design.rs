@@ -1,7 +1,9 @@
 //! The next experiment: what is to be played and what is expected of it, as CSV.
 
-use std::io::Write;
+use serde::Serialize;
+use serde_json::Value;
 
+use super::{DataTable, Kind};
 use crate::design::{Design, FreeRunError, Hold, Order, Prediction, Schedule, TestRig};
 use crate::explain::Pattern;
 use crate::numerics::to_nanoseconds;
@@ -75,7 +77,7 @@ pub(super) fn kept_until_s(joint: &DesignedJoint, prediction: &Prediction) -> Op
 }
 
 /// A level that is held.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Held {
     /// Number of the trial, from 1.
     pub(super) trial: usize,
@@ -113,90 +115,68 @@ pub(super) fn order(order: Order) -> &'static str {
     }
 }
 
-/// A column of a file, trial by trial.
-struct Column {
-    name: String,
-    trials: Vec<Vec<f64>>,
-    /// The value behind the end of a trial; not a number: an empty cell.
-    after: f64,
-}
+/// A column of a joint: its name, a value for each sample of the joint's input, and the value behind
+/// the end of a trial, where others go on; not a number: an empty cell.
+type Column<'a> = (String, &'a DesignedJoint, Vec<f64>, f64);
 
-impl Column {
-    /// `values` of `joint`, one for each sample of its input.
-    fn of(joint: &DesignedJoint, name: &str, values: &[f64], after: f64) -> Self {
-        let mut rest = values;
-        let of_trial = |trial: Schedule| {
-            let (own, others) = rest.split_at(trial.samples().min(rest.len()));
-            rest = others;
-            own.to_vec()
-        };
-        let trials = joint.schedule.trials().into_iter().map(of_trial).collect();
-        Self { name: format!("{}.{name}", joint.rig.name), trials, after }
-    }
-}
-
-/// Writes `time_s,<joint>.input…` as CSV, to be played; in several trials, each from time zero on,
+/// `<joint>.input…`, to be played: after `time_s`, and in several trials, each from time zero on,
 /// `trial` before it. A joint whose input ends before that of another rests.
-///
-/// # Errors
-/// When `out` cannot be written.
-pub(crate) fn write_input(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()> {
-    let column = |joint| Column::of(joint, "input", &joint.schedule.input(), joint.rest);
-    write_columns(joints, &joints.iter().map(column).collect::<Vec<_>>(), out)
+pub(crate) fn input_table(joints: &[DesignedJoint]) -> DataTable {
+    table(joints, &joints.iter().map(input).collect::<Vec<_>>())
 }
 
-/// Writes the input and what is expected: `<joint>.output`, and `<joint>.low` and `.high` with
-/// the margin; for two suspects `<joint>.<effect>` of each.
-///
-/// # Errors
-/// When `out` cannot be written.
-pub(crate) fn write_preview(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()> {
+fn input(joint: &DesignedJoint) -> Column<'_> {
+    (format!("{}.input", joint.rig.name), joint, joint.schedule.input(), joint.rest)
+}
+
+/// The input and what is expected: `<joint>.output`, and `<joint>.low` and `.high` with the margin; for
+/// two suspects `<joint>.<effect>` of each.
+pub(crate) fn preview_table(joints: &[DesignedJoint]) -> DataTable {
     let mut columns = Vec::new();
     for joint in joints {
-        let mut add = |name: &str, values: &[f64], after: f64| {
-            columns.push(Column::of(joint, name, values, after));
-        };
-        add("input", &joint.schedule.input(), joint.rest);
+        columns.push(input(joint));
         let Some(Prediction { output, margin }) = &joint.prediction else { continue };
-        let with = |sign: f64| -> Vec<f64> {
-            output.iter().zip(margin).map(|(y, m)| y + sign * m).collect()
-        };
-        add("output", output, f64::NAN);
-        add("low", &with(-1.0), f64::NAN);
-        add("high", &with(1.0), f64::NAN);
-        if let Some(Discrimination { ids: [one, other], other: outputs, .. }) =
-            &joint.discrimination
-        {
-            add(one, output, f64::NAN);
-            add(other, &outputs.output, f64::NAN);
+        let with = |sign: f64| output.iter().zip(margin).map(|(y, m)| y + sign * m).collect();
+        let mut expected =
+            vec![("output", output.clone()), ("low", with(-1.0)), ("high", with(1.0))];
+        if joint.discrimination.is_some() {
+            let suspects = joint.expected().into_iter();
+            expected.extend(suspects.map(|(effect, found)| (effect, found.output.clone())));
         }
+        let named =
+            |(name, values)| (format!("{}.{name}", joint.rig.name), joint, values, f64::NAN);
+        columns.extend(expected.into_iter().map(named));
     }
-    write_columns(joints, &columns, out)
+    table(joints, &columns)
 }
 
-fn write_columns(joints: &[DesignedJoint], columns: &[Column], out: impl Write) -> csv::Result<()> {
-    let mut writer = csv::Writer::from_writer(out);
-    let trials = columns.iter().map(|column| column.trials.len()).max().unwrap_or(0);
-    let names = columns.iter().map(|column| column.name.as_str());
-    let number = (trials > 1).then_some("trial");
-    writer.write_record(number.into_iter().chain(["time_s"]).chain(names))?;
+fn table(joints: &[DesignedJoint], columns: &[Column<'_>]) -> DataTable {
+    let trials: Vec<_> = columns.iter().map(|(_, joint, ..)| joint.schedule.trials()).collect();
+    let count = trials.iter().map(Vec::len).max().unwrap_or(0);
+    let names = columns.iter().map(|(name, ..)| name.as_str());
+    let numbered = (count > 1).then_some("trial");
+    let header = numbered.into_iter().chain(["time_s"]).chain(names);
+    let mut table = DataTable::new(header.map(|name| (name, Kind::Plain)));
     let period_s = joints.first().map_or(0.0, |joint| joint.schedule.period().seconds());
-    for trial in 0..trials {
-        let of_trial = |column: &Column| column.trials.get(trial).map_or(0, Vec::len);
-        let rows = columns.iter().map(of_trial).max().unwrap_or(0);
-        for row in 0..rows {
-            if trials > 1 {
-                writer.write_field((trial + 1).to_string())?;
-            }
-            writer.write_field(to_nanoseconds(row as f64 * period_s).to_string())?;
-            for Column { trials, after, .. } in columns {
-                let value = trials.get(trial).and_then(|values| values.get(row));
-                let value = value.copied().unwrap_or(*after);
-                let text = if value.is_nan() { String::new() } else { value.to_string() };
-                writer.write_field(text)?;
-            }
-            writer.write_record(None::<&[u8]>)?;
+    // Where the trial begins in the values of each column.
+    let mut starts = vec![0; columns.len()];
+    for number in 0..count {
+        let samples =
+            |schedules: &Vec<Schedule>| schedules.get(number).map_or(0, Schedule::samples);
+        let own: Vec<usize> = trials.iter().map(samples).collect();
+        for row in 0..own.iter().copied().max().unwrap_or(0) {
+            let cell = |(place, (.., values, after)): (usize, &Column<'_>)| {
+                let is_within = own.get(place).is_some_and(|samples| row < *samples);
+                let start = starts.get(place).copied().unwrap_or(0);
+                let value = values.get(start + row).filter(|_| is_within);
+                value.copied().unwrap_or(*after).into()
+            };
+            let trial = numbered.map(|_| Value::from(number + 1));
+            let time_s = Value::from(to_nanoseconds(row as f64 * period_s));
+            let cells = columns.iter().enumerate().map(cell);
+            table.push_cells(trial.into_iter().chain([time_s]).chain(cells));
         }
+        starts.iter_mut().zip(own).for_each(|(start, samples)| *start += samples);
     }
-    Ok(writer.flush()?)
+    table
 }

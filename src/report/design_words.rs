@@ -1,12 +1,13 @@
 //! The next experiment in words.
 
 use super::design::{Basis, DesignedJoint, Discrimination, Held, holds, kept_until_s, order};
+use super::separation::levels_text;
 use super::text_table::TextTable;
 use crate::design::{
     Expected, FreeRunError, OpenThreshold, Prediction, Rehearsal, Schedule, transitions,
 };
 use crate::fit::makes_first_order;
-use crate::wording::{listed, measure, rounded, unit_suffix, wrapped};
+use crate::wording::{listed, measure, range_text, rounded, wrapped};
 
 /// What is to be played on each joint, and what is expected of it.
 pub(crate) fn design_text(joints: &[DesignedJoint]) -> String {
@@ -44,9 +45,7 @@ pub(crate) fn design_sentences(joint: &DesignedJoint) -> Vec<String> {
 /// What is played, in a sentence.
 fn headline(joint: &DesignedJoint) -> String {
     let DesignedJoint { rig, schedule, .. } = joint;
-    let unit = rig.input_unit.as_deref();
-    let levels: Vec<String> = schedule.levels().iter().map(|level| rounded(*level)).collect();
-    let levels = listed(&levels, "and") + &unit_suffix(unit);
+    let levels = levels_text(&schedule.levels(), rig.input_unit.as_deref());
     let (hold, steps) = (hold_text(schedule), schedule.steps());
     let duration = duration_text(schedule);
     let name = &rig.name;
@@ -112,11 +111,7 @@ pub(crate) fn side_rows(found: &Discrimination) -> [[String; 5]; 2] {
 }
 
 fn side_table(found: &Discrimination) -> TextTable {
-    let mut table = TextTable::new(SIDE_HEADER, &[1, 2, 3, 4]);
-    for cells in side_rows(found) {
-        table.row(cells);
-    }
-    table
+    TextTable::of(SIDE_HEADER, &[1, 2, 3, 4], side_rows(found))
 }
 
 /// What the figures are about.
@@ -162,16 +157,13 @@ fn foreseen(joint: &DesignedJoint, prediction: &Prediction) -> String {
     let unit = joint.rig.output_unit.as_deref();
     let expected = joint.expected();
     let ends = expected.iter().map(|(_, prediction)| prediction.extent());
-    let none = (f64::INFINITY, f64::NEG_INFINITY);
-    let (low, high) = ends.fold(none, |(low, high), (l, h)| (low.min(l), high.max(h)));
+    let within = range_text(ends.flat_map(|(low, high)| [low, high]), unit);
     let margins = expected.iter().map(|(_, prediction)| prediction.largest_margin());
     let margin = measure(margins.fold(0.0, f64::max), unit);
     let start = measure(joint.rig.start, unit);
     let from = format!(
-        "From {start} the joint is expected within {} to {}, a margin of up to {margin} (two \
-         standard deviations) included.",
-        rounded(low),
-        measure(high, unit)
+        "From {start} the joint is expected within {within}, a margin of up to {margin} (two \
+         standard deviations) included."
     );
     match (joint.rig.range, kept_until_s(joint, prediction)) {
         (Some(_), Some(until)) => format!(
@@ -187,11 +179,8 @@ fn promise(joint: &DesignedJoint, prediction: &Prediction, basis: &Basis) -> [St
     let unit = joint.rig.output_unit.as_deref();
     let from_to = |(low, high): (f64, f64)| format!("{} to {}", rounded(low), measure(high, unit));
     let start = start_text(joint, basis);
-    let none = (f64::INFINITY, f64::NEG_INFINITY);
-    let outputs = prediction.output.iter();
-    let alone = outputs.fold(none, |(low, high), y| (low.min(*y), high.max(*y)));
-    let expected =
-        format!("{} expected, {} with the margin", from_to(alone), from_to(prediction.extent()));
+    let alone = range_text(prediction.output.iter().copied(), unit);
+    let expected = format!("{alone} expected, {} with the margin", from_to(prediction.extent()));
     let range = match joint.rig.range {
         Some(range) => {
             let known = basis.within.filter(|within| *within != range).map(|known| {
@@ -269,8 +258,7 @@ pub(crate) fn hold_note(shortest_s: f64, response_s: f64) -> String {
 
 /// Which levels a wider range would allow.
 pub(crate) fn left_out_note(levels: &[f64], unit: Option<&str>) -> String {
-    let levels: Vec<String> = levels.iter().map(|level| rounded(*level)).collect();
-    let levels = listed(&levels, "and") + &unit_suffix(unit);
+    let levels = levels_text(levels, unit);
     format!("Levels: the range is too narrow for {levels}, which the log has.")
 }
 

@@ -1,9 +1,10 @@
 //! Decisions in the order of their doubt.
 
 use super::EstimatedJoint;
+use super::steps::step_place;
 use crate::delay::{Decision, Doubt, doubts};
 use crate::experiment::Trial;
-use crate::wording::{counted, doubt_percent, doubt_sentence, number};
+use crate::wording::{counted, doubt_percent, doubt_sentence};
 
 /// A decision with its doubt.
 #[derive(Clone, Debug)]
@@ -17,9 +18,7 @@ pub(crate) struct Doubted<'a> {
 
 /// All decisions on `joint` in their order, each with its doubt.
 pub(super) fn doubted(joint: EstimatedJoint<'_>) -> impl Iterator<Item = Doubted<'_>> {
-    let trials = joint.joint.trials.iter().zip(&joint.estimate.trials);
-    let trials = trials.filter_map(|(trial, found)| Some((trial, found.as_ref().ok()?)));
-    trials.flat_map(|(trial, found)| {
+    joint.trials().flat_map(|(trial, found)| {
         let smoothed = found.smoothed.as_deref();
         let all = doubts(&found.decisions, smoothed.unwrap_or(trial.output()));
         all.map(move |(decision, doubt)| Doubted { trial, smoothed, decision, doubt })
@@ -47,7 +46,6 @@ pub(crate) fn all_by_doubt<'a>(
 }
 
 /// The doubtful decisions of all joints in lines, the most doubtful first.
-#[cfg(feature = "rrd")]
 pub(crate) fn doubtful_lines(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
     lines(&all_by_doubt(joints))
 }
@@ -81,11 +79,8 @@ pub(super) fn doubtful_text(joints: &[EstimatedJoint<'_>]) -> String {
 /// Where a decision is, and what speaks against it.
 fn line(joint: EstimatedJoint<'_>, found: &Doubted<'_>) -> String {
     let Doubted { trial, decision, doubt, .. } = found;
-    let several = joint.joint.trials.len() > 1;
-    let label = if several { format!(", trial {}", trial.label()) } else { String::new() };
-    let time = number(trial.time_s(decision.input_step.sample));
     let verdict = decision.program_verdict();
     let why = doubt_sentence(doubt, verdict, trial.period().seconds());
-    let (name, step, percent) = (&joint.joint.name, decision.number, doubt_percent(doubt));
-    format!("{name}{label}, step {step} at {time} s: {verdict}, doubt {percent}: {why}")
+    let (place, percent) = (step_place(joint.joint, trial, decision), doubt_percent(doubt));
+    format!("{place}: {verdict}, doubt {percent}: {why}")
 }

@@ -1,7 +1,9 @@
 //! A joint with its estimate.
 
-use crate::delay::{AgainstState, DelayTable, Neutral, OnsetModel, Tracking};
-use crate::experiment::Joint;
+use crate::delay::{
+    AgainstState, Decision, DelayTable, Neutral, OnsetModel, Tracking, TrialEstimate,
+};
+use crate::experiment::{Joint, Trial};
 use crate::study::JointEstimate;
 
 /// A joint as it was measured, and its delays.
@@ -13,7 +15,23 @@ pub struct EstimatedJoint<'a> {
     pub estimate: &'a JointEstimate,
 }
 
-impl EstimatedJoint<'_> {
+impl<'a> EstimatedJoint<'a> {
+    /// The trials that have an estimate, in their order.
+    pub(crate) fn trials(&self) -> impl Iterator<Item = (&'a Trial, &'a TrialEstimate)> + use<'a> {
+        let trials = self.joint.trials.iter().zip(&self.estimate.trials);
+        trials.filter_map(|(trial, found)| Some((trial, found.as_ref().ok()?)))
+    }
+
+    /// The decisions on all input steps in their order, each with its trial and what was estimated of
+    /// that.
+    pub(crate) fn decisions(
+        &self,
+    ) -> impl Iterator<Item = (&'a Trial, &'a TrialEstimate, &'a Decision)> + use<'a> {
+        self.trials().flat_map(|(trial, found)| {
+            found.decisions.iter().map(move |decision| (trial, found, decision))
+        })
+    }
+
     /// The response behind its dead times, where the method fits one.
     pub fn onset_model(&self) -> Option<&OnsetModel> {
         self.estimate.estimated().find_map(|trial| trial.onset_model.as_deref())

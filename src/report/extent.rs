@@ -7,8 +7,7 @@ use crate::wording::{measure, range_text};
 /// A row per joint: how long it was measured, and in which range.
 pub(crate) fn extent_table(joints: &[Joint]) -> String {
     let header = ["joint", "input", "output", "trials", "samples", "period", "duration"];
-    let mut table = TextTable::new(header, &[3, 4, 5, 6]);
-    for joint in joints {
+    let row = |joint: &Joint| {
         let trials = || joint.trials.iter();
         let samples: usize = trials().map(Trial::len).sum();
         let mut periods: Vec<String> = trials().map(|trial| trial.period().to_string()).collect();
@@ -19,7 +18,7 @@ pub(crate) fn extent_table(joints: &[Joint]) -> String {
         };
         let duration: f64 =
             trials().map(|trial| trial.len() as f64 * trial.period().seconds()).sum();
-        table.row([
+        [
             joint.name.clone(),
             range_text(trials().flat_map(Trial::input).copied(), joint.input_unit.as_deref()),
             range_text(trials().flat_map(Trial::output).copied(), joint.output_unit.as_deref()),
@@ -27,9 +26,9 @@ pub(crate) fn extent_table(joints: &[Joint]) -> String {
             samples.to_string(),
             period,
             measure(duration, Some("s")),
-        ]);
-    }
-    format!("{table}\n")
+        ]
+    };
+    format!("{}\n", TextTable::of(header, &[3, 4, 5, 6], joints.iter().map(row)))
 }
 
 #[cfg(test)]

@@ -76,19 +76,18 @@ pub(super) fn specs(candidate: &Candidate) -> impl Iterator<Item = &'static Spec
 pub(super) fn ranking_table(joint: &Joint, ranking: &[Candidate]) -> TextTable {
     let header =
         ["effect", "validation", "reduction", "p-value", "indistinguishable from", "judgement"];
-    let mut table = TextTable::new(header, &[1, 2]);
-    for candidate in ranking {
+    let row = |candidate: &Candidate| {
         let same = &candidate.indistinguishable_from;
-        table.row([
+        [
             candidate.name(),
             with_unit(candidate.rmse(), joint.output_unit.as_deref()),
             format!("{:.1} %", candidate.error_reduction_percent),
             p_text(candidate.p_value),
             if same.is_empty() { "-".to_owned() } else { same.join(", ") },
             judgement_text(&candidate.judgement),
-        ]);
-    }
-    table
+        ]
+    };
+    TextTable::of(header, &[1, 2], ranking.iter().map(row))
 }
 
 /// `added: shown, …` or `refused: …`.

@@ -3,8 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::text_table::TextTable;
-use super::{DataTable, DelayRange, Kind, Methods, decision_columns};
-use crate::delay::Method;
+use super::{DataTable, DelayRange, Kind, decision_columns};
 use crate::wording::{counted, percent};
 
 /// The result of one log: the document that the command prints as JSON.
@@ -60,18 +59,12 @@ impl FolderReport {
 
     /// The decisions of all logs: the columns of `--decisions` behind one for the log.
     pub(crate) fn decisions(&self) -> DataTable {
-        let paper = |log: &LogResult| {
-            let runs = std::iter::once(&log.document).chain(array(&log.document, "also"));
-            runs.into_iter()
-                .all(|run| run.pointer("/settings/method") == Some(&json!(Method::TWO_LINE.id())))
-        };
-        let paper = self.logs.iter().all(paper);
-        let methods = if paper { Methods::PaperOnly } else { Methods::Others };
-        let mut table =
-            DataTable::new([("file", Kind::Text)].into_iter().chain(decision_columns(methods)));
+        let all_runs = self.logs.iter().flat_map(runs);
+        let methods = all_runs.map(|run| run.pointer("/settings/method").and_then(Value::as_str));
+        let columns = decision_columns(methods.map(Option::unwrap_or_default));
+        let mut table = DataTable::new([("file", Kind::Text)].into_iter().chain(columns));
         for log in &self.logs {
-            let runs = std::iter::once(&log.document).chain(array(&log.document, "also"));
-            let joints = runs.flat_map(|run| array(run, "joints"));
+            let joints = runs(log).flat_map(|run| array(run, "joints"));
             for decision in joints.flat_map(|joint| array(joint, "decisions")) {
                 let mut row = decision.as_object().cloned().unwrap_or_default();
                 row.insert("file".to_owned(), log.file.clone().into());
@@ -83,39 +76,30 @@ impl FolderReport {
 
     /// A row per log and joint.
     pub(crate) fn summary(&self) -> DataTable {
-        let columns: &[(&str, Kind)] =
-            if self.command == "improve" { &IMPROVED } else { &ESTIMATED };
-        let mut table = DataTable::new(columns.iter().copied());
+        let columns = self.summary_columns().iter().map(|(name, kind, _)| (*name, *kind));
+        let mut table = DataTable::new(columns);
         for row in self.summary_rows() {
             table.push(&row);
         }
         table
     }
 
+    /// Columns of [`Self::summary`], and where in the JSON of a joint each stands.
+    fn summary_columns(&self) -> &'static [SummaryColumn] {
+        if self.command == "improve" { &IMPROVED } else { &ESTIMATED }
+    }
+
     pub(super) fn summary_rows(&self) -> impl Iterator<Item = Map<String, Value>> {
         let row = |(log, joint): (&LogResult, &Value)| {
-            let at = |pointer: &str| joint.pointer(pointer).cloned().unwrap_or_default();
-            let cells: Vec<(&str, Value)> = if self.command == "improve" {
-                vec![
-                    ("verdict", at("/verdict")),
-                    ("revision", at("/revision")),
-                    ("effects", texts(joint, "effects").join(" ").into()),
-                    ("train_rmse", at("/error/train/rmse")),
-                    ("validation_rmse", at("/error/validation/rmse")),
-                    ("noise_floor", at("/error/noise_floor")),
-                ]
-            } else {
-                vec![
-                    ("steps", at("/steps")),
-                    ("accepted", at("/accepted")),
-                    ("delay_min_s", at("/delay_s/min")),
-                    ("delay_median_s", at("/delay_s/median")),
-                    ("delay_max_s", at("/delay_s/max")),
-                ]
+            let cell = |(name, _, place): &SummaryColumn| {
+                let value = match *name {
+                    "file" => log.file.clone().into(),
+                    "effects" => texts(joint, "effects").join(" ").into(),
+                    _ => joint.pointer(place).cloned().unwrap_or_default(),
+                };
+                ((*name).to_owned(), value)
             };
-            let first = [("file", log.file.clone().into()), ("joint", at("/joint"))];
-            let cells = first.into_iter().chain(cells);
-            cells.map(|(name, value)| (name.to_owned(), value)).collect()
+            self.summary_columns().iter().map(cell).collect()
         };
         self.joints().map(row)
     }
@@ -136,11 +120,20 @@ impl FolderReport {
 
     /// A table of the joints across all logs.
     pub(crate) fn text(&self) -> String {
-        let improve = self.command == "improve";
-        let header: &[&str] = if improve {
-            &["joint", "logs", "adequate", "validation rmse min", "median", "max", "effects (logs)"]
+        let across = self.across();
+        let table = if self.command == "improve" {
+            let header = [
+                "joint",
+                "logs",
+                "adequate",
+                "validation rmse min",
+                "median",
+                "max",
+                "effects (logs)",
+            ];
+            TextTable::of(header, &[1, 2, 3, 4, 5], across.iter().map(Across::improved_cells))
         } else {
-            &[
+            let header = [
                 "joint",
                 "logs",
                 "steps",
@@ -149,39 +142,41 @@ impl FolderReport {
                 "median",
                 "max",
                 "medians of the logs",
-            ]
-        };
-        let cells =
-            |joint: &Across| if improve { joint.improved_cells() } else { joint.estimated_cells() };
-        let table = TextTable {
-            header: header.iter().map(ToString::to_string).collect(),
-            rows: self.across().iter().map(cells).collect(),
-            numbers: (1..header.len() - 1).collect(),
+            ];
+            TextTable::of(header, &[1, 2, 3, 4, 5, 6], across.iter().map(Across::estimated_cells))
         };
         format!("{table}\n{}, each by itself\n", counted(self.logs.len(), "log"))
     }
 }
 
-const ESTIMATED: [(&str, Kind); 7] = [
-    ("file", Kind::Text),
-    ("joint", Kind::Text),
-    ("steps", Kind::Whole),
-    ("accepted", Kind::Whole),
-    ("delay_min_s", Kind::Real),
-    ("delay_median_s", Kind::Real),
-    ("delay_max_s", Kind::Real),
+/// Name and kind of a column, and where in the JSON of a joint its value stands.
+type SummaryColumn = (&'static str, Kind, &'static str);
+
+const ESTIMATED: [SummaryColumn; 7] = [
+    ("file", Kind::Text, ""),
+    ("joint", Kind::Text, "/joint"),
+    ("steps", Kind::Whole, "/steps"),
+    ("accepted", Kind::Whole, "/accepted"),
+    ("delay_min_s", Kind::Real, "/delay_s/min"),
+    ("delay_median_s", Kind::Real, "/delay_s/median"),
+    ("delay_max_s", Kind::Real, "/delay_s/max"),
 ];
 
-const IMPROVED: [(&str, Kind); 8] = [
-    ("file", Kind::Text),
-    ("joint", Kind::Text),
-    ("verdict", Kind::Text),
-    ("revision", Kind::Whole),
-    ("effects", Kind::Text),
-    ("train_rmse", Kind::Real),
-    ("validation_rmse", Kind::Real),
-    ("noise_floor", Kind::Real),
+const IMPROVED: [SummaryColumn; 8] = [
+    ("file", Kind::Text, ""),
+    ("joint", Kind::Text, "/joint"),
+    ("verdict", Kind::Text, "/verdict"),
+    ("revision", Kind::Whole, "/revision"),
+    ("effects", Kind::Text, "/effects"),
+    ("train_rmse", Kind::Real, "/error/train/rmse"),
+    ("validation_rmse", Kind::Real, "/error/validation/rmse"),
+    ("noise_floor", Kind::Real, "/error/noise_floor"),
 ];
+
+/// The runs of a log, one for each method.
+fn runs(log: &LogResult) -> impl Iterator<Item = &Value> {
+    std::iter::once(&log.document).chain(array(&log.document, "also"))
+}
 
 /// The elements of an array in a document; none where it has no such array.
 fn array<'a>(document: &'a Value, name: &str) -> impl Iterator<Item = &'a Value> + use<'a> {
@@ -227,25 +222,22 @@ impl Across {
         }
     }
 
-    fn estimated_cells(&self) -> Vec<String> {
+    fn estimated_cells(&self) -> [String; 8] {
         let share = percent(self.accepted as f64 / self.steps.max(1) as f64);
         let accepted = format!("{} ({share})", self.accepted);
         let medians = DelayRange::of(self.medians_s.clone())
             .map_or_else(String::new, |range| format!("{:.3} … {:.3} s", range.min, range.max));
-        let mut cells =
-            vec![self.joint.clone(), self.logs.to_string(), self.steps.to_string(), accepted];
-        cells.extend(range_cells(&self.delays_s, " s"));
-        cells.push(medians);
-        cells
+        let [min, median, max] = range_cells(&self.delays_s, " s");
+        let (logs, steps) = (self.logs.to_string(), self.steps.to_string());
+        [self.joint.clone(), logs, steps, accepted, min, median, max, medians]
     }
 
-    fn improved_cells(&self) -> Vec<String> {
+    fn improved_cells(&self) -> [String; 7] {
         let effects: Vec<_> =
             self.effects.iter().map(|(name, logs)| format!("{name} ({logs})")).collect();
-        let mut cells = vec![self.joint.clone(), self.logs.to_string(), self.adequate.to_string()];
-        cells.extend(range_cells(&self.rmse, ""));
-        cells.push(effects.join(", "));
-        cells
+        let [min, median, max] = range_cells(&self.rmse, "");
+        let [logs, adequate] = [self.logs, self.adequate].map(|count| count.to_string());
+        [self.joint.clone(), logs, adequate, min, median, max, effects.join(", ")]
     }
 }
 

@@ -1,23 +1,16 @@
 //! `improve` as text: the ladder of errors.
 
-#[cfg(feature = "rrd")]
-use super::compare::ComparedJoint;
-use super::compare::{errors_note, horizons};
+use super::compare::{ComparedJoint, errors_note, horizons};
 use super::conclusion::{Conclusion, Passage, Topic};
 use super::finding::Finding;
 use super::ladder::{History, LadderRow, change_in_words, errors_of, figures, ladder_table};
 use super::parameters::model_text;
-#[cfg(feature = "rrd")]
 use crate::diagnosis::Comparison;
-#[cfg(feature = "rrd")]
 use crate::effect::by_id;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
-#[cfg(feature = "rrd")]
 use crate::model::Component;
-use crate::wording::effect_ids;
-#[cfg(feature = "rrd")]
-use crate::wording::measure;
+use crate::wording::{effect_ids, measure};
 
 /// A joint whose model was improved.
 #[derive(Clone, Copy, Debug)]
@@ -96,7 +89,6 @@ impl<'a> ImprovedJoint<'a> {
     }
 
     /// What is to be said of the revision at `index`.
-    #[cfg(feature = "rrd")]
     pub(crate) fn conclusion_at(&self, index: usize) -> Conclusion {
         let next = self.revisions.get(index + 1).map(|next| next.change);
         let known = self.numbered().nth(index).zip(next);
@@ -131,7 +123,6 @@ impl<'a> ImprovedJoint<'a> {
 
     /// What is to be said of the revision of `finding` at `index`, to which the effect `id` was
     /// added without others beside it.
-    #[cfg(feature = "rrd")]
     fn added_unranked(&self, index: usize, id: &str, finding: &Finding<'_>) -> Conclusion {
         let joint = finding.compared.joint;
         let next = self.revisions.get(index + 1).map(|next| &next.comparison);
@@ -183,7 +174,6 @@ impl<'a> ImprovedJoint<'a> {
 }
 
 /// Whether `new` is a finer form of `old`.
-#[cfg(feature = "rrd")]
 fn is_finer(new: &str, old: &str) -> bool {
     by_id(new).is_some_and(|effect| effect.spec().refines == Some(old))
 }

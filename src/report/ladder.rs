@@ -56,6 +56,20 @@ pub(super) fn figures(joint: &Joint, errors: &RevisionErrors) -> [String; 7] {
     ]
 }
 
+/// A table of errors: in each row what two columns called `first` say, and the [`figures`] of a model.
+pub(super) fn errors_table(
+    first: [&str; 2],
+    rows: impl Iterator<Item = ([String; 2], [String; 7])>,
+) -> TextTable {
+    let [name, what] = first;
+    let header =
+        [name, what, "training", "validation", "raw", "free run", "fit", "noise", "lack of fit"];
+    let rows = rows.map(|([name, what], [training, validation, raw, free, fit, noise, lack])| {
+        [name, what, training, validation, raw, free, fit, noise, lack]
+    });
+    TextTable::of(header, &[2, 3, 4, 5, 6, 7], rows)
+}
+
 /// What a revision changed: `+ dead_band`; of the first, the effects that it has.
 pub(crate) fn change_in_words(revision: &Step) -> String {
     match revision.change {
@@ -119,22 +133,8 @@ impl History<'_> {
 
 /// The ladder of errors as a table.
 pub(super) fn ladder_table(joint: &Joint, rows: &[LadderRow]) -> TextTable {
-    let header = [
-        "revision",
-        "change",
-        "training",
-        "validation",
-        "raw",
-        "free run",
-        "fit",
-        "noise",
-        "lack of fit",
-    ];
-    let mut table = TextTable::new(header, &[2, 3, 4, 5, 6, 7]);
-    for LadderRow { number, change, errors } in rows {
-        let [training, validation, raw, free, fit, noise, lack] = figures(joint, errors);
-        let (number, change) = (number.to_string(), change.clone());
-        table.row([number, change, training, validation, raw, free, fit, noise, lack]);
-    }
-    table
+    let row = |row: &LadderRow| {
+        ([row.number.to_string(), row.change.clone()], figures(joint, &row.errors))
+    };
+    errors_table(["revision", "change"], rows.iter().map(row))
 }

@@ -1,4 +1,11 @@
 //! Results as text, CSV, JSON, and a page with figures: pure functions to bytes.
+//!
+//! Recordings show some of it that is not shown elsewhere, which is unused in a program without them.
+
+#![cfg_attr(
+    not(feature = "rrd"),
+    expect(dead_code, unused_imports, reason = "what only recordings show")
+)]
 
 mod add;
 mod against;
@@ -21,7 +28,6 @@ mod estimated;
 mod explain;
 mod extent;
 mod finding;
-mod first_order;
 mod folder;
 mod improve;
 mod json;
@@ -44,37 +50,28 @@ mod warning;
 
 pub(crate) use add::{AddedJoint, add_text, gone};
 pub use against::against_table;
-#[cfg(feature = "rrd")]
 pub(crate) use against::variable_text;
 pub(crate) use answer::delay_answer;
 pub(crate) use columns::columns_table;
 pub use compare::ComparedJoint;
-pub(crate) use compare::compare_text;
-#[cfg(feature = "rrd")]
-pub(crate) use compare::model_differences;
-#[cfg(feature = "rrd")]
+pub(crate) use compare::{compare_text, model_differences};
 pub(crate) use conclusion::{Passage, Topic};
-#[cfg(feature = "rrd")]
 pub(crate) use consequence::MANY_TIMES_NOISE;
 pub(crate) use dead_time::{dead_time_sentences, input_note};
-pub use decisions::DecisionRow;
-pub use decisions::decision_rows;
-pub(crate) use decisions::{DecisionDetail, Methods, decision_columns, decision_table};
-#[cfg(feature = "rrd")]
-pub(crate) use delay_table::{LEVEL_HEADER, kind_sentence, level_cells};
-pub(crate) use delay_table::{delay_levels_text, level_table};
+pub use decisions::{DecisionRow, decision_rows};
+pub(crate) use decisions::{decision_columns, decision_table};
+pub(crate) use delay_table::{
+    LEVEL_HEADER, delay_levels_text, kind_sentence, level_cells, level_table,
+};
 pub(crate) use delays::delay_table;
 pub use delays::write_delays;
-pub(crate) use design::{Basis, DesignedJoint, Discrimination, write_input, write_preview};
-#[cfg(feature = "rrd")]
-pub(crate) use design_words::{SIDE_HEADER, design_sentences, side_rows};
+pub(crate) use design::{Basis, DesignedJoint, Discrimination, input_table, preview_table};
 pub(crate) use design_words::{
-    design_text, hold_note, left_out_note, no_range_note, shortened_note, trials_note,
+    SIDE_HEADER, design_sentences, design_text, hold_note, left_out_note, no_range_note,
+    shortened_note, side_rows, trials_note,
 };
 pub(crate) use difference::{Against, against_text};
-#[cfg(feature = "rrd")]
-pub(crate) use doubt::doubtful_lines;
-pub(crate) use doubt::{Doubted, by_doubt};
+pub(crate) use doubt::{Doubted, by_doubt, doubtful_lines};
 pub(crate) use effects::{listing, sheet};
 pub use estimated::EstimatedJoint;
 pub(crate) use explain::explain_text;
@@ -83,35 +80,25 @@ pub use finding::Finding;
 pub(crate) use folder::{FolderReport, LogResult};
 pub use improve::ImprovedJoint;
 pub(crate) use improve::{improve_text, revision_line};
-pub(crate) use json::Header;
 pub(crate) use json::{
-    AddJson, ColumnsJson, CompareJson, DesignJson, EffectsJson, EstimateJson, ExplainJson,
-    FolderJson, ImproveJson, ReportJson, SweepJson,
+    EstimateJson, add_json, columns_json, compare_json, design_json, document, effects_json,
+    explain_json, folder_json, improve_json, report_json, sweep_json,
 };
 pub use ladder::History;
-#[cfg(feature = "rrd")]
-pub(crate) use ladder::change_in_words;
-pub(crate) use ladder::errors_of;
+pub(crate) use ladder::{change_in_words, errors_of};
 pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{Document, Heading, RecordingFile, Report, report_text};
-#[cfg(feature = "rrd")]
 pub(crate) use parameters::{delay_of_steps, telling_parameters};
 pub(crate) use review::{ReviewCount, write_review_sheet};
 pub(crate) use review_page::review_page;
-pub(crate) use settings::settings_in_short;
-#[cfg(feature = "rrd")]
-pub(crate) use settings::settings_rows;
+pub(crate) use settings::{settings_in_short, settings_rows};
 pub(crate) use steps::{step_line, steps_table};
 pub(crate) use summary::{DelayRange, Headline, JointSummary};
 pub use sweep::ReportedSweep;
-pub(crate) use sweep::{StepsShown, sweep_text};
-#[cfg(feature = "rrd")]
 pub(crate) use sweep::{
-    depends_on, level_cell, level_text, run_text, settings_in_words, sweep_sentences,
+    StepsShown, depends_on, level_cell, level_text, run_text, settings_in_words, sweep_sentences,
+    sweep_text,
 };
 pub(crate) use table::{DataTable, Kind};
-pub(crate) use text::chosen_line;
-pub(crate) use text::estimate_table;
-#[cfg(feature = "rrd")]
-pub(crate) use text::{SUMMARY_HEADER, summary_cells};
+pub(crate) use text::{SUMMARY_HEADER, chosen_line, estimate_table, summary_cells};
 pub use warning::Warning;

@@ -71,19 +71,14 @@ fn held_law(
 
 /// The accepted steps of a joint and their delays in seconds.
 fn accepted(measured: EstimatedJoint<'_>) -> Vec<(InputChange, f64)> {
-    let EstimatedJoint { joint, estimate } = measured;
-    let mut accepted = Vec::new();
-    for trial in estimate.estimated() {
-        let known = joint.trials.iter().find(|known| known.label() == trial.label);
-        let Some(period_s) = known.map(|known| known.period().seconds()) else { continue };
-        for decision in &trial.decisions {
-            let InputStep { sample, before, after } = decision.input_step;
-            let time_s = period_s * sample as f64;
-            let change = InputChange { before, after, held_s: time_s, time_s };
-            accepted.extend(decision.accepted_delay().map(|delay| (change, delay * period_s)));
-        }
-    }
-    accepted
+    let accepted = measured.decisions().filter_map(|(trial, _, decision)| {
+        let period_s = trial.period().seconds();
+        let InputStep { sample, before, after } = decision.input_step;
+        let time_s = period_s * sample as f64;
+        let change = InputChange { before, after, held_s: time_s, time_s };
+        Some((change, decision.accepted_delay()? * period_s))
+    });
+    accepted.collect()
 }
 
 /// Of a constant delay beside the dead time of an input that moves all the time, where it lies

@@ -5,7 +5,7 @@ use crate::effect::Stage;
 use crate::experiment::{Joint, Trial};
 use crate::fit::{AssessedModel, Parameter, Status, starts_s};
 use crate::model::{Commands, Component, JointModel};
-use crate::wording::{parameter_units, parameter_value, rounded};
+use crate::wording::{parameter_units, parameter_value, range_text};
 
 /// A model as lines of a terminal: gain and delay, then a line for each effect. `called` is its name
 /// where there are others of the joint.
@@ -62,9 +62,7 @@ pub(crate) fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String
     if delays_s.is_empty() || delays_s.len() * SAMPLES_PER_STEP > samples {
         return None;
     }
-    let least = delays_s.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = delays_s.iter().copied().fold(0.0, f64::max);
-    Some(format!("{} to {} s", rounded(least), rounded(most)))
+    Some(range_text(delays_s.into_iter(), Some("s")))
 }
 
 /// The parameters of a model with their units, without those that say nothing: held where they do

@@ -37,16 +37,13 @@ pub(super) fn experiment(joint: &Joint, separation: &Separation) -> String {
 
 fn input(joint: &Joint, proposal: &Proposal) -> String {
     let Proposal { pattern, levels, hold_s, .. } = proposal;
-    let unit = unit_suffix(joint.input_unit.as_deref());
-    let (levels, hold) =
-        (levels.iter().map(|level| rounded(*level)).collect::<Vec<_>>(), rounded(*hold_s));
+    let (levels, hold) = (levels_text(levels, joint.input_unit.as_deref()), rounded(*hold_s));
     let order = match pattern {
         Pattern::Ladder => "rising and then falling, in one direction and then in the other",
         Pattern::Pulses => "each in both directions, with a rest as long behind it",
         Pattern::Reversals => "each in both directions, without a rest",
     };
-    let levels = listed(&levels, "and");
-    format!("hold {levels}{unit} for {hold} s each, {order}")
+    format!("hold {levels} for {hold} s each, {order}")
 }
 
 fn starts(joint: &Joint, starts: &[Start]) -> String {
@@ -74,6 +71,12 @@ fn starts(joint: &Joint, starts: &[Start]) -> String {
         }
         _ => from,
     }
+}
+
+/// `0.3, 0.4 and 0.5 V`.
+pub(super) fn levels_text(levels: &[f64], unit: Option<&str>) -> String {
+    let levels: Vec<String> = levels.iter().map(|level| rounded(*level)).collect();
+    listed(&levels, "and") + &unit_suffix(unit)
 }
 
 /// Whether a level is larger than all of the record.

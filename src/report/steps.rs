@@ -1,24 +1,26 @@
 //! Every step in a row, for the terminal.
 
 use super::EstimatedJoint;
-use super::decisions::detailed_rows;
+use super::decisions::{DetailedRow, detailed_rows};
 use super::text_table::TextTable;
 use crate::delay::{Decision, InputStep, Verdict};
 use crate::experiment::{Joint, Trial};
 use crate::wording::{number, samples_text, unit_suffix};
 
+/// Where a step is: `boom, trial 2, step 3 at 12.4 s`, the trial where there are several.
+pub(super) fn step_place(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
+    let several = joint.trials.len() > 1;
+    let label = if several { format!(", trial {}", trial.label()) } else { String::new() };
+    let time = number(trial.time_s(decision.input_step.sample));
+    format!("{}{label}, step {} at {time} s", joint.name, decision.number)
+}
+
 /// One step in a line, as it is reported when it has come, with its trial where there are several.
 pub(crate) fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
-    let name = &joint.name;
-    let is_one_of_several = joint.trials.len() > 1;
-    let label = is_one_of_several.then(|| format!(", trial {}", trial.label()));
-    let label = label.unwrap_or_default();
-    let time = number(trial.time_s(decision.input_step.sample));
     let InputStep { before, after, .. } = decision.input_step;
     let unit = unit_suffix(joint.input_unit.as_deref());
     let (before, after) = (number(before), number(after));
-    let step =
-        format!("{name}{label}, step {} at {time} s, {before} to {after}{unit}", decision.number);
+    let step = format!("{}, {before} to {after}{unit}", step_place(joint, trial, decision));
     let Verdict::Rejected(condition) = decision.verdict() else {
         let samples = decision.delay().unwrap_or(0.0);
         let seconds = samples * trial.period().seconds();
@@ -33,13 +35,9 @@ pub(crate) fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
     let header = ["joint", "trial", "step", "delay", "interval", "verdict", "how near"];
     let mut table = TextTable::new(header, &[2, 3]);
     for joint in joints {
-        for (row, detail) in detailed_rows(*joint) {
+        for DetailedRow { row, detail } in detailed_rows(*joint) {
             let delay = row.delta.map_or_else(|| "-".to_owned(), number);
-            let ends = detail.delta_low.zip(detail.delta_high);
-            let interval = ends.map_or_else(
-                || "-".to_owned(),
-                |(low, high)| format!("{} … {}", number(low), number(high)),
-            );
+            let interval = detail.interval_text();
             let near = match (row.verdict, detail.runner_up_margin, detail.runner_up_q) {
                 (Verdict::Accepted, Some(margin), Some(q)) => {
                     format!("SSE {} % above at q = {q}", number(100.0 * margin))

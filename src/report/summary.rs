@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::decisions::verdicts;
 use super::{EstimatedJoint, ReviewCount};
 use crate::delay::{Condition, KindDelay, Verdict};
 use crate::experiment::longest_gap_s;
+use crate::numerics::to_nanoseconds;
 
 /// How many steps were accepted, why the others were not, and what the delays are.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,12 +20,8 @@ pub(crate) struct JointSummary {
     pub(crate) delay_samples: Option<DelayRange>,
     /// The accepted delays in seconds.
     pub(crate) delay_s: Option<DelayRange>,
-    /// Whether the input moves all the time, so that there are no steps.
-    pub(crate) is_continuous: bool,
-    /// Whether the trials, or the parts between gaps, hold different levels.
-    pub(crate) levels_differ: bool,
-    /// The longest gap between two parts of a trial.
-    pub(crate) gap_s: Option<f64>,
+    /// Why there are no steps, where there are none.
+    pub(crate) without_steps: String,
     /// What stands for the delays in one line.
     pub(crate) headline: Headline,
     /// What persons said of the decisions, where any did.
@@ -93,14 +89,18 @@ impl JointSummary {
 
     /// Counts the decisions of `joint`, whose delays by kinds of steps are known.
     pub(crate) fn with(joint: EstimatedJoint<'_>, kinds: Vec<KindDelay>) -> Self {
-        let with = |verdict: Verdict| verdicts(joint).filter(move |(found, ..)| *found == verdict);
-        let samples = with(Verdict::Accepted).filter_map(|(_, samples, _)| samples);
-        let seconds = with(Verdict::Accepted).filter_map(|(_, _, seconds)| seconds);
+        let with = |verdict: Verdict| {
+            joint.decisions().filter(move |(_, _, decision)| decision.verdict() == verdict)
+        };
+        let samples = with(Verdict::Accepted).filter_map(|(_, _, decision)| decision.delay());
+        let seconds = with(Verdict::Accepted).filter_map(|(trial, _, decision)| {
+            Some(to_nanoseconds(decision.delay()? * trial.period().seconds()))
+        });
         let count = |condition: Condition| (condition, with(Verdict::Rejected(condition)).count());
         let delay_s = DelayRange::of(seconds.collect());
         Self {
             headline: Headline::of(kinds),
-            steps: verdicts(joint).count(),
+            steps: joint.decisions().count(),
             accepted: with(Verdict::Accepted).count(),
             rejected: Condition::ALL
                 .into_iter()
@@ -110,33 +110,29 @@ impl JointSummary {
                 .collect(),
             delay_samples: DelayRange::of(samples.collect()),
             delay_s,
-            is_continuous: joint.estimate.dead_time.is_some(),
-            levels_differ: levels_differ(joint),
-            gap_s: longest_gap_s(&joint.joint.trials),
+            without_steps: without_steps(joint),
             reviewed: ReviewCount::on(joint),
         }
     }
 }
 
-fn levels_differ(joint: EstimatedJoint<'_>) -> bool {
-    let mut levels = joint.joint.trials.iter().filter_map(|trial| trial.input().first());
+/// Why a joint without steps has none.
+fn without_steps(EstimatedJoint { joint, estimate }: EstimatedJoint<'_>) -> String {
+    let mut levels = joint.trials.iter().filter_map(|trial| trial.input().first());
     let first = levels.next();
-    levels.any(|level| Some(level) != first)
-}
-
-impl JointSummary {
-    /// Why there are no steps.
-    pub(crate) fn without_steps(&self) -> String {
-        match (self.is_continuous, self.levels_differ, self.gap_s) {
-            (true, _, _) => "the input moves all the time".to_owned(),
-            (false, true, Some(gap_s)) => format!(
-                "the input changes only between trials or in gaps of up to {gap_s} s, which \
-                 `tauscope estimate --fill {gap_s}` bridges"
-            ),
-            (false, true, None) => "the input changes only between trials".to_owned(),
-            (false, false, _) => "the input never changes".to_owned(),
-        }
+    if estimate.dead_time.is_some() {
+        return "the input moves all the time".to_owned();
     }
+    if levels.all(|level| Some(level) == first) {
+        return "the input never changes".to_owned();
+    }
+    let Some(gap_s) = longest_gap_s(&joint.trials) else {
+        return "the input changes only between trials".to_owned();
+    };
+    format!(
+        "the input changes only between trials or in gaps of up to {gap_s} s, which \
+         `tauscope estimate --fill {gap_s}` bridges"
+    )
 }
 
 #[cfg(test)]

@@ -161,7 +161,7 @@ pub(crate) fn summary_cells(name: &str, summary: &JointSummary) -> [String; 7] {
         _ => format!("{accepted} ({})", percent(*accepted as f64 / *steps as f64)),
     };
     let why = match (steps, rejected.is_empty()) {
-        (0, _) => summary.without_steps(),
+        (0, _) => summary.without_steps.clone(),
         (_, true) => "none".to_owned(),
         (_, false) => reasons(rejected),
     };
@@ -203,45 +203,30 @@ fn alpha_and_beta(settings: &Settings, automatic: Automatic) -> String {
 /// The settings in one line, as a person would say them.
 pub(super) fn settings_line(settings: &Settings, automatic: Automatic) -> String {
     let spec = settings.method.spec();
-    let mut parts = Vec::new();
-    parts.push(alpha_and_beta(settings, automatic));
-    if spec.has_intervals {
-        parts.push(format!("{} % intervals", 100.0 * settings.interval));
-    }
-    let low_pass = low_pass_text(settings);
-    let low_pass = if automatic.passband { "low-pass as above".to_owned() } else { low_pass };
-    parts.push(low_pass);
-    if let Some(confidence) = settings.confidence {
-        parts.push(format!("reactions at {} %", 100.0 * confidence));
-    }
-    if let Some((low, high)) = settings.output_limits {
-        parts.push(format!("output between {low} and {high}"));
-    }
-    if settings.min_slope_change > 0.0 {
-        parts.push(format!("slope change ≥ {} per sample", settings.min_slope_change));
-    }
-    if settings.min_delay_length() != Length::Samples(0) {
-        parts.push(format!("hold ≥ {}", length(settings.min_delay_length())));
-    }
-    if let Some(delay) = settings.max_delay_length() {
-        parts.push(format!("delay ≤ {}", length(delay)));
-    }
-    if let Some(limit) = settings.max_sse {
-        parts.push(format!("SSE < {limit}"));
-    }
-    if settings.min_step > 0.0 {
-        parts.push(format!("input steps > {}", settings.min_step));
-    }
-    if settings.interpolation == Interpolation::Linear {
-        parts.push("delay linear between steps".to_owned());
-    }
-    match settings.first_last {
-        FirstLast::Auto => {}
-        FirstLast::Reject => parts.push("first and last step rejected".to_owned()),
-        FirstLast::Keep => parts.push("first and last step kept".to_owned()),
-    }
-    if settings.paper {
-        parts.push("Algorithm 1 to the letter".to_owned());
-    }
+    let low_pass =
+        if automatic.passband { "low-pass as above".to_owned() } else { low_pass_text(settings) };
+    let has_shortest = settings.min_delay_length() != Length::Samples(0);
+    let parts = [
+        Some(alpha_and_beta(settings, automatic)),
+        spec.has_intervals.then(|| format!("{} % intervals", 100.0 * settings.interval)),
+        Some(low_pass),
+        settings.confidence.map(|confidence| format!("reactions at {} %", 100.0 * confidence)),
+        settings.output_limits.map(|(low, high)| format!("output between {low} and {high}")),
+        (settings.min_slope_change > 0.0)
+            .then(|| format!("slope change ≥ {} per sample", settings.min_slope_change)),
+        has_shortest.then(|| format!("hold ≥ {}", length(settings.min_delay_length()))),
+        settings.max_delay_length().map(|delay| format!("delay ≤ {}", length(delay))),
+        settings.max_sse.map(|limit| format!("SSE < {limit}")),
+        (settings.min_step > 0.0).then(|| format!("input steps > {}", settings.min_step)),
+        (settings.interpolation == Interpolation::Linear)
+            .then(|| "delay linear between steps".to_owned()),
+        match settings.first_last {
+            FirstLast::Auto => None,
+            FirstLast::Reject => Some("first and last step rejected".to_owned()),
+            FirstLast::Keep => Some("first and last step kept".to_owned()),
+        },
+        settings.paper.then(|| "Algorithm 1 to the letter".to_owned()),
+    ];
+    let parts: Vec<_> = parts.into_iter().flatten().collect();
     format!("{}: {}", spec.fits, parts.join("; "))
 }

@@ -23,6 +23,16 @@ impl TextTable {
         self.rows.push(cells.into());
     }
 
+    /// A table with a row for each of `rows`.
+    pub(super) fn of<const N: usize>(
+        header: [&str; N],
+        numbers: &[usize],
+        rows: impl IntoIterator<Item = [String; N]>,
+    ) -> Self {
+        let rows = rows.into_iter().map(Vec::from).collect();
+        Self { rows, ..Self::new(header, numbers) }
+    }
+
     /// Whether a column holds numbers.
     pub(super) fn is_number(&self, column: usize) -> bool {
         self.numbers.contains(&column)

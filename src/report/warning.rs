@@ -93,15 +93,11 @@ impl EstimatedJoint<'_> {
 
     /// The delays of accepted steps between samples, with their standard errors; seconds.
     pub(super) fn fine_delays(&self) -> Vec<(f64, f64)> {
-        let trials = self.joint.trials.iter().zip(&self.estimate.trials);
-        let estimated = trials.filter_map(|(trial, found)| Some((trial, found.as_ref().ok()?)));
-        let delays = estimated.flat_map(|(trial, found)| {
+        let accepted = self.decisions().filter(|(.., it)| it.verdict() == Verdict::Accepted);
+        let delays = accepted.filter_map(|(trial, _, decision)| {
             let period_s = trial.period().seconds();
-            let accepted = found.decisions.iter().filter(|it| it.verdict() == Verdict::Accepted);
-            accepted.filter_map(move |decision| {
-                let error = decision.fine?.standard_error();
-                Some((decision.delay()? * period_s, error * period_s))
-            })
+            let error = decision.fine?.standard_error();
+            Some((decision.delay()? * period_s, error * period_s))
         });
         delays.collect()
     }

@@ -4,7 +4,7 @@ use crate::batch::Threads;
 use crate::experiment::Joint;
 use crate::explain::{Addition, Change, Improvement, Revision as Step, Verdict};
 use crate::report::add_text;
-use crate::report::{AddJson, AddedJoint, ImprovedJoint};
+use crate::report::{AddedJoint, ImprovedJoint, add_json};
 use crate::study::{Mode, add_to_joints};
 use clap::Args as ClapArgs;
 
@@ -72,7 +72,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     }
     args.model.write(&file, &revised, study.verbosity())?;
     let text = || add_text(&joints);
-    study.end(&failures, text, || AddJson::new(target.display().to_string(), &joints, &failures))
+    study.end(&failures, text, || add_json(&target.display().to_string(), &joints, &failures))
 }
 
 /// Both models as revisions. What the second one still lacks was not looked for.

@@ -12,7 +12,7 @@ use crate::cli::exit::Completion;
 use crate::cli::output::{Outputs, write_bytes};
 use crate::cli::typed::mapping_options;
 use crate::experiment::{ColumnMap, Experiment, KEPT, MemoryLimit, ReadOptions, Survey};
-use crate::report::{ColumnsJson, columns_table};
+use crate::report::{columns_json, columns_table};
 
 /// Say what each column of a log is taken for, and why
 ///
@@ -56,7 +56,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let text = || columns_table(&survey, &options, &mended);
     let time_alone = [mapping_options(named, &[])];
     let of_json = if options.is_empty() { &time_alone[..] } else { &options };
-    args.run.format.print(text, || ColumnsJson::new(&survey, of_json, &mended))?;
+    args.run.format.print(text, || columns_json(&survey, of_json, &mended))?;
     let told = !survey.map.joints.is_empty();
     Ok(if told { Completion::Whole } else { Completion::Partial })
 }

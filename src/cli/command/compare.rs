@@ -7,7 +7,7 @@ use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::fit::FitError;
 use crate::model::{JointModel, ModelFile};
-use crate::report::{CompareJson, ComparedJoint, compare_text};
+use crate::report::{ComparedJoint, compare_json, compare_text};
 use crate::study::{Mode, compare_joints};
 use clap::Args as ClapArgs;
 
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     }
     study.record(args.output.recording.as_deref(), &compared, &[])?;
     let text = || compare_text(&compared);
-    study.end(&failures, text, || CompareJson::new(&compared, &failures))
+    study.end(&failures, text, || compare_json(&compared, &failures))
 }
 
 /// The models that are named, the one that the others are compared with first.

@@ -10,12 +10,13 @@ use std::time::{Duration, Instant};
 
 use clap::Args as ClapArgs;
 use serde::Serialize;
+use serde_json::json;
 
 use crate::cli::args::Format;
 use crate::cli::console::{self, Tone};
 use crate::cli::exit::Completion;
 use crate::cli::viewer::{NEWEST, PORT, VERSION, installed, is_listening, on_path};
-use crate::report::Header;
+use crate::report::document;
 
 /// Say what is missing to make recordings and to look at them
 ///
@@ -27,16 +28,6 @@ pub(crate) struct Args {
     /// How results are printed
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-}
-
-/// JSON, schema `tauscope/doctor/1`.
-#[derive(Serialize)]
-struct DoctorJson<'a> {
-    #[serde(flatten)]
-    header: Header,
-    /// Nothing is missing.
-    complete: bool,
-    checks: &'a [Check],
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
@@ -54,9 +45,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     ];
     let checks = checks.map(|(name, found)| Check { name, found });
     let complete = checks.iter().all(|check| check.found.state != State::Missing);
-    let header = Header::of("tauscope/doctor/1");
-    let json = DoctorJson { header, complete, checks: &checks };
-    args.format.print(|| text(&checks), || json)?;
+    let facts = || json!({ "complete": complete, "checks": checks });
+    args.format.print(|| text(&checks), || document("tauscope/doctor/1", facts()))?;
     Ok(if complete { Completion::Whole } else { Completion::Partial })
 }
 

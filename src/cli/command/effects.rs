@@ -1,7 +1,7 @@
 //! `tauscope effects`
 
 use crate::effect::{REGISTRY, find};
-use crate::report::{EffectsJson, listing, sheet};
+use crate::report::{effects_json, listing, sheet};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::Format;
@@ -25,6 +25,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let effect = args.effect.as_deref().filter(|_| args.format == Format::Text);
     let effect = effect.map(find).transpose()?;
     let text = || effect.map_or_else(|| listing(WIDTH), |effect| sheet(effect, WIDTH));
-    args.format.print(text, || EffectsJson::new(REGISTRY))?;
+    args.format.print(text, || effects_json(REGISTRY))?;
     Ok(Completion::Whole)
 }

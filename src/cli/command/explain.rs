@@ -6,7 +6,7 @@ use crate::batch::Threads;
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Other};
 use crate::explain::Explanation;
-use crate::report::{ComparedJoint, ExplainJson, ImprovedJoint, explain_text};
+use crate::report::{ComparedJoint, ImprovedJoint, explain_json, explain_text};
 use crate::study::{Mode, OfJoints, compare_joints, explain_joints};
 use clap::Args as ClapArgs;
 
@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         study.record(output.recording.as_deref(), &models, &alone.collect::<Vec<_>>())?;
     }
     let text = || explain_text(&findings);
-    study.end(&failures, text, || ExplainJson::new(&findings, &failures))
+    study.end(&failures, text, || explain_json(&findings, &failures))
 }
 
 impl Args {

@@ -6,7 +6,7 @@ use crate::batch::Threads;
 use crate::experiment::Joint;
 use crate::explain::{Attribution, Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
 use crate::model::ModelFile;
-use crate::report::{ImproveJson, improve_text};
+use crate::report::{improve_json, improve_text};
 use crate::study::{Mode, improve_joints};
 use clap::Args as ClapArgs;
 
@@ -113,7 +113,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let revised = revised(&file, &improved, sources, |joint| Some(joint.finding.verdict))?;
     args.model.write(&file, &revised, study.verbosity())?;
     let text = || improve_text(&improved);
-    let completion = study.end(&failures, text, || ImproveJson::new(&improved, &failures))?;
+    let completion = study.end(&failures, text, || improve_json(&improved, &failures))?;
     let is_whole = improved.iter().all(|joint| !joint.interrupted);
     Ok(if is_whole { completion } else { Completion::Partial })
 }

@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use crate::report::{FolderJson, FolderReport};
+use crate::report::{FolderReport, folder_json};
 use anyhow::{Context as _, bail};
 use clap::Args;
 
@@ -195,7 +195,7 @@ pub(crate) fn present(
     if let Some(path) = tables.summary {
         write_table(&report.summary(), path, tables.text)?;
     }
-    format.print(|| report.text(), || FolderJson::new(report, &failures))?;
+    format.print(|| report.text(), || folder_json(report, &failures))?;
     Ok(Completion::without(&failures))
 }
 

@@ -1,5 +1,7 @@
 //! The dead time of a joint whose input moves all the time.
 
+use serde::Serialize;
+
 /// The dead time of a joint over its record, and in windows of it; all in seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeadTime {
@@ -85,7 +87,7 @@ impl Feedback {
 }
 
 /// The error of a dead time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ErrorPoint {
     /// The dead time.
     pub delay_s: f64,

@@ -4,6 +4,8 @@
 //! distance of its candidates; both are widened by a tolerance. The delays that most
 //! ranges hold are those that most settings can agree on; who holds all of them, agrees.
 
+use serde::Serialize;
+
 use crate::delay::{Decision, Settings};
 
 /// What a run reports of a step that it accepted; samples.
@@ -36,7 +38,7 @@ impl ReportedDelay {
 }
 
 /// What most combinations can agree on; samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Agreement {
     /// The median delay of those that agree.
     pub delay: f64,

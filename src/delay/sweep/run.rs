@@ -1,5 +1,7 @@
 //! A run of one combination of settings, and the values of a setting, over all steps.
 
+use serde::Serialize;
+
 use super::agreement::ReportedDelay;
 use super::grid::Combination;
 use super::step::{SweptStep, mean};
@@ -47,17 +49,19 @@ impl RunDelays {
 }
 
 /// A run over all steps of a joint.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct RunSummary {
     /// Steps that it accepted.
     pub accepted: usize,
     /// The median of its delays, seconds.
+    #[serde(rename = "median_delay_s")]
     pub median_s: Option<f64>,
     /// Accepted steps of which it reports another delay than most.
     pub disagreements: usize,
     /// Of the steps that most agree on, the part where it agrees with them.
     pub agrees: Option<f64>,
     /// The lag behind the dead time that it found, seconds.
+    #[serde(rename = "lag_mean_s")]
     pub lag_s: Option<f64>,
 }
 

@@ -1,5 +1,7 @@
 //! One step over all settings: what most report, and the setting its delay depends on.
 
+use serde::Serialize;
+
 use super::agreement::{Agreement, ReportedDelay, gap};
 use super::grid::{Combination, Factor, Grid};
 use crate::delay::{InputStep, Transition};
@@ -45,7 +47,7 @@ pub struct SweptStep {
 }
 
 /// How far delays lie from each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// The least.
     pub min: f64,

@@ -130,7 +130,6 @@ impl FailsWhere {
     }
 
     /// The one of several that holds the largest share of the squared error.
-    #[cfg(feature = "rrd")]
     pub(crate) fn strongest(all: &[Self]) -> Option<&Self> {
         all.iter().max_by(|a, b| a.share_of_squared_error.total_cmp(&b.share_of_squared_error))
     }

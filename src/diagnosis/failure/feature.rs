@@ -2,11 +2,14 @@
 
 use std::fmt;
 
+use serde::Serialize;
+
 use super::record::{Samples, Units};
 
 /// Something that is known of every sample. Of conditions that say the same, the one of the feature
 /// that is first here is kept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Feature {
     /// Sign of the input.
     Direction,

@@ -1,5 +1,7 @@
 //! The record cut by each feature, and the error in each part.
 
+use serde::Serialize;
+
 use super::axis::Axis;
 use super::feature::Feature;
 use super::record::ResidualRecord;
@@ -8,7 +10,7 @@ use super::record::ResidualRecord;
 const PARTS: usize = 10;
 
 /// A part of the record in which a feature is between two bounds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Region {
     /// The feature.
     pub feature: Feature,
@@ -24,6 +26,7 @@ pub struct Region {
     pub share_of_squared_error: f64,
     /// Share of the sum of squared errors of the speed, from which residuals arise, as in
     /// [`FailsWhere`](super::FailsWhere); that of residuals where the speed is not known.
+    #[serde(skip)]
     pub share_that_arises: f64,
     /// Root mean square of the residual there, output units.
     pub rmse: f64,

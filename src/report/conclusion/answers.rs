@@ -100,7 +100,7 @@ fn delays_of(joint: EstimatedJoint<'_>) -> String {
     let summary = JointSummary::of(joint);
     match (dead_time_answer(joint), summary.steps) {
         (Some(dead_time), _) => dead_time,
-        (None, 0) => format!("none: {}", summary.without_steps()),
+        (None, 0) => format!("none: {}", summary.without_steps),
         (None, steps) => {
             let range = summary.delay_s.map_or_else(String::new, |range| {
                 format!(", median {:.3} s ({:.3} to {:.3} s)", range.median, range.min, range.max)

@@ -1,13 +1,12 @@
 //! What is said where an effect is missing.
 
-use super::figures::ABOVE_NOISE;
+use super::figures::{ABOVE_NOISE, first_order};
 use super::{Passage, Topic};
 use crate::explain::Candidate;
 use crate::fit::{AssessedModel, Status, makes_first_order};
 use crate::model::Component;
 use crate::report::equation::filled_in;
 use crate::report::finding::{Finding, added, specs};
-use crate::report::first_order::first_order;
 use crate::report::separation::sentence;
 use crate::wording::{p_text, parameter_units, parameter_value, rounded};
 

@@ -1,7 +1,6 @@
 //! A verdict in words that an engineer can act on.
 
 mod adequate;
-#[cfg(feature = "rrd")]
 mod answers;
 mod curves;
 mod figures;
@@ -10,11 +9,11 @@ mod passage;
 mod place;
 mod unexplained;
 
+use figures::first_order;
 pub(crate) use passage::{Passage, Topic};
 
 use super::EstimatedJoint;
 use super::finding::{Finding, added};
-use super::first_order::first_order;
 use super::model_delay::model_delay;
 use crate::explain::{Candidate, Verdict};
 use crate::wording::hanging;

@@ -27,6 +27,16 @@ pub(super) struct JointLookup<'a> {
     pub(super) curves: Vec<DelayCurve>,
 }
 
+impl JointLookup<'_> {
+    /// The ends of the neutral band; where it is not known what the language calls `infinity`.
+    pub(super) fn neutral_ends(&self, infinity: &str) -> [String; 2] {
+        match self.neutral {
+            Some(neutral) => [neutral.low, neutral.high].map(|end| format!("{end:?}")),
+            None => [format!("-{infinity}"), infinity.to_owned()],
+        }
+    }
+}
+
 impl<'a> Lookup<'a> {
     /// The delays of `joints`, which were estimated with `settings` from `sources`.
     pub(crate) fn new(

@@ -10,11 +10,9 @@
 //! after), and beyond the first and the last point it stays what it is there. What was not
 //! measured is not a number.
 
-mod c;
+mod code;
 mod contents;
 mod json;
-mod matlab;
-mod python;
 
 use std::path::Path;
 
@@ -44,9 +42,9 @@ impl Language {
     /// Never: what JSON is made of can be written.
     pub(crate) fn source(self, lookup: &Lookup<'_>, name: &str) -> serde_json::Result<String> {
         Ok(match self {
-            Self::C => c::source(lookup),
-            Self::Matlab => matlab::source(lookup, name),
-            Self::Python => python::source(lookup),
+            Self::C => code::c(lookup),
+            Self::Matlab => code::matlab(lookup, name),
+            Self::Python => code::python(lookup),
             Self::Json => json::source(lookup)?,
         })
     }

@@ -1,7 +1,6 @@
 //! The report as a document: its parts in their order.
 
 use super::document::{Block, Document, Entry, slug};
-use super::plot::PlotError;
 use super::report::Report;
 use super::{delays, joint, origin};
 use crate::experiment::{Joint, Trial};
@@ -10,26 +9,23 @@ use crate::wording::counted;
 
 impl Report<'_> {
     /// Puts the report together.
-    ///
-    /// # Errors
-    /// When a figure cannot be drawn.
-    pub(crate) fn document(&self) -> Result<Document, PlotError> {
+    pub(crate) fn document(&self) -> Document {
         let by = [self.heading.author, self.heading.date].into_iter().flatten();
         let by = by.collect::<Vec<_>>().join(", ");
         let by = Some(by).filter(|by| !by.is_empty()).map(Block::text);
         let start = [Block::text(self.extent()), Block::Contents(self.contents())];
         let mut blocks: Vec<_> = by.into_iter().chain(start).collect();
-        blocks.extend(delays::overview(self.joints)?.map(|figure| Block::Figures(vec![figure])));
+        blocks.extend(delays::overview(self.joints).map(|figure| Block::Figures(vec![figure])));
         if !self.failures.is_empty() {
             blocks.push(Block::Lead("Left out".to_owned()));
             blocks.push(Block::List(self.failures.to_vec()));
         }
         for (index, joint) in self.joints.iter().enumerate() {
             blocks.push(Block::section(&joint.joint.name, &anchor(index, joint.joint)));
-            blocks.extend(joint::blocks(self, *joint, &anchor(index, joint.joint))?);
+            blocks.extend(joint::blocks(self, *joint, &anchor(index, joint.joint)));
         }
         blocks.extend(origin::blocks(self));
-        Ok(Document { title: self.title(), blocks })
+        Document { title: self.title(), blocks }
     }
 
     /// What is said of each joint in a sentence or two; also what `report` prints.

@@ -1,34 +1,28 @@
 //! The dead time of a joint whose input moves all the time: in windows, and how it was found.
 
-use super::document::{Block, Figure};
-use super::layout::WIDTH;
-use super::plot::{PlotError, draw};
+use super::document::{Block, Figure, WIDTH};
 use super::timeline::Timeline;
 use crate::delay::{Bounds, DeadTime};
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span};
 use crate::report::{EstimatedJoint, dead_time_sentences};
 
 /// What is said and drawn of it; nothing for an input that is made of steps.
-pub(super) fn blocks(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<Block>, PlotError> {
-    let Some(found) = &estimated.estimate.dead_time else { return Ok(Vec::new()) };
+pub(super) fn blocks(estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
+    let Some(found) = &estimated.estimate.dead_time else { return Vec::new() };
     let mut blocks = vec![Block::part("Dead time")];
     let sentences = dead_time_sentences(&estimated);
     blocks.extend(sentences.into_iter().map(|sentence| Block::text(format!("{sentence}."))));
     let mut figures = Vec::new();
-    figures.extend(over_time(estimated, found, format!("{file}-windows"))?);
-    figures.extend(curve(estimated, found, format!("{file}-dead-time"))?);
+    figures.extend(over_time(estimated, found, format!("{file}-windows")));
+    figures.extend(curve(estimated, found, format!("{file}-dead-time")));
     if !figures.is_empty() {
         blocks.push(Block::Figures(figures));
     }
-    Ok(blocks)
+    blocks
 }
 
 /// The dead time of each window, with its interval.
-fn over_time(
-    estimated: EstimatedJoint<'_>,
-    found: &DeadTime,
-    file: String,
-) -> Result<Option<Figure>, PlotError> {
+fn over_time(estimated: EstimatedJoint<'_>, found: &DeadTime, file: String) -> Option<Figure> {
     let timeline = Timeline::of(estimated.joint);
     let known = found.windows.iter().filter_map(|window| {
         let at = |sample: usize| timeline.at(window.trial, sample as f64);
@@ -36,7 +30,7 @@ fn over_time(
     });
     let known: Vec<(f64, f64, Bounds)> = known.collect();
     if known.is_empty() {
-        return Ok(None);
+        return None;
     }
     let middle = |(from, to, _): &(f64, f64, Bounds)| f64::midpoint(*from, *to);
     let interval =
@@ -55,21 +49,17 @@ fn over_time(
     marks.push(Mark::new(Role::Accepted, Shape::Dots(dots)).named("dead time"));
     let axis = Axis::new(y, "dead time [s]", 5.0);
     let panel = Panel { x: timeline.axis(), y: axis, height: 150, marks };
-    let title = format!("Dead time of {} over time", estimated.joint.name);
+    let name = format!("Dead time of {} over time", estimated.joint.name);
     let caption = "The dead time in windows of the record, with intervals; where the input moves \
                    the output too little there is none."
         .to_owned();
-    Ok(Some(Figure { file, svg: draw(&[panel], WIDTH, &title)?, caption }))
+    Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
 }
 
 /// The prediction error of each dead time.
-fn curve(
-    estimated: EstimatedJoint<'_>,
-    found: &DeadTime,
-    file: String,
-) -> Result<Option<Figure>, PlotError> {
+fn curve(estimated: EstimatedJoint<'_>, found: &DeadTime, file: String) -> Option<Figure> {
     let points: Vec<Place> = found.curve.iter().map(|p| (p.delay_s, p.error)).collect();
-    let Some((bounds, last)) = found.bounds().zip(points.last()) else { return Ok(None) };
+    let (bounds, last) = found.bounds().zip(points.last())?;
     let y = Span::around(points.iter().map(|place| place.1), 0.1);
     let x = Axis::new(Span::new(0.0, last.0), "dead time [s]", 10.0);
     let marks = vec![
@@ -79,9 +69,9 @@ fn curve(
         Mark::new(Role::Error, Shape::Lines(vec![points], 1.4)).named("error"),
     ];
     let panel = Panel { x, y: Axis::new(y, "error over the least", 5.0), height: 150, marks };
-    let title = format!("Prediction error of {} by dead time", estimated.joint.name);
+    let name = format!("Prediction error of {} by dead time", estimated.joint.name);
     let caption = "The error of the prediction against the dead time, all else being fitted anew \
                    to each."
         .to_owned();
-    Ok(Some(Figure { file, svg: draw(&[panel], WIDTH, &title)?, caption }))
+    Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
 }

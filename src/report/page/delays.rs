@@ -1,14 +1,10 @@
 //! The delays of a joint: over time, and against its state.
 
-use super::document::Figure;
-use super::layout::{HALF, WIDTH};
-use super::plot::{PlotError, draw};
+use super::document::{Figure, HALF, WIDTH, slug};
 use super::timeline::Timeline;
 use crate::delay::{AgainstOfKind, AgainstState, DelayProfile, DelayTable, Transition, Verdict};
-use crate::figure::Role;
 use crate::figure::delay_levels::{self, Series};
-use crate::figure::{Axis, Mark, Panel, Place, Shape};
-use crate::figure::{Span, thinned_to};
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, thinned_places};
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;
 use crate::wording::{bracketed, capitalized, p_cell};
@@ -26,14 +22,11 @@ struct Delays {
 }
 
 /// The delay of each step over time; none where none was accepted.
-pub(super) fn over_time(
-    estimated: EstimatedJoint<'_>,
-    file: String,
-) -> Result<Option<Figure>, PlotError> {
+pub(super) fn over_time(estimated: EstimatedJoint<'_>, file: String) -> Option<Figure> {
     let timeline = Timeline::of(estimated.joint);
     let Delays { accepted, intervals, rejected, held } = delays(estimated, &timeline);
     if accepted.is_empty() {
-        return Ok(None);
+        return None;
     }
     let values = accepted.iter().chain(intervals.iter().flatten()).map(|place| place.1);
     let y = Span::around(values, 0.14);
@@ -54,11 +47,11 @@ pub(super) fn over_time(
         marks.push(Mark::new(Role::Rejected, Shape::Crosses(rejected)).named("rejected step"));
     }
     let panel = Panel { x: timeline.axis(), y: Axis::new(y, "delay [s]", 5.0), height: 150, marks };
-    let svg = draw(&[panel], WIDTH, &format!("Delay of {} over time", estimated.joint.name))?;
+    let name = format!("Delay of {} over time", estimated.joint.name);
     let caption = "The delay of each step, at the time of the step; rejected steps stand at \
                    the bottom."
         .to_owned();
-    Ok(Some(Figure { file, svg, caption }))
+    Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
 }
 
 fn delays(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> Delays {
@@ -107,8 +100,7 @@ fn corners(run: &[(usize, f64)]) -> Vec<(usize, f64)> {
     };
     let inside = run.windows(3).filter(|trio| !is_inside(trio)).filter_map(|trio| trio.get(1));
     let kept: Vec<_> = run.first().into_iter().chain(inside).chain(run.last()).copied().collect();
-    let values: Vec<f64> = kept.iter().map(|one| one.1).collect();
-    thinned_to(&values, 4000).into_iter().filter_map(|index| kept.get(index)).copied().collect()
+    thinned_places(&kept, 4000)
 }
 
 /// The median delay over the level, by kind of step; none where none was accepted.
@@ -116,9 +108,9 @@ pub(super) fn over_levels(
     estimated: EstimatedJoint<'_>,
     found: &DelayTable,
     file: String,
-) -> Result<Option<Figure>, PlotError> {
+) -> Option<Figure> {
     let all = delay_levels::series(found);
-    let Some((x, y)) = delay_levels::spans(&all) else { return Ok(None) };
+    let (x, y) = delay_levels::spans(&all)?;
     let input = bracketed("level of the input", estimated.joint.input_unit.as_deref());
     let panel = Panel {
         x: Axis::new(x, input, 8.0),
@@ -126,12 +118,12 @@ pub(super) fn over_levels(
         height: 220,
         marks: all.iter().flat_map(|one| level_marks(one, y)).collect(),
     };
-    let svg = draw(&[panel], WIDTH, &format!("Delay of {} by level", estimated.joint.name))?;
+    let name = format!("Delay of {} by level", estimated.joint.name);
     let caption = "The median delay over the level, for a stop that before it, else that after \
                    it, with its 95 % interval and how many of how many steps were accepted; where \
                    none was, a cross stands at the bottom."
         .to_owned();
-    Ok(Some(Figure { file, svg, caption }))
+    Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
 }
 
 fn level_marks(one: &Series, y: Span) -> Vec<Mark> {
@@ -151,11 +143,7 @@ fn level_marks(one: &Series, y: Span) -> Vec<Mark> {
 }
 
 /// The delay against the speed, and against what it goes with most besides.
-pub(super) fn against(
-    joint: &str,
-    found: &AgainstState,
-    file: &str,
-) -> Result<Vec<Figure>, PlotError> {
+pub(super) fn against(joint: &str, found: &AgainstState, file: &str) -> Vec<Figure> {
     /// Number of the speed among the variables.
     const SPEED: usize = 0;
     let strength = |index: &usize| {
@@ -165,18 +153,12 @@ pub(super) fn against(
     let others = (0..found.correlations.len()).filter(|index| *index != SPEED);
     let strongest = others.min_by(|a, b| strength(a).total_cmp(&strength(b)));
     let shown = std::iter::once(SPEED).chain(strongest);
-    let drawn = shown.filter_map(|variable| scatter(joint, found, variable, file).transpose());
-    drawn.collect()
+    shown.filter_map(|variable| scatter(joint, found, variable, file)).collect()
 }
 
 /// The delays against one variable, by kind of step; none where it is not known.
-fn scatter(
-    joint: &str,
-    found: &AgainstState,
-    variable: usize,
-    file: &str,
-) -> Result<Option<Figure>, PlotError> {
-    let Some(correlation) = found.correlations.get(variable) else { return Ok(None) };
+fn scatter(joint: &str, found: &AgainstState, variable: usize, file: &str) -> Option<Figure> {
+    let correlation = found.correlations.get(variable)?;
     let points = |kind: Transition| {
         let same = found.steps.iter().filter(|step| step.transition == kind);
         let places = same.filter_map(|step| Some((step.value(variable)?, step.delay_s)));
@@ -185,24 +167,25 @@ fn scatter(
     let kinds = Transition::ALL.map(points).into_iter().filter(|(_, places)| !places.is_empty());
     let kinds: Vec<_> = kinds.collect();
     if kinds.is_empty() {
-        return Ok(None);
+        return None;
     }
     let all = || kinds.iter().flat_map(|(_, places)| places);
     let x = Span::around(all().map(|place| place.0), 0.05);
     let y = Span::around(all().map(|place| place.1), 0.1);
-    let name = variable_text(&correlation.variable, correlation.unit.as_deref());
+    let quantity = variable_text(&correlation.variable, correlation.unit.as_deref());
     let mark = |(kind, places): (Transition, Vec<Place>)| {
         Mark::new(delay_levels::role(kind), Shape::Dots(places)).named(kind.id())
     };
     let panel = Panel {
-        x: Axis::new(x, name.clone(), 6.0),
+        x: Axis::new(x, quantity.clone(), 6.0),
         y: Axis::new(y, "delay [s]", 5.0),
         height: 190,
         marks: kinds.into_iter().map(mark).collect(),
     };
-    let svg = draw(&[panel], HALF, &format!("Delay of {joint} against {name}"))?;
-    let file = format!("{file}-against-{}", super::document::slug(&correlation.variable));
-    Ok(Some(Figure { file, svg, caption: caption(found, variable, &correlation.variable) }))
+    let name = format!("Delay of {joint} against {quantity}");
+    let file = format!("{file}-against-{}", slug(&correlation.variable));
+    let caption = caption(found, variable, &correlation.variable);
+    Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
 }
 
 /// What is said of each kind of step.
@@ -222,11 +205,11 @@ fn caption(found: &AgainstState, variable: usize, name: &str) -> String {
     format!("Delay against {name}. {}.", capitalized(&said.join("; ")))
 }
 
-/// An axis' name for the spread of delays of all joints.
-pub(super) fn overview(joints: &[EstimatedJoint<'_>]) -> Result<Option<Figure>, PlotError> {
+/// How the delays of each joint are spread; none of fewer than two joints.
+pub(super) fn overview(joints: &[EstimatedJoint<'_>]) -> Option<Figure> {
     let rows: Vec<_> = joints.iter().filter_map(|joint| Spread::of(*joint)).collect();
     if rows.len() < 2 {
-        return Ok(None);
+        return None;
     }
     let names: Vec<String> = rows.iter().map(|row| row.name.clone()).collect();
     let row = |index: usize| -(index as f64);
@@ -249,9 +232,9 @@ pub(super) fn overview(joints: &[EstimatedJoint<'_>]) -> Result<Option<Figure>, 
             Mark::new(Role::Ink, Shape::Dots(medians)).named("median"),
         ],
     };
-    let svg = draw(&[panel], WIDTH, "Delays of all joints")?;
-    let caption = "The accepted delays of each joint.".to_owned();
-    Ok(Some(Figure { file: "delays".to_owned(), svg, caption }))
+    let [file, name, caption] =
+        ["delays", "Delays of all joints", "The accepted delays of each joint."].map(str::to_owned);
+    Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
 }
 
 /// How the accepted delays of a joint are spread, in seconds.

@@ -1,6 +1,16 @@
 //! What a report says, before it is written down as a page or as Markdown.
 
+use crate::figure::Panel;
 use crate::report::text_table::TextTable;
+
+/// Width of a drawing by itself, in pixels.
+pub(super) const WIDTH: u32 = 760;
+
+/// Width of one of two beside one another.
+pub(super) const HALF: u32 = 400;
+
+/// Width of one of three.
+pub(super) const NARROW: u32 = 350;
 
 /// A report: what it says in its order, and what is drawn.
 #[derive(Clone, Debug, Default)]
@@ -44,13 +54,16 @@ pub(super) struct Entry {
     pub(super) text: String,
 }
 
-/// A drawing.
+/// A drawing: panels above one another.
 #[derive(Clone, Debug)]
 pub(super) struct Figure {
     /// A name for its file, without suffix.
     pub(super) file: String,
-    /// The SVG.
-    pub(super) svg: String,
+    /// What it is, for those who do not see it.
+    pub(super) name: String,
+    /// In pixels.
+    pub(super) width: u32,
+    pub(super) panels: Vec<Panel>,
     pub(super) caption: String,
 }
 
@@ -68,6 +81,10 @@ impl Block {
 
     pub(super) fn part(text: impl Into<String>) -> Self {
         Self::Heading { depth: 3, text: text.into(), anchor: None }
+    }
+
+    pub(super) fn details(summary: impl Into<String>, blocks: Vec<Self>) -> Self {
+        Self::Details { summary: summary.into(), blocks }
     }
 
     pub(super) fn text(text: impl Into<String>) -> Self {

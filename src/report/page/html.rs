@@ -6,6 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::document::{Attachment, Block, Document, Entry, Figure};
 use super::palette::figure_style;
+use super::plot::{PlotError, draw};
 use crate::report::text_table::TextTable;
 use crate::wording::legible;
 
@@ -14,7 +15,10 @@ const STYLE: &str = include_str!("style.css");
 
 impl Document {
     /// The report as one HTML page: no script, and nothing is fetched.
-    pub(crate) fn html(&self) -> String {
+    ///
+    /// # Errors
+    /// When a figure cannot be drawn.
+    pub(crate) fn html(&self) -> Result<String, PlotError> {
         let style = format!("{}{STYLE}", figure_style());
         let page = html! {
             (DOCTYPE)
@@ -32,17 +36,17 @@ impl Document {
                 body {
                     main {
                         h1 { (self.title) }
-                        @for block in &self.blocks { (written(block)) }
+                        @for block in &self.blocks { (written(block)?) }
                     }
                 }
             }
         };
-        legible(&page.into_string()) + "\n"
+        Ok(legible(&page.into_string()) + "\n")
     }
 }
 
-fn written(block: &Block) -> Markup {
-    match block {
+fn written(block: &Block) -> Result<Markup, PlotError> {
+    Ok(match block {
         Block::Heading { depth, text, anchor } => heading(*depth, text, anchor.as_deref()),
         Block::Text(text) => html! { p { (text) } },
         Block::Passage { question, text } => html! { p { b { (question) ":" } " " (text) } },
@@ -50,16 +54,16 @@ fn written(block: &Block) -> Markup {
         Block::List(entries) => html! { ul { @for entry in entries { li { (entry) } } } },
         Block::Contents(entries) => contents(entries),
         Block::Code(text) => html! { pre { code { (text) } } },
-        Block::Figures(figures) => drawn(figures),
+        Block::Figures(figures) => drawn(figures)?,
         Block::Table(rows) => table(rows),
         Block::Details { summary, blocks } => html! {
             details {
                 summary { (summary) }
-                @for block in blocks { (written(block)) }
+                @for block in blocks { (written(block)?) }
             }
         },
         Block::Attachment(file) => attachment(file),
-    }
+    })
 }
 
 fn heading(depth: u8, text: &str, anchor: Option<&str>) -> Markup {
@@ -80,15 +84,15 @@ fn contents(entries: &[Entry]) -> Markup {
     }
 }
 
-fn drawn(figures: &[Figure]) -> Markup {
+fn drawn(figures: &[Figure]) -> Result<Markup, PlotError> {
     let class = if figures.len() > 1 { "figures several" } else { "figures" };
-    html! {
+    Ok(html! {
         div class=(class) {
-            @for Figure { svg, caption, .. } in figures {
-                figure { (PreEscaped(svg)) figcaption { (caption) } }
+            @for one in figures {
+                figure { (PreEscaped(draw(one)?)) figcaption { (one.caption) } }
             }
         }
-    }
+    })
 }
 
 fn table(table: &TextTable) -> Markup {

@@ -1,37 +1,29 @@
 //! What is said of one joint.
 
 use super::document::Block;
-use super::plot::PlotError;
 use super::report::Report;
 use super::{dead_time, delays, model, record, segment};
 use crate::delay::{AgainstState, Condition, DelayTable, MethodSpec};
 use crate::report::against::{AGAINST_HEADER, CORRECTED, against_rows, confounded_sentences};
-use crate::report::decisions::detailed_rows;
-use crate::report::delay_table::{LEVEL_HEADER, kind_sentence, level_cells, neutral_sentence};
+use crate::report::decisions::{DetailedRow, detailed_rows};
+use crate::report::delay_table::{kind_sentence, level_table_text, neutral_sentence};
 use crate::report::difference::difference_table;
 use crate::report::text::{onset_line, tracking_line};
 use crate::report::text_table::TextTable;
-use crate::report::{
-    DecisionDetail, DecisionRow, Doubted, EstimatedJoint, JointSummary, ReviewCount, by_doubt,
-    delay_answer,
-};
+use crate::report::{Doubted, EstimatedJoint, JointSummary, ReviewCount, by_doubt, delay_answer};
 use crate::wording::{capitalized, difference_sentences, doubt_percent, doubt_sentence, number};
 
 /// Rows of a table that a reader may still want to scroll through.
 const MOST_ROWS: usize = 2000;
 
 /// All that is said of a joint.
-pub(super) fn blocks(
-    report: &Report<'_>,
-    estimated: EstimatedJoint<'_>,
-    file: &str,
-) -> Result<Vec<Block>, PlotError> {
+pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
     let mut blocks = vec![
         Block::Lead(sentences(report, estimated)),
-        Block::Figures(vec![record::figure(estimated, format!("{file}-record"))?]),
+        Block::Figures(vec![record::figure(estimated, format!("{file}-record"))]),
     ];
-    blocks.extend(dead_time::blocks(estimated, file)?);
-    let segments = segment::figures(estimated, &format!("{file}-segment"))?;
+    blocks.extend(dead_time::blocks(estimated, file));
+    let segments = segment::figures(estimated, &format!("{file}-segment"));
     if !segments.is_empty() {
         blocks.push(Block::part("Single decisions"));
         blocks.push(Block::Figures(segments));
@@ -40,18 +32,18 @@ pub(super) fn blocks(
     blocks.extend(doubtful(estimated));
     blocks.extend(reviewed(estimated));
     let found = estimated.delay_table();
-    blocks.extend(delay_blocks(estimated, file)?);
+    blocks.extend(delay_blocks(estimated, file));
     if !found.rows.is_empty() {
-        blocks.extend(level_blocks(estimated, file, &found)?);
+        blocks.extend(level_blocks(estimated, file, &found));
     }
     blocks.extend(rejections(estimated));
     if estimated.estimate.dead_time.is_none() {
         blocks.push(decisions(report, estimated));
     }
     if let Some(improved) = report.model_of(estimated.joint) {
-        blocks.extend(model::blocks(report, improved, file)?);
+        blocks.extend(model::blocks(report, improved, file));
     }
-    Ok(blocks)
+    blocks
 }
 
 /// Delays, steps and model of a joint, in a sentence each.
@@ -68,60 +60,47 @@ fn sentence(words: &str) -> String {
 }
 
 /// Figures and table of the delays.
-fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<Block>, PlotError> {
-    let mut blocks = Vec::new();
-    let Some(figure) = delays::over_time(estimated, format!("{file}-delay"))? else {
-        return Ok(blocks);
+fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
+    let Some(figure) = delays::over_time(estimated, format!("{file}-delay")) else {
+        return Vec::new();
     };
     let found = estimated.against_state();
-    blocks.push(Block::part("Delay"));
+    let mut blocks = vec![Block::part("Delay")];
     blocks.extend(onset_line(&estimated).map(|line| Block::text(line.trim_end())));
     blocks.extend(tracking_line(&estimated).map(|line| Block::text(line.trim_end())));
     blocks.push(Block::Figures(vec![figure]));
     let note = format!("{CORRECTED}: the delay depends on a quantity where p is at most 0.05.");
     blocks.push(Block::text(note));
-    blocks.push(Block::Figures(delays::against(&estimated.joint.name, &found, file)?));
+    blocks.push(Block::Figures(delays::against(&estimated.joint.name, &found, file)));
     let table = Block::Table(against(&estimated.joint.name, &found));
-    let summary = "What the delay depends on".to_owned();
     let mut details = vec![table];
     let confounded = confounded_sentences(&found);
     if !confounded.is_empty() {
         details.push(Block::List(confounded.iter().map(|one| sentence(one)).collect()));
     }
-    blocks.push(Block::Details { summary, blocks: details });
-    Ok(blocks)
+    blocks.push(Block::details("What the delay depends on", details));
+    blocks
 }
 
 /// The delays by kind of step and level.
-fn level_blocks(
-    estimated: EstimatedJoint<'_>,
-    file: &str,
-    found: &DelayTable,
-) -> Result<Vec<Block>, PlotError> {
+fn level_blocks(estimated: EstimatedJoint<'_>, file: &str, found: &DelayTable) -> Vec<Block> {
     let unit = estimated.joint.input_unit.as_deref();
-    let mut table = TextTable::new(LEVEL_HEADER, &[1, 2, 3, 4, 5]);
-    for row in &found.rows {
-        table.row(level_cells(row));
-    }
-    let figure = delays::over_levels(estimated, found, format!("{file}-delay-by-level"))?;
+    let figure = delays::over_levels(estimated, found, format!("{file}-delay-by-level"));
     let mut blocks = vec![
         Block::part("Delay by kind of step"),
         Block::text(sentence(&neutral_sentence(found, unit))),
         Block::List(found.kinds.iter().map(kind_sentence).collect()),
     ];
     blocks.extend(figure.map(|figure| Block::Figures(vec![figure])));
-    blocks.push(Block::Table(table));
-    Ok(blocks)
+    blocks.push(Block::Table(level_table_text(&found.rows)));
+    blocks
 }
 
 /// A row per variable.
 fn against(joint: &str, found: &AgainstState) -> TextTable {
     let [_, header @ ..] = AGAINST_HEADER;
-    let mut table = TextTable::new(header, &[3, 4]);
-    for [_, cells @ ..] in against_rows(joint, found) {
-        table.row(cells);
-    }
-    table
+    let rows = against_rows(joint, found).into_iter();
+    TextTable::of(header, &[3, 4], rows.map(|[_, cells @ ..]| cells))
 }
 
 /// The decisions that a person looks at first, and what was said of those.
@@ -129,18 +108,14 @@ fn doubtful(estimated: EstimatedJoint<'_>) -> Vec<Block> {
     /// Decisions in the table.
     const MOST: usize = 10;
     let ranked = by_doubt(estimated);
-    let doubted = |doubted: &&Doubted<'_>| doubted.doubt.value() > 0.0;
-    let ranked: Vec<_> = ranked.iter().filter(doubted).take(MOST).collect();
-    if ranked.is_empty() {
-        return Vec::new();
-    }
+    let doubted = ranked.iter().filter(|found| found.doubt.value() > 0.0).take(MOST);
     let header = ["doubt", "trial", "i", "time [s]", "δ [s]", "verdict", "what speaks against it"];
-    let mut table = TextTable::new(header, &[0, 2, 3, 4]);
-    for Doubted { trial, decision, doubt, .. } in ranked {
+    let row = |found: &Doubted<'_>| {
+        let Doubted { trial, decision, doubt, .. } = found;
         let period_s = trial.period().seconds();
         let delay = decision.delay().map(|delay| number(delay * period_s));
         let by = if decision.reviewer_verdict.is_some() { " by a person" } else { "" };
-        table.row([
+        [
             doubt_percent(doubt),
             trial.label().to_owned(),
             decision.number.to_string(),
@@ -148,9 +123,12 @@ fn doubtful(estimated: EstimatedJoint<'_>) -> Vec<Block> {
             delay.unwrap_or_else(|| "-".to_owned()),
             format!("{}{by}", decision.verdict()),
             doubt_sentence(doubt, decision.program_verdict(), period_s),
-        ]);
-    }
-    vec![Block::part("Most doubtful decisions"), Block::Table(table)]
+        ]
+    };
+    part_with_table(
+        "Most doubtful decisions",
+        TextTable::of(header, &[0, 2, 3, 4], doubted.map(row)),
+    )
 }
 
 /// Where the decisions differ from those of other results.
@@ -177,14 +155,13 @@ fn differing(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Vec<Block> {
 fn reviewed(estimated: EstimatedJoint<'_>) -> Vec<Block> {
     let header =
         ["trial", "i", "verdict", "δ [s]", "by", "note", "the program's verdict", "its δ [s]"];
-    let mut table = TextTable::new(header, &[1, 3, 7]);
-    for Doubted { trial, decision, .. } in by_doubt(estimated) {
-        let Some(said) = &decision.reviewer_verdict else { continue };
+    let row = |Doubted { trial, decision, .. }: Doubted<'_>| {
+        let said = decision.reviewer_verdict.as_ref()?;
         let period_s = trial.period().seconds();
         let seconds = |delay: Option<f64>| {
             delay.map_or_else(|| "-".to_owned(), |delay| number(delay * period_s))
         };
-        table.row([
+        Some([
             trial.label().to_owned(),
             decision.number.to_string(),
             if said.accepted { "accepted" } else { "rejected" }.to_owned(),
@@ -193,32 +170,35 @@ fn reviewed(estimated: EstimatedJoint<'_>) -> Vec<Block> {
             said.note.clone(),
             decision.program_verdict().to_string(),
             seconds(decision.program_delay()),
-        ]);
-    }
+        ])
+    };
+    let rows = by_doubt(estimated).into_iter().filter_map(row);
+    part_with_table("Reviewed by a person", TextTable::of(header, &[1, 3, 7], rows))
+}
+
+/// A table under a heading; nothing where it has no rows.
+fn part_with_table(heading: &str, table: TextTable) -> Vec<Block> {
     if table.rows.is_empty() {
         return Vec::new();
     }
-    vec![Block::part("Reviewed by a person"), Block::Table(table)]
+    vec![Block::part(heading), Block::Table(table)]
 }
 
 /// How many steps were rejected for which reason.
 fn rejections(estimated: EstimatedJoint<'_>) -> Vec<Block> {
-    let summary = JointSummary::of(estimated);
-    if summary.rejected.is_empty() {
-        return Vec::new();
-    }
     let header = ["rejected as", "steps", "meaning", "what the condition asks"];
-    let mut table = TextTable::new(header, &[1]);
-    for (condition, count) in &summary.rejected {
+    let row = |(condition, count): (Condition, usize)| {
         let [meaning, asks] = [condition.meaning(), condition.asks()].map(str::to_owned);
-        table.row([condition.to_string(), count.to_string(), meaning, asks]);
+        [condition.to_string(), count.to_string(), meaning, asks]
+    };
+    let rows = JointSummary::of(estimated).rejected.into_iter().map(row);
+    let mut blocks = part_with_table("Rejected steps", TextTable::of(header, &[1], rows));
+    if blocks.is_empty() {
+        return blocks;
     }
     let asked = Condition::ALL.map(|condition| format!("{condition}: {}.", condition.asks()));
-    let all = Block::Details {
-        summary: "What each condition asks".to_owned(),
-        blocks: vec![Block::List(asked.to_vec())],
-    };
-    vec![Block::part("Rejected steps"), Block::Table(table), all]
+    blocks.push(Block::details("What each condition asks", vec![Block::List(asked.to_vec())]));
+    blocks
 }
 
 /// All decisions, numbers to five digits.
@@ -236,7 +216,7 @@ fn decisions(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Block {
         )));
     }
     blocks.push(Block::Table(decision_table(report, estimated)));
-    Block::Details { summary: format!("All {all} decisions"), blocks }
+    Block::details(format!("All {all} decisions"), blocks)
 }
 
 /// A row per decision; intervals only of a method that has them.
@@ -252,19 +232,18 @@ fn decision_table(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> TextTab
     TextTable {
         numbers: (1..before.len() + 1 + usize::from(method.has_intervals)).collect(),
         header: header.chain(behind).collect(),
-        rows: rows.map(|(row, detail)| decision_row(&row, detail, method)).collect(),
+        rows: rows.map(|row| decision_row(row, method)).collect(),
     }
 }
 
-fn decision_row(row: &DecisionRow<'_>, detail: DecisionDetail, method: &MethodSpec) -> Vec<String> {
+fn decision_row(DetailedRow { row, detail }: DetailedRow<'_>, method: &MethodSpec) -> Vec<String> {
     let dash = || "-".to_owned();
     let optional = |value: Option<f64>| value.map_or_else(dash, number);
-    let ends = detail.delta_low.zip(detail.delta_high);
-    let interval =
-        || ends.map_or_else(dash, |(low, high)| format!("{} … {}", number(low), number(high)));
+    let interval = || detail.interval_text();
     let samples = [row.i, row.p, row.r, row.end].map(|number| number.to_string());
     let delay = [row.q, row.delta, row.delta_s].map(optional);
     let before = [row.trial.to_owned()].into_iter().chain(samples).chain(delay);
+    let interval = method.has_intervals.then(interval);
     let behind = [optional(row.sse), row.verdict.to_string(), detail.accepted_with];
-    before.chain(method.has_intervals.then(interval)).chain(behind).collect()
+    before.chain(interval).chain(behind).collect()
 }

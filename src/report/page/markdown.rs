@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::document::{Block, Document, Entry, Figure};
 use super::palette::figure_style;
+use super::plot::{PlotError, draw};
 use crate::report::text_table::TextTable;
 use crate::wording::legible;
 
@@ -19,15 +20,18 @@ pub(crate) struct Markdown {
 
 impl Document {
     /// The report as Markdown, whose drawings are in the folder `folder` beside it.
-    pub(crate) fn markdown(&self, folder: &str) -> Markdown {
+    ///
+    /// # Errors
+    /// When a figure cannot be drawn.
+    pub(crate) fn markdown(&self, folder: &str) -> Result<Markdown, PlotError> {
         let mut markdown = Markdown { text: String::new(), files: Vec::new() };
         let folder = url(folder);
         markdown.line(&format!("# {}", escaped(&self.title)));
         for block in &self.blocks {
-            markdown.block(block, &folder);
+            markdown.block(block, &folder)?;
         }
         markdown.text = legible(&markdown.text);
-        markdown
+        Ok(markdown)
     }
 }
 
@@ -38,7 +42,7 @@ impl Markdown {
         self.text.push_str("\n\n");
     }
 
-    fn block(&mut self, block: &Block, folder: &str) {
+    fn block(&mut self, block: &Block, folder: &str) -> Result<(), PlotError> {
         match block {
             Block::Heading { depth, text, anchor } => {
                 let marks = "#".repeat(usize::from(*depth));
@@ -64,26 +68,29 @@ impl Markdown {
                 let fence = fence(text);
                 self.line(&format!("{fence}text\n{text}\n{fence}"));
             }
-            Block::Figures(figures) => figures.iter().for_each(|one| self.figure(one, folder)),
+            Block::Figures(figures) => {
+                figures.iter().try_for_each(|one| self.figure(one, folder))?;
+            }
             Block::Table(rows) => self.line(&table(rows)),
             Block::Details { summary, blocks } => {
                 self.line(&format!("<details><summary>{}</summary>", escaped(summary)));
                 for block in blocks {
-                    self.block(block, folder);
+                    self.block(block, folder)?;
                 }
                 self.line("</details>");
             }
             // A file can only be in a page; here it is beside.
             Block::Attachment(file) => self.line(&format!("`{}`", file.name)),
         }
+        Ok(())
     }
 
-    fn figure(&mut self, figure: &Figure, folder: &str) {
-        let Figure { file, svg, caption } = figure;
-        let (caption, file) = (escaped(caption), format!("{file}.svg"));
+    fn figure(&mut self, figure: &Figure, folder: &str) -> Result<(), PlotError> {
+        let (caption, file) = (escaped(&figure.caption), format!("{}.svg", figure.file));
         self.line(&format!("![{caption}]({folder}/{file})"));
         self.line(&format!("*{caption}*"));
-        self.files.push((file, with_style(svg)));
+        self.files.push((file, with_style(&draw(figure)?)));
+        Ok(())
     }
 }
 

@@ -4,23 +4,20 @@
 //! nothing of the moment at which it was made: the same input gives the same bytes.
 
 mod compose;
-mod curves;
 mod dead_time;
 mod delays;
 mod document;
 mod html;
 mod joint;
-mod ladder;
-mod layout;
 mod markdown;
 mod model;
+mod model_figures;
 mod origin;
 mod palette;
 mod plot;
 mod record;
 mod report;
 mod segment;
-mod share;
 mod simulated;
 mod timeline;
 

@@ -1,14 +1,12 @@
 //! What is said of a joint's model: verdict, equations, parameters, errors, ranking.
 
 use super::document::Block;
-use super::plot::PlotError;
 use super::report::Report;
-use super::{curves, ladder, share, simulated};
-use crate::diagnosis::Comparison;
-use crate::diagnosis::sensor_noise;
+use super::{model_figures, simulated};
+use crate::diagnosis::{Comparison, sensor_noise};
 use crate::effect::Stage;
 use crate::explain::{Candidate, Revision, Verdict};
-use crate::fit::{Split, Termination};
+use crate::fit::{Parameter, Split, Termination};
 use crate::model::Component;
 use crate::report::compare::errors_note;
 use crate::report::equation::filled_in;
@@ -22,11 +20,7 @@ use crate::wording::{
 };
 
 /// All that is said of the model of a joint.
-pub(super) fn blocks(
-    report: &Report<'_>,
-    improved: &ImprovedJoint<'_>,
-    file: &str,
-) -> Result<Vec<Block>, PlotError> {
+pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     let compared = &improved.finding.compared;
     let conclusion = improved.conclusion();
     let stopped = if improved.interrupted { " (stopped before the end)" } else { "" };
@@ -50,11 +44,11 @@ pub(super) fn blocks(
         }
         termination => format!("The fit: {termination}."),
     }));
-    blocks.extend(errors(improved, file)?);
-    blocks.extend(beside_the_measurement(report, improved, file)?);
-    blocks.extend(failures(improved, file)?);
+    blocks.extend(errors(improved, file));
+    blocks.extend(beside_the_measurement(report, improved, file));
+    blocks.extend(failures(improved, file));
     blocks.extend(rankings(improved));
-    Ok(blocks)
+    blocks
 }
 
 /// What is found, or, where effects were added, what came of that.
@@ -164,30 +158,25 @@ fn parameters(compared: &ComparedJoint<'_>) -> TextTable {
     let fit = &compared.comparison.fit;
     let units = parameter_units(compared.joint, &fit.model);
     let header = ["parameter", "value ± standard error", "unit", "remark"];
-    let mut table = TextTable::new(header, &[1]);
-    for (parameter, unit) in fit.parameters.iter().zip(units) {
+    let row = |(parameter, unit): (&Parameter, String)| {
+        let value = known_value(parameter.value, parameter.std_error);
         let remark = remark(parameter.status).unwrap_or_default().to_owned();
-        table.row([
-            parameter.name.clone(),
-            known_value(parameter.value, parameter.std_error),
-            unit,
-            remark,
-        ]);
-    }
-    table
+        [parameter.name.clone(), value, unit, remark]
+    };
+    TextTable::of(header, &[1], fit.parameters.iter().zip(units).map(row))
 }
 
 /// The ladder of errors; without several revisions, the error alone.
-fn errors(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, PlotError> {
+fn errors(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     let mut blocks = vec![Block::part("Errors")];
     if improved.ladder().len() > 1 {
-        let figure = ladder::figure(improved, format!("{file}-ladder"))?;
+        let figure = model_figures::ladder(improved, format!("{file}-ladder"));
         blocks.push(Block::Figures(vec![figure]));
     }
     blocks.push(Block::Table(ladder_table(improved.finding.compared.joint, &improved.ladder())));
     let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
     blocks.push(Block::text(format!("{}.", capitalized(&errors_note(&horizon.to_string())))));
-    Ok(blocks)
+    blocks
 }
 
 /// What the model simulates, and the residual.
@@ -195,14 +184,14 @@ fn beside_the_measurement(
     report: &Report<'_>,
     improved: &ImprovedJoint<'_>,
     file: &str,
-) -> Result<Vec<Block>, PlotError> {
+) -> Vec<Block> {
     let compared = &improved.finding.compared;
     let split = report.split.unwrap_or_else(|| Split::of(compared.joint));
-    let figure = simulated::figure(improved, split, format!("{file}-simulated"))?;
+    let figure = simulated::figure(improved, split, format!("{file}-simulated"));
     let mut blocks = vec![Block::part("Measured and simulated"), Block::Figures(vec![figure])];
-    let earlier = simulated::earlier(improved, format!("{file}-earlier-residuals"))?;
+    let earlier = simulated::earlier(improved, format!("{file}-earlier-residuals"));
     blocks.extend(earlier.map(|figure| Block::Figures(vec![figure])));
-    let curves = curves::figures(compared, file)?;
+    let curves = model_figures::curves(compared, file);
     if !curves.is_empty() {
         blocks.push(Block::part("Measured curves"));
         blocks.push(Block::Figures(curves));
@@ -211,15 +200,15 @@ fn beside_the_measurement(
     if !residual.is_empty() {
         blocks.push(Block::text(format!("Residual of the part that was fitted: {residual}.")));
     }
-    Ok(blocks)
+    blocks
 }
 
 /// Where the last revision that fails does so; nothing where none fails.
-fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, PlotError> {
+fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     let fails = |revision: &Revision| revision.comparison.failure.is_some();
     let failing =
         improved.numbered().enumerate().filter(|(_, (_, revision))| fails(revision)).last();
-    let Some((place, (revision, step))) = failing else { return Ok(Vec::new()) };
+    let Some((place, (revision, step))) = failing else { return Vec::new() };
     let last = improved.finding.compared;
     let compared = ComparedJoint { revision, comparison: &step.comparison, ..last };
     let heading = if revision == last.revision {
@@ -238,10 +227,10 @@ fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, Plot
     } else {
         blocks.push(Block::List(said));
     }
-    let share = share::figure(&compared, format!("{file}-error-share"))?;
-    let worst = simulated::worst(&compared, place, format!("{file}-worst-segment"))?;
+    let share = model_figures::share(&compared, format!("{file}-error-share"));
+    let worst = simulated::worst(&compared, place, format!("{file}-worst-segment"));
     blocks.push(Block::Figures(share.into_iter().chain(worst).collect()));
-    Ok(blocks)
+    blocks
 }
 
 /// What was tried: the best of the last race, and all of each.
@@ -263,7 +252,7 @@ fn rankings(improved: &ImprovedJoint<'_>) -> Vec<Block> {
         let table = Block::Table(ranking_table(joint, &revision.ranking));
         let count = revision.ranking.len();
         let summary = format!("All {count} that were tried on revision {number}");
-        blocks.push(Block::Details { summary, blocks: vec![table] });
+        blocks.push(Block::details(summary, vec![table]));
     }
     blocks
 }

@@ -2,6 +2,7 @@
 
 use super::document::{Attachment, Block};
 use super::report::{RecordingFile, Report};
+use crate::experiment::Source;
 use crate::report::chosen_line;
 use crate::report::settings::settings_rows;
 use crate::report::text_table::TextTable;
@@ -19,35 +20,29 @@ pub(super) fn blocks(report: &Report<'_>) -> Vec<Block> {
     }
     blocks.extend(report.recording.iter().flat_map(recording));
     blocks.push(Block::part("Settings"));
-    blocks.push(Block::Table(settings(report)));
+    let settings = settings_rows(report.settings).into_iter();
+    let settings = settings.map(|(name, value)| [name.to_owned(), value]);
+    blocks.push(Block::Table(TextTable::of(["setting", "value"], &[], settings)));
     let chosen: Vec<String> = report.joints.iter().filter_map(chosen_line).collect();
     if !chosen.is_empty() {
         blocks.push(Block::text("Chosen from the record of"));
         blocks.push(Block::List(chosen));
     }
     if let Some(text) = report.revised {
-        let summary = "The models, as a model file".to_owned();
-        blocks.push(Block::Details { summary, blocks: vec![Block::Code(text.to_owned())] });
+        let file = vec![Block::Code(text.to_owned())];
+        blocks.push(Block::details("The models, as a model file", file));
     }
     blocks
 }
 
 /// The files that were read.
 fn files(report: &Report<'_>) -> TextTable {
-    let mut table = TextTable::new(["file", "bytes", "SHA-256"], &[1]);
-    for source in &report.experiment.sources {
+    let row = |source: &Source| {
         let path = source.path.display().to_string();
-        table.row([path, source.bytes.to_string(), source.sha256.clone()]);
-    }
-    table
-}
-
-fn settings(report: &Report<'_>) -> TextTable {
-    let mut table = TextTable::new(["setting", "value"], &[]);
-    for (name, value) in settings_rows(report.settings) {
-        table.row([name.to_owned(), value]);
-    }
-    table
+        [path, source.bytes.to_string(), source.sha256.clone()]
+    };
+    let rows = report.experiment.sources.iter().map(row);
+    TextTable::of(["file", "bytes", "SHA-256"], &[1], rows)
 }
 
 /// How to look at the recording.

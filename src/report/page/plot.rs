@@ -11,6 +11,7 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::document::Figure;
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape};
 use crate::wording::{capitalized, legible, listed, rounded};
 
@@ -40,6 +41,7 @@ const LETTER_WIDTH: f64 = 0.56;
 #[error("a figure cannot be drawn: {0}")]
 pub(crate) struct PlotError(String);
 
+type DrawingError = DrawingAreaErrorKind<std::io::Error>;
 type Svg<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Axes = Cartesian2d<Axis, Axis>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Axes>;
@@ -131,14 +133,15 @@ fn letters(role: Role) -> TextStyle<'static> {
     ("sans-serif", size).into_font().color(&color(role, 1.0))
 }
 
-/// Draws `panels` above one another, `width` pixels wide; the SVG without what stands
-/// around it, so that it may go into a page.
-pub(super) fn draw(panels: &[Panel], width: u32, name: &str) -> Result<String, PlotError> {
+/// Draws the panels of `figure` above one another; the SVG without what stands around it, so that it
+/// may go into a page.
+pub(super) fn draw(figure: &Figure) -> Result<String, PlotError> {
+    let Figure { name, width, panels, .. } = figure;
     let height: u32 = panels.iter().map(Panel::whole_height).sum();
     let mut text = String::new();
-    let failed = |error: DrawingAreaErrorKind<std::io::Error>| PlotError(error.to_string());
+    let failed = |error: DrawingError| PlotError(error.to_string());
     {
-        let backend = SVGBackend::with_string(&mut text, (width * FINE, height * FINE));
+        let backend = SVGBackend::with_string(&mut text, (*width * FINE, height * FINE));
         let mut rest = backend.into_drawing_area();
         let left = panels.iter().map(|panel| panel.y.width()).max().unwrap_or(LEFT);
         for panel in panels {
@@ -148,7 +151,7 @@ pub(super) fn draw(panels: &[Panel], width: u32, name: &str) -> Result<String, P
         }
         rest.present().map_err(failed)?;
     }
-    Ok(framed(&text, (width, height), (name, &in_words(panels))))
+    Ok(framed(&text, (*width, height), (name, &in_words(panels))))
 }
 
 /// The panels in sentences, for those who do not see them.
@@ -227,7 +230,7 @@ impl Panel {
         self.top() + self.height + self.bottom()
     }
 
-    fn draw(&self, area: &Svg<'_>, left: u32) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
+    fn draw(&self, area: &Svg<'_>, left: u32) -> Result<(), DrawingError> {
         let mut chart = ChartBuilder::on(area)
             .margin_top(fine(self.top()))
             .margin_left(fine(2))
@@ -247,7 +250,7 @@ impl Panel {
         self.legend(area, left)
     }
 
-    fn mesh(&self, chart: &mut Chart<'_, '_>) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
+    fn mesh(&self, chart: &mut Chart<'_, '_>) -> Result<(), DrawingError> {
         let (x_text, y_text) = (|x: &f64| self.x.text(*x), |y: &f64| self.y.text(*y));
         let mut mesh = chart.configure_mesh();
         mesh.x_label_formatter(&x_text)
@@ -271,11 +274,7 @@ impl Panel {
     }
 
     /// A swatch and a name for each mark that has one, in a line above the axes.
-    fn legend(
-        &self,
-        area: &Svg<'_>,
-        left: u32,
-    ) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
+    fn legend(&self, area: &Svg<'_>, left: u32) -> Result<(), DrawingError> {
         let middle = fine(LEGEND) / 2 - fine(1);
         let names = || self.marks.iter().filter_map(|mark| mark.name.as_deref());
         let width: u32 = names().map(entry_width).sum();
@@ -298,11 +297,7 @@ impl Mark {
         matches!(self.shape, Shape::Band(..) | Shape::Spans(..))
     }
 
-    fn swatch(
-        &self,
-        area: &Svg<'_>,
-        (x, y): (i32, i32),
-    ) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
+    fn swatch(&self, area: &Svg<'_>, (x, y): (i32, i32)) -> Result<(), DrawingError> {
         let (middle, end) = (x + fine(SWATCH / 2), x + fine(SWATCH));
         let block = [(x, y - fine(4)), (end, y + fine(4))];
         match &self.shape {
@@ -323,11 +318,7 @@ impl Mark {
         }
     }
 
-    fn draw(
-        &self,
-        chart: &mut Chart<'_, '_>,
-        panel: &Panel,
-    ) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
+    fn draw(&self, chart: &mut Chart<'_, '_>, panel: &Panel) -> Result<(), DrawingError> {
         let (x, y, role) = (panel.x.span, panel.y.span, self.role);
         let apart = |places: &[Place]| apart(places, |place| chart.backend_coord(place));
         let area = chart.plotting_area();
@@ -392,6 +383,12 @@ mod tests {
     use super::*;
     use crate::figure::Span;
 
+    fn svg(panel: Panel, name: &str) -> String {
+        let (name, panels) = (name.to_owned(), vec![panel]);
+        draw(&Figure { file: String::new(), name, width: 300, panels, caption: String::new() })
+            .unwrap()
+    }
+
     fn panel(marks: Vec<Mark>) -> Panel {
         let axis = |name: &str| Axis::new(Span::new(0.0, 10.0), name, 5.0);
         Panel { x: axis("time [s]"), y: axis("<angle> & more"), height: 100, marks }
@@ -401,7 +398,7 @@ mod tests {
     fn a_drawing_is_well_formed_and_has_its_name() {
         let lines = Shape::Lines(vec![vec![(0.0, 0.0), (10.0, 10.0)]], 1.0);
         let drawn = panel(vec![Mark::new(Role::Model, lines).named("a < b")]);
-        let svg = draw(&[drawn], 300, "1 < 2").unwrap();
+        let svg = svg(drawn, "1 < 2");
         let parsed = roxmltree::Document::parse(&svg).unwrap();
         let root = parsed.root_element();
         assert_eq!(root.attribute("width"), Some("300"));
@@ -435,7 +432,7 @@ mod tests {
     #[test]
     fn a_line_runs_from_corner_to_corner_of_the_axes() {
         let lines = Shape::Lines(vec![vec![(0.0, 0.0), (10.0, 10.0)]], 1.0);
-        let svg = draw(&[panel(vec![Mark::new(Role::Model, lines)])], 300, "").unwrap();
+        let svg = svg(panel(vec![Mark::new(Role::Model, lines)]), "");
         let parsed = roxmltree::Document::parse(&svg).unwrap();
         let (red, green, blue) = Role::Model.rgb();
         let shade = format!("#{red:02X}{green:02X}{blue:02X}");
@@ -453,8 +450,7 @@ mod tests {
         let places: Vec<Place> = (0..1000).map(|k| (f64::from(k) / 100.0, 5.0)).collect();
         let at = |pixels: f64| {
             let shape = Shape::Dots(places.iter().map(|(x, y)| (x * pixels, *y)).collect());
-            let svg = draw(&[panel(vec![Mark::new(Role::Accepted, shape)])], 300, "").unwrap();
-            svg.matches("<circle").count()
+            svg(panel(vec![Mark::new(Role::Accepted, shape)]), "").matches("<circle").count()
         };
         assert!((40..70).contains(&at(1.0)), "{}", at(1.0));
         assert_eq!(at(0.0), 1);

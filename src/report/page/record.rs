@@ -1,19 +1,15 @@
 //! The whole record of a joint: its output with the breakpoints, and its input.
 
-use super::document::Figure;
-use super::layout::{WIDTH, values_of};
-use super::plot::{PlotError, draw};
-use super::timeline::Timeline;
+use super::document::{Figure, WIDTH};
+use super::timeline::{Timeline, values_of};
 use crate::delay::{Decision, Verdict};
 use crate::experiment::Trial;
-use crate::figure::Role;
-use crate::figure::Span;
-use crate::figure::{Axis, Mark, Panel, Place, Shape};
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span};
 use crate::report::EstimatedJoint;
 use crate::wording::bracketed;
 
 /// Input and output over time.
-pub(super) fn figure(estimated: EstimatedJoint<'_>, file: String) -> Result<Figure, PlotError> {
+pub(super) fn figure(estimated: EstimatedJoint<'_>, file: String) -> Figure {
     let joint = estimated.joint;
     let timeline = Timeline::of(joint);
     let (accepted, rejected) = breakpoints(estimated, &timeline);
@@ -40,10 +36,9 @@ pub(super) fn figure(estimated: EstimatedJoint<'_>, file: String) -> Result<Figu
         ],
     };
     let name = format!("Input and output of {} over time", joint.name);
-    let svg = draw(&[output, input], WIDTH, &name)?;
     let caption =
         "What was measured, and where the output of each step of the input breaks.".to_owned();
-    Ok(Figure { file, svg, caption })
+    Figure { file, name, width: WIDTH, panels: vec![output, input], caption }
 }
 
 /// Where each breakpoint is: of accepted decisions, and of rejected ones.

@@ -1,107 +1,70 @@
 //! Single decisions: the segment with both lines, and the error of every candidate.
 
-use super::document::Figure;
-use super::layout::NARROW;
-use super::plot::{PlotError, draw};
-use crate::delay::{Condition, Decision, Doubt, Verdict};
-use crate::experiment::{Joint, Trial};
-use crate::figure::Role;
-use crate::figure::Span;
+use std::collections::HashSet;
+
+use super::document::{Figure, NARROW};
+use crate::delay::{Condition, Verdict};
+use crate::experiment::Joint;
 use crate::figure::segment::SegmentFigure;
-use crate::figure::{Axis, Mark, Panel, Place, Shape};
-use crate::report::EstimatedJoint;
-use crate::wording::bracketed;
-use crate::wording::rounded;
-use crate::wording::to_place;
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span};
+use crate::report::doubt::doubted;
+use crate::report::{Doubted, EstimatedJoint};
+use crate::wording::{bracketed, rounded, to_place};
 
 /// A decision that is worth a look, and why.
 struct Choice<'a> {
     why: &'static str,
-    trial: &'a Trial,
-    /// The output that the lines were fitted to, where that is not the measured one.
-    smoothed: Option<&'a [f64]>,
-    decision: &'a Decision,
+    found: Doubted<'a>,
 }
 
 /// The best, a typical and the worst of the accepted decisions, and a rejected one.
-pub(super) fn figures(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<Figure>, PlotError> {
+pub(super) fn figures(estimated: EstimatedJoint<'_>, file: &str) -> Vec<Figure> {
     let choices = choices(estimated);
-    let drawn = choices.iter().map(|choice| choice.figure(estimated.joint, file));
-    drawn.collect()
+    choices.iter().map(|choice| choice.figure(estimated.joint, file)).collect()
 }
 
 fn choices(estimated: EstimatedJoint<'_>) -> Vec<Choice<'_>> {
-    let mut accepted: Vec<_> =
-        all(estimated).filter_map(|choice| Some((choice.doubt()?, choice))).collect();
-    accepted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let has_breakpoint = |found: &Doubted<'_>| found.decision.breakpoint().is_some();
+    let (accepted, others): (Vec<_>, Vec<_>) =
+        doubted(estimated).partition(|found| found.decision.accepted_delay().is_some());
+    let mut accepted: Vec<_> = accepted.into_iter().filter(has_breakpoint).collect();
+    accepted.sort_by(|a, b| a.doubt.value().total_cmp(&b.doubt.value()));
     let last = accepted.len().saturating_sub(1);
     // What is odd is never clear, however little its doubt.
-    let clearest = accepted.iter().position(|(_, choice)| !choice.is_odd());
+    let clearest = accepted.iter().position(|found| found.doubt.flags.is_empty());
     let clearest = clearest.map_or((0, "Least doubtful"), |place| (place, "Clearest"));
-    let places = [clearest, (last / 2, "Typical"), (last, "Most doubtful")];
-    let mut chosen: Vec<Choice<'_>> = Vec::new();
-    for (place, why) in places {
-        let Some((_, choice)) = accepted.get(place) else { continue };
-        let same = |other: &Choice<'_>| std::ptr::eq(other.decision, choice.decision);
-        if !chosen.iter().any(same) {
-            chosen.push(Choice { why, ..*choice });
-        }
-    }
-    chosen.extend(rejected(estimated));
-    chosen
-}
-
-/// All decisions of a joint.
-fn all(estimated: EstimatedJoint<'_>) -> impl Iterator<Item = Choice<'_>> {
-    let trials = estimated.joint.trials.iter().zip(&estimated.estimate.trials);
-    let known = trials.filter_map(|(trial, result)| Some((trial, result.as_ref().ok()?)));
-    known.flat_map(|(trial, estimate)| {
-        let smoothed = estimate.smoothed.as_deref();
-        let choice = move |decision| Choice { why: "", trial, smoothed, decision };
-        estimate.decisions.iter().map(choice)
-    })
-}
-
-/// The first rejected decision that says something: the first and the last step of a trial
-/// are never judged.
-fn rejected(estimated: EstimatedJoint<'_>) -> Option<Choice<'_>> {
-    let is_telling = |choice: &Choice<'_>| match choice.decision.verdict() {
-        Verdict::Accepted | Verdict::Rejected(Condition::FirstOrLast) => false,
-        Verdict::Rejected(_) => choice.decision.breakpoint().is_some(),
+    let mut places = vec![clearest, (last / 2, "Typical"), (last, "Most doubtful")];
+    let mut seen = HashSet::new();
+    places.retain(|(place, _)| seen.insert(*place));
+    let choice = |(place, why): (usize, &'static str)| {
+        accepted.get(place).map(|found| Choice { why, found: found.clone() })
     };
-    let found = all(estimated).find(is_telling);
-    found.map(|choice| Choice { why: "Rejected", ..choice })
+    let rejected = others.into_iter().find(is_telling);
+    let rejected = rejected.map(|found| Choice { why: "Rejected", found });
+    places.into_iter().filter_map(choice).chain(rejected).collect()
+}
+
+/// Whether a rejected decision says something: the first and the last step of a trial are never
+/// judged.
+fn is_telling(found: &Doubted<'_>) -> bool {
+    match found.decision.verdict() {
+        Verdict::Accepted | Verdict::Rejected(Condition::FirstOrLast) => false,
+        Verdict::Rejected(_) => found.decision.breakpoint().is_some(),
+    }
 }
 
 impl Choice<'_> {
-    /// How doubtful an accepted decision with a breakpoint is.
-    fn doubt(&self) -> Option<f64> {
-        self.decision.accepted_delay()?;
-        self.decision.breakpoint()?;
-        Some(self.found().value())
-    }
-
-    /// Whether the decision has a flag.
-    fn is_odd(&self) -> bool {
-        !self.found().flags.is_empty()
-    }
-
-    fn found(&self) -> Doubt {
-        self.decision.doubt(self.smoothed.unwrap_or(self.trial.output()))
-    }
-
-    fn figure(&self, joint: &Joint, file: &str) -> Result<Figure, PlotError> {
+    fn figure(&self, joint: &Joint, file: &str) -> Figure {
         let x = Axis::new(self.window_s(), "time [s]", 5.0);
-        let panels = [self.lines(joint, x.bare()), self.errors(joint, x)];
-        let number = self.decision.number;
+        let panels = vec![self.lines(joint, x.bare()), self.errors(joint, x)];
+        let number = self.found.decision.number;
         let name = format!("{} step of {}: number {number}", self.why, joint.name);
-        let svg = draw(&panels, NARROW, &name)?;
         let file = format!("{file}-{}", self.why.to_ascii_lowercase().replace(' ', "-"));
-        Ok(Figure { file, svg, caption: self.caption(joint) })
+        Figure { file, name, width: NARROW, panels, caption: self.caption(joint) }
     }
 
     fn caption(&self, joint: &Joint) -> String {
-        let Self { why, trial, decision, .. } = self;
+        let Self { why, found: Doubted { trial, decision, .. } } = self;
         let trial_said = match joint.trials.len() {
             1 => String::new(),
             _ => format!(" of trial {}", trial.label()),
@@ -122,12 +85,15 @@ impl Choice<'_> {
 
     /// Who said it, and what the program says, where a person said something.
     fn beside_reviewer(&self) -> String {
-        let decision = self.decision;
+        let decision = self.found.decision;
         let Some(said) = &decision.reviewer_verdict else { return String::new() };
         let by = if said.reviewer.is_empty() { "a person" } else { said.reviewer.as_str() };
         let program = match (decision.program_verdict(), decision.program_delay()) {
             (Verdict::Accepted, Some(delay)) => {
-                format!("accepted, delay {} s", rounded(delay * self.trial.period().seconds()))
+                format!(
+                    "accepted, delay {} s",
+                    rounded(delay * self.found.trial.period().seconds())
+                )
             }
             (Verdict::Accepted, None) => "accepted".to_owned(),
             (Verdict::Rejected(condition), _) => format!("rejected as {condition}"),
@@ -138,9 +104,13 @@ impl Choice<'_> {
 
     /// `delay 0.17 s`, with its interval where there is one.
     fn delay(&self) -> String {
-        let seconds = |samples: f64| rounded(samples * self.trial.period().seconds());
-        let Some(delay) = self.decision.delay() else { return "no delay".to_owned() };
-        let own = self.decision.fine.filter(|_| self.decision.delay_before_review().is_none());
+        let seconds = |samples: f64| rounded(samples * self.found.trial.period().seconds());
+        let Some(delay) = self.found.decision.delay() else { return "no delay".to_owned() };
+        let own = self
+            .found
+            .decision
+            .fine
+            .filter(|_| self.found.decision.delay_before_review().is_none());
         let ends = own.map(|fine| (seconds(fine.low), seconds(fine.high)));
         let ends = ends.map_or_else(String::new, |(low, high)| format!(" ({low} to {high} s)"));
         format!("delay {} s{ends}", seconds(delay))
@@ -148,17 +118,17 @@ impl Choice<'_> {
 
     /// What is drawn of it.
     fn drawn(&self) -> SegmentFigure<'_> {
-        SegmentFigure::new(self.trial, self.decision)
+        SegmentFigure::new(self.found.trial, self.found.decision)
     }
 
     fn window_s(&self) -> Span {
         let (first, last) = self.drawn().window;
-        Span::new(self.trial.time_s(first), self.trial.time_s(last))
+        Span::new(self.found.trial.time_s(first), self.found.trial.time_s(last))
     }
 
     /// The time of a sample, which may be between two.
     fn at(&self, sample: f64) -> f64 {
-        self.trial.time_s(1) + (sample - 1.0) * self.trial.period().seconds()
+        self.found.trial.time_s(1) + (sample - 1.0) * self.found.trial.period().seconds()
     }
 
     /// Places by time instead of by sample.
@@ -172,11 +142,11 @@ impl Choice<'_> {
         const POINTS: usize = 600;
         let drawn = self.drawn();
         let signal = |values: &[f64]| self.timed(drawn.signal(values, POINTS));
-        let measured = signal(self.trial.output());
-        let smoothed = self.smoothed.map(signal);
-        let chosen = self.decision.breakpoint().map(|best| {
+        let measured = signal(self.found.trial.output());
+        let smoothed = self.found.smoothed.map(signal);
+        let chosen = self.found.decision.breakpoint().map(|best| {
             let q = drawn.breakpoint().unwrap_or(best.candidate.breakpoint as f64);
-            let candidate = self.decision.shown_candidate().unwrap_or(best.candidate);
+            let candidate = self.found.decision.shown_candidate().unwrap_or(best.candidate);
             drawn.lines(&candidate, q).map(|line| self.timed(line)).to_vec()
         });
         let chosen = chosen.unwrap_or_default();
@@ -184,7 +154,7 @@ impl Choice<'_> {
             measured.iter().chain(smoothed.iter().flatten()).chain(chosen.iter().flatten());
         let y = Span::around(values.map(|place| place.1), 0.08);
         let role = drawn.verdict();
-        let step = vec![self.at(self.decision.input_step.sample as f64)];
+        let step = vec![self.at(self.found.decision.input_step.sample as f64)];
         let q: Vec<f64> = drawn.breakpoint().map(|q| self.at(q)).into_iter().collect();
         let mut marks = vec![
             Mark::new(role, Shape::Lines(chosen, 4.0)).named("lines"),
@@ -195,8 +165,8 @@ impl Choice<'_> {
         }));
         marks.push(Mark::new(Role::Input, Shape::Verticals(step, 1.2)).named("step"));
         marks.push(Mark::new(role, Shape::Verticals(q, 1.2)).named("q"));
-        let before = self.decision.delay_before_review();
-        let p = self.decision.input_step.sample as f64;
+        let before = self.found.decision.delay_before_review();
+        let p = self.found.decision.input_step.sample as f64;
         marks.extend(before.map(|delay| {
             let q = vec![self.at(p + delay)];
             Mark::new(Role::Faint, Shape::Verticals(q, 1.2))
@@ -208,11 +178,11 @@ impl Choice<'_> {
     /// The squared error of every candidate.
     fn errors(&self, joint: &Joint, x: Axis) -> Panel {
         let drawn = self.drawn();
-        let candidates = &self.decision.candidates;
+        let candidates = &self.found.decision.candidates;
         let curve = self.timed(drawn.errors(candidates.len()));
-        let shown = self.decision.shown_candidate();
+        let shown = self.found.decision.shown_candidate();
         let best = self.timed(shown.map(|shown| drawn.error(&shown)));
-        let moved = self.decision.delay_before_review().is_some();
+        let moved = self.found.decision.delay_before_review().is_some();
         let unit = joint.output_unit.as_ref().map(|unit| format!("{unit}²"));
         let curve = Mark::new(Role::Error, Shape::Lines(vec![curve], 1.6));
         Panel {
@@ -241,6 +211,7 @@ mod tests {
     use super::*;
     use crate::batch::Threads;
     use crate::delay::{FirstLast, Method, Settings};
+    use crate::experiment::Trial;
     use crate::study::estimate_joints;
     use crate::units::SamplePeriod;
 
@@ -266,7 +237,7 @@ mod tests {
         let estimate = estimate.into_iter().next().unwrap().unwrap();
         let estimated = EstimatedJoint { joint: &joint, estimate: &estimate };
         let choices = choices(estimated);
-        choices.iter().map(|choice| (choice.why, choice.decision.number)).collect()
+        choices.iter().map(|choice| (choice.why, choice.found.decision.number)).collect()
     }
 
     #[test]

@@ -1,29 +1,20 @@
 //! A model beside the measurement: what it simulates, the residual, and where that is largest.
 
-use super::document::Figure;
-use super::layout::{HALF, WIDTH, values_of};
-use super::plot::{PlotError, draw};
-use super::timeline::Timeline;
+use super::document::{Figure, HALF, WIDTH};
+use super::timeline::{Timeline, values_of};
 use crate::diagnosis::failure::WorstSegment;
 use crate::diagnosis::sensor_noise;
 use crate::experiment::{Joint, Trial};
-use crate::figure::Role;
-use crate::figure::{Axis, Mark, Panel, Place, Shape};
-use crate::figure::{Span, thinned_to};
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, thinned_places};
 use crate::fit::{FitRecord, Horizon, Part, Split, Window};
 use crate::report::{ComparedJoint, ImprovedJoint};
-use crate::wording::bracketed;
-use crate::wording::{measure, percent, worst_segment_text};
+use crate::wording::{bracketed, measure, percent, worst_segment_text};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
 
 /// Measured and simulated output over time, and the residual.
-pub(super) fn figure(
-    improved: &ImprovedJoint<'_>,
-    split: Split,
-    file: String,
-) -> Result<Figure, PlotError> {
+pub(super) fn figure(improved: &ImprovedJoint<'_>, split: Split, file: String) -> Figure {
     let compared = &improved.finding.compared;
     let role = Role::of_revision(improved.revisions.len().saturating_sub(1));
     let joint = compared.joint;
@@ -60,21 +51,17 @@ pub(super) fn figure(
         Axis::new(residuals(compared), bracketed("residual", joint.output_unit.as_deref()), 6.0);
     let left = Panel { x: timeline.axis(), y, height: 110, marks };
     let name = format!("Measured and simulated output of {}", joint.name);
-    let svg = draw(&[output, left], WIDTH, &name)?;
     let mut caption = "The measured output beside the simulated one, and the residual.".to_owned();
     if has_worst {
         caption += " Worst segments are those with the largest sums of squares, and the one with the \
                     largest residual.";
     }
-    Ok(Figure { file, svg, caption })
+    Figure { file, name, width: WIDTH, panels: vec![output, left], caption }
 }
 
 /// What each revision before the last one left, over time, each at its own scale; none where there
 /// was none before.
-pub(super) fn earlier(
-    improved: &ImprovedJoint<'_>,
-    file: String,
-) -> Result<Option<Figure>, PlotError> {
+pub(super) fn earlier(improved: &ImprovedJoint<'_>, file: String) -> Option<Figure> {
     let last = improved.finding.compared;
     let timeline = Timeline::of(last.joint);
     let before = improved.numbered().filter(|(number, _)| *number != last.revision);
@@ -100,29 +87,22 @@ pub(super) fn earlier(
         Panel { x, y, height: 80, marks }
     };
     if before.is_empty() {
-        return Ok(None);
+        return None;
     }
-    let panels: Vec<_> = before.iter().enumerate().map(panel).collect();
+    let panels = before.iter().enumerate().map(panel).collect();
     let name = format!("Residual of the earlier revisions of {}", last.joint.name);
-    let svg = draw(&panels, WIDTH, &name)?;
     let caption = "What the earlier revisions left, each at its own scale.".to_owned();
-    Ok(Some(Figure { file, svg, caption }))
+    Some(Figure { file, name, width: WIDTH, panels, caption })
 }
 
 /// The segment with the largest share of the squared error, larger; none where no lack of
 /// fit is shown.
-pub(super) fn worst(
-    compared: &ComparedJoint<'_>,
-    place: usize,
-    file: String,
-) -> Result<Option<Figure>, PlotError> {
+pub(super) fn worst(compared: &ComparedJoint<'_>, place: usize, file: String) -> Option<Figure> {
     let joint = compared.joint;
-    let failure = compared.comparison.failure.as_ref();
-    let Some(worst) = failure.and_then(|failure| failure.worst_segments.first()) else {
-        return Ok(None);
-    };
-    let found = joint.trials.iter().enumerate().find(|(_, trial)| trial.label() == worst.trial);
-    let Some((index, trial)) = found else { return Ok(None) };
+    let segments = &compared.comparison.failure.as_ref()?.worst_segments;
+    let worst = segments.first()?;
+    let mut trials = joint.trials.iter().enumerate();
+    let (index, trial) = trials.find(|(_, trial)| trial.label() == worst.trial)?;
     let cut = |values: &[f64]| around(values, trial, worst);
     let (measured, simulated) = (cut(trial.output()), cut(simulated(compared, index)));
     let x = Span::around(measured.iter().map(|place| place.0), 0.0);
@@ -138,13 +118,13 @@ pub(super) fn worst(
                 .named("simulated"),
         ],
     };
-    let svg = draw(&[panel], HALF, &format!("The worst segment of {}", joint.name))?;
+    let name = format!("The worst segment of {}", joint.name);
     let share = percent(worst.share_of_squared_error);
     let unit = joint.output_unit.as_deref();
-    let all = failure.iter().flat_map(|failure| &failure.worst_segments);
-    let spike = all.max_by(|a, b| a.largest_residual.abs().total_cmp(&b.largest_residual.abs()));
+    let height = |one: &WorstSegment| one.largest_residual.abs();
+    let spike = segments.iter().max_by(|a, b| height(a).total_cmp(&height(b)));
     let spike = spike.map_or_else(String::new, |spike| {
-        let height = measure(spike.largest_residual.abs(), unit);
+        let height = measure(height(spike), unit);
         let place = if spike == worst {
             "is in it".to_owned()
         } else if joint.trials.len() > 1 {
@@ -157,7 +137,7 @@ pub(super) fn worst(
     let caption = format!(
         "The worst segment: it holds {share} of the squared error, more than any other.{spike}"
     );
-    Ok(Some(Figure { file, svg, caption }))
+    Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
 }
 
 /// The samples of a segment, with a part of it before and behind.
@@ -166,8 +146,7 @@ fn around(values: &[f64], trial: &Trial, worst: &WorstSegment) -> Vec<Place> {
     let (from, to) = (worst.start_s - room, worst.end_s + room);
     let places = values.iter().enumerate().map(|(k, y)| (trial.time_s(k + 1), *y));
     let inside: Vec<Place> = places.filter(|place| (from..=to).contains(&place.0)).collect();
-    let outputs: Vec<f64> = inside.iter().map(|place| place.1).collect();
-    thinned_to(&outputs, 900).into_iter().filter_map(|k| inside.get(k)).copied().collect()
+    thinned_places(&inside, 900)
 }
 
 fn simulated<'a>(compared: &ComparedJoint<'a>, trial: usize) -> &'a [f64] {

@@ -1,9 +1,7 @@
 //! Trials on one time axis, and signals as lines along it.
 
 use crate::experiment::{Joint, Trial};
-use crate::figure::Role;
-use crate::figure::{Axis, Mark, Place, Shape};
-use crate::figure::{Span, thinned_to};
+use crate::figure::{Axis, Mark, Place, Role, Shape, Span, thinned_to};
 
 /// Points of a line over the whole width: two for each column that is seen.
 const POINTS: f64 = 1500.0;
@@ -92,6 +90,14 @@ impl<'a> Timeline<'a> {
     ) -> Vec<Vec<Place>> {
         self.lines(values).into_iter().map(|line| steps(&line)).collect()
     }
+}
+
+/// A signal's values in all trials.
+pub(super) fn values_of(
+    joint: &Joint,
+    values: fn(&Trial) -> &[f64],
+) -> impl Iterator<Item = f64> + '_ {
+    joint.trials.iter().flat_map(move |trial| values(trial).iter().copied())
 }
 
 /// Time of the end of the last sample.

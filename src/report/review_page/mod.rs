@@ -3,7 +3,7 @@
 
 mod data;
 
-use data::ReviewPageJson;
+use data::page_json;
 
 use super::{EstimatedJoint, Report};
 use crate::experiment::Source;
@@ -22,7 +22,7 @@ pub(crate) fn review_page(report: &Report<'_>) -> serde_json::Result<String> {
 }
 
 fn page(name: &str, joints: &[EstimatedJoint<'_>]) -> serde_json::Result<String> {
-    let data = serde_json::to_string(&ReviewPageJson::of(name, joints, MOST))?;
+    let data = serde_json::to_string(&page_json(name, joints, MOST))?;
     // Within a script nothing may look like its end.
     let data = data.replace('<', "\\u003c");
     let title = html(&format!("Review of {name}"));

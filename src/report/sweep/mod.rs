@@ -3,11 +3,10 @@
 mod sets;
 mod text;
 
-pub(crate) use text::{StepsShown, sweep_text};
-#[cfg(feature = "rrd")]
-pub(crate) use text::{depends_on, level_cell, settings_in_words, sweep_sentences};
+pub(crate) use text::{
+    StepsShown, depends_on, level_cell, settings_in_words, sweep_sentences, sweep_text,
+};
 
-#[cfg(feature = "rrd")]
 use crate::delay::Settings;
 use crate::delay::sweep::{Factor, Grid, JointSweep};
 use crate::experiment::Joint;
@@ -34,7 +33,6 @@ impl ReportedSweep<'_> {
 }
 
 /// A run in words: the values of all settings that its method knows.
-#[cfg(feature = "rrd")]
 pub(crate) fn run_text(settings: &Settings) -> String {
     let low_pass = settings.low_pass;
     let low_pass = low_pass.map_or("no low-pass".to_owned(), |l| format!("{} Hz", l.cutoff_hz));

@@ -74,7 +74,6 @@ pub(crate) fn sweep_sentences(grid: &Grid, reported: &ReportedSweep<'_>) -> Vec<
 }
 
 /// The settings of the runs that are `chosen`, in few words.
-#[cfg(feature = "rrd")]
 pub(crate) fn settings_in_words(grid: &Grid, chosen: &[bool]) -> String {
     let found = clauses(grid, chosen);
     let total: usize = found.iter().map(|clause| clause.combinations).sum();

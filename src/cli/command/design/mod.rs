@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 
 use crate::experiment::ReadOptions;
-use crate::report::{DesignJson, DesignedJoint, design_text, write_input, write_preview};
+use crate::report::{DesignedJoint, design_json, design_text, input_table, preview_table};
 
 use crate::cli::console::{Bar, warn};
 use crate::cli::exit::Completion;
@@ -53,19 +53,19 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         anyhow::Ok((known, joints, failures))
     })??;
     if let Some(path) = &args.output {
-        write_file(path, |file| Ok(write_input(&joints, file)?))?;
+        write_file(path, |file| Ok(input_table(&joints).write_csv(file)?))?;
         args.run.verbosity().say("input", path.display().to_string());
     }
     match args.preview.as_deref() {
         Some(path) if is_recording(path) => args.record(&known, &joints, path)?,
         Some(path) => {
-            write_file(path, |file| Ok(write_preview(&joints, file)?))?;
+            write_file(path, |file| Ok(preview_table(&joints).write_csv(file)?))?;
             args.run.verbosity().say("preview", path.display().to_string());
         }
         None => {}
     }
     warn(&failures);
-    let json = || DesignJson::new(args.seed, &joints, &failures);
+    let json = || design_json(args.seed, &joints, &failures);
     args.run.format.print(|| design_text(&joints), json)?;
     Ok(Completion::without(&failures))
 }

@@ -99,7 +99,7 @@ impl<'a> Files<'a> {
             })?;
         }
         if let Some(path) = &self.args.table {
-            write_table(&level_table(result.joints)?, path, self.text)?;
+            write_table(&level_table(result.joints), path, self.text)?;
         }
         if let Some(path) = self.args.export.as_ref().filter(|_| !lookup(result).is_empty()) {
             let (language, name) = named_lookup(path)?;

@@ -13,7 +13,7 @@ use crate::experiment::{Joint, Source};
 use crate::explain::{Improvement, Options, Revision, Verdict};
 use crate::model::{LogHash, ModelFile};
 use crate::report::{
-    EstimatedJoint, ImprovedJoint, RecordingFile, Report, ReportJson, report_text, review_page,
+    EstimatedJoint, ImprovedJoint, RecordingFile, Report, report_json, report_text, review_page,
 };
 use crate::study::{Known, Mode, OfJoints, explain_unknown_joints, improve_joints};
 use anyhow::{Context as _, bail};
@@ -246,9 +246,9 @@ impl Reported<'_> {
         if let Some(target) = target {
             write_files(&report, target, study.verbosity())?;
         }
-        let path = |path: &Path| path.display().to_string();
-        let recording = recording_path.map(path);
-        let json = || ReportJson::new(&report, target.map(|target| path(&target.path)), recording);
+        let path = target.map(|target| target.path.display().to_string());
+        let recording = recording_path.map(|path| path.display().to_string());
+        let json = || report_json(&report, path.as_deref(), recording.as_deref());
         let text = || match self.shown {
             Shown::Sentences => report_text(&report),
             Shown::Everything => first_look::rest(args, &report, target),
@@ -296,7 +296,7 @@ impl Reported<'_> {
 fn write_files(report: &Report<'_>, target: &Target, verbosity: Verbosity) -> anyhow::Result<()> {
     {
         let _bar = Bar::spinner(verbosity, "writing the report");
-        target.write(&report.document()?)?;
+        target.write(&report.document())?;
         if let Some(path) = &target.review {
             write_bytes(path, review_page(report)?)?;
         }

@@ -76,10 +76,10 @@ impl Target {
 
     pub(super) fn write(&self, document: &Document) -> anyhow::Result<()> {
         let text = match self.kind {
-            Kind::Page => document.html(),
+            Kind::Page => document.html()?,
             Kind::Markdown => {
                 let folder = self.folder();
-                let markdown = document.markdown(&file_name(&folder));
+                let markdown = document.markdown(&file_name(&folder))?;
                 fs::create_dir_all(&folder)
                     .with_context(|| format!("{}: cannot be made", folder.display()))?;
                 for (name, drawing) in &markdown.files {

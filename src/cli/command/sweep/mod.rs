@@ -9,7 +9,7 @@ use crate::delay::sweep::{Base, Grid};
 use crate::delay::{Automatic, EstimateError, Method, Settings};
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::numerics::LowPass;
-use crate::report::{ReportedSweep, StepsShown, SweepJson, sweep_text};
+use crate::report::{ReportedSweep, StepsShown, sweep_json, sweep_text};
 use crate::study::{SweptJoint, sweep_joints};
 use crate::units::Length;
 use anyhow::bail;
@@ -136,7 +136,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     session.end(
         Completion::without(&failures),
         || sweep_text(&grid, args.tolerance, &swept, shown),
-        || SweepJson::new(&grid, args.tolerance, &swept, &experiment.notes, &failures),
+        || sweep_json(&grid, args.tolerance, &swept, &experiment.notes, &failures),
     )
 }
 

@@ -1,9 +1,5 @@
-//! C99, without dependencies beyond its standard library.
-
-use super::contents::{JointLookup, Lookup, numbers, quoted, side, support};
-use crate::delay::DelayCurve;
-
-const HEAD: &str = r" *
+/*
+{origin} *
  * double tauscope_delay_s(const char *joint, double level_from, double level_to);
  *
  * The delay in seconds of a step of the input of `joint` from one level to another, in
@@ -32,9 +28,9 @@ typedef struct {
     const tauscope_curve *curves;
 } tauscope_joint;
 
-";
+{tables}static const tauscope_joint tauscope_joints[] = {
+{joints}};
 
-const TAIL: &str = r"
 static int tauscope_side(const tauscope_joint *joint, double level)
 {
     return (level > joint->neutral_high) - (level < joint->neutral_low);
@@ -77,53 +73,4 @@ double tauscope_delay_s(const char *joint, double level_from, double level_to)
         }
     }
     return NAN;
-}
-";
-
-/// The whole file.
-pub(super) fn source(lookup: &Lookup<'_>) -> String {
-    let origin = lookup.commented(" * ").replace("??/", "?? /").replace("*/", "* /");
-    let tables: String = lookup.joints.iter().enumerate().map(tables).collect();
-    let joints: String = lookup.joints.iter().enumerate().map(joint).collect();
-    let joints = format!("static const tauscope_joint tauscope_joints[] = {{\n{joints}}};\n");
-    format!("/*\n{origin}{HEAD}{tables}{joints}{TAIL}")
-}
-
-fn joint((number, joint): (usize, &JointLookup<'_>)) -> String {
-    // A trigraph may stand for the backslash before the mark that ends the text.
-    let (name, count) = (quoted(joint.name).replace('?', "\\?"), joint.curves.len());
-    let curves = if count > 0 { format!("curves_{number}") } else { "NULL".to_owned() };
-    let (low, high) = joint.neutral.map_or_else(
-        || ("-INFINITY".to_owned(), "INFINITY".to_owned()),
-        |neutral| (format!("{:?}", neutral.low), format!("{:?}", neutral.high)),
-    );
-    format!("    {{{name}, {low}, {high}, {count}, {curves}}},\n")
-}
-
-/// The arrays of a joint.
-fn tables((number, joint): (usize, &JointLookup<'_>)) -> String {
-    if joint.curves.is_empty() {
-        return String::new();
-    }
-    let curves = || joint.curves.iter().enumerate();
-    let arrays = curves().map(|(place, curve)| {
-        let (levels, delays) = numbers(curve);
-        format!(
-            "/* {} */\n\
-             static const double level_{number}_{place}[] = {{{levels}}};\n\
-             static const double delay_{number}_{place}[] = {{{delays}}};\n",
-            support(curve)
-        )
-    });
-    let row = |(place, curve): (usize, &DelayCurve)| {
-        let (kind, side, rises) = (curve.transition as u8, side(curve.side), u8::from(curve.rises));
-        let count = curve.points.len();
-        format!(
-            "    {{{kind}, {side}, {rises}, {count}, level_{number}_{place}, \
-             delay_{number}_{place}}},\n"
-        )
-    };
-    let rows: String = curves().map(row).collect();
-    let arrays: String = arrays.collect();
-    format!("{arrays}static const tauscope_curve curves_{number}[] = {{\n{rows}}};\n\n")
 }
