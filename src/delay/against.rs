@@ -125,6 +125,15 @@ pub struct AgainstOfKind {
 }
 
 impl AgainstState {
+    /// Whether the delay of all steps, or of those of one kind, depends significantly on something.
+    pub(crate) fn has_dependence(&self) -> bool {
+        let kinds = self.kinds.iter().map(|kind| (&kind.correlations, &kind.direction));
+        let mut all = std::iter::once((&self.correlations, &self.direction)).chain(kinds);
+        all.any(|(correlations, direction)| {
+            direction.significant || correlations.iter().any(|one| one.significant)
+        })
+    }
+
     /// Compares the delays of `joint`, by the kinds of steps about its `neutral` input;
     /// `estimates` has one entry per trial of it, in order, none where there is no estimate.
     pub fn of<'a>(

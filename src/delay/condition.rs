@@ -93,7 +93,7 @@ impl Condition {
     /// What it asks for, in a sentence without its end.
     pub fn asks(self) -> &'static str {
         match self {
-            Self::FirstOrLast => "there is a step before it and one behind it in the trial",
+            Self::FirstOrLast => "the step is neither the first nor the last of the trial",
             Self::OutputLimit => "no sample of the segment touches a limit of the output",
             Self::BeforeInput => "the breakpoint q is not before the input step p",
             Self::SlopeChange => {

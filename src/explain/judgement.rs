@@ -66,23 +66,23 @@ impl Judgement {
     pub fn reason(&self) -> String {
         let share = self.consequence_percent;
         match &self.refusal {
-            None => format!("shown, determined, and takes away {share:.0} % of the first error"),
+            None => {
+                format!("significant, determined, and removes {share:.0} % of the initial error")
+            }
             Some(Refusal::NotSignificant) => {
-                "what it takes away may be chance, or is too little".to_owned()
+                "the reduction is not significant, or too small".to_owned()
             }
             Some(Refusal::Undetermined) => "the record does not determine it".to_owned(),
             Some(Refusal::Implausible(name)) => format!("the value of {name} is not plausible"),
             Some(Refusal::LikeAnother) => {
-                "not distinguished from an effect of the model that looks like it".to_owned()
+                "not distinguishable from a similar effect of the model".to_owned()
             }
             Some(Refusal::LimitingCase(case)) => {
-                format!("the record shows no more of it than {}", case.effects.join(" and "))
+                format!("the record shows only its limiting case, {}", case.effects.join(" and "))
             }
-            Some(Refusal::DoesNotGeneralise) => {
-                "the part that was not fitted is predicted worse with it".to_owned()
-            }
+            Some(Refusal::DoesNotGeneralise) => "it increases the validation error".to_owned(),
             Some(Refusal::NoConsequence) => {
-                format!("takes away {share:.1} % of the first error, of no consequence")
+                format!("removes only {share:.1} % of the initial error: negligible")
             }
             Some(Refusal::Behind(name)) => format!("{name} is more likely"),
             Some(Refusal::NotTheWhole) => {

@@ -22,13 +22,10 @@ fn text(layout: &JointLayout<'_>, sources: &[Source]) -> String {
     let estimated = layout.estimated;
     let name = plain(&estimated.joint.name);
     let answer = format!("**{name}: {}**", plain(&delay_answer(estimated)));
-    // The whole of a warning, with what to do, is in the report and on the terminal.
-    let warnings = estimated.warnings();
-    let in_short = |text: &str| text.split_once(". ").map_or(text, |(first, _)| first).to_owned();
-    let mut sentences: Vec<String> = warnings
-        .iter()
-        .map(|warning| format!("⚠ {}.", plain(&capitalized(&in_short(&warning.text)))))
-        .collect();
+    // What to do about a warning is in the report and on the terminal.
+    let warnings = estimated.warnings().into_iter();
+    let mut sentences: Vec<String> =
+        warnings.map(|warning| format!("⚠ {}.", plain(&capitalized(&warning.short)))).collect();
     let doubtful = layout.segments().filter(|(_, segment)| segment.is_open()).count();
     let log = match sources {
         [source] => source.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -37,6 +34,9 @@ fn text(layout: &JointLayout<'_>, sources: &[Source]) -> String {
     let quoted = |word: &str| shlex::try_quote(word).map_or_else(|_| word.to_owned(), Into::into);
     let data = format!("{} --joint {}", quoted(&log), quoted(&estimated.joint.name));
     sentences.push(match doubtful {
+        _ if estimated.obstacle().is_some() => {
+            format!("What the columns are taken for: `tauscope columns {}`", quoted(&log))
+        }
         0 => format!("No decision is doubtful. What a model lacks: `tauscope improve {data}`"),
         1 => format!("1 decision is doubtful. {}", review(&data)),
         count => format!("{count} decisions are doubtful. {}", review(&data)),

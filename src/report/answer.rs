@@ -13,10 +13,14 @@ pub(crate) fn delay_answer(estimated: EstimatedJoint<'_>) -> String {
         .take(2)
         .map(|words| format!("{}.", capitalized(words)))
         .collect();
-    if over_record.is_empty() {
-        return delay_sentence(&JointSummary::of(estimated));
+    if !over_record.is_empty() {
+        return over_record.join(" ");
     }
-    over_record.join(" ")
+    let summary = JointSummary::of(estimated);
+    match estimated.obstacle() {
+        Some(obstacle) if summary.accepted == 0 => format!("No delay: {}.", obstacle.short),
+        _ => delay_sentence(&summary),
+    }
 }
 
 fn delay_sentence(summary: &JointSummary) -> String {

@@ -85,8 +85,8 @@ impl Consequence<'_> {
         let sum: f64 = found.iter().map(|one| one.error_share).sum();
         let overlap = if sum > 1.0 { " (shares overlap and do not add up)" } else { "" };
         Some(format!(
-            "The part of the first error that comes back when one is left out and the rest is \
-             fitted again: {}{overlap}.",
+            "Share of each effect (what the error grows by without it, the rest fitted again, in parts \
+             of the initial misfit): {}{overlap}.",
             shares.join(", ")
         ))
     }
@@ -107,9 +107,8 @@ impl Consequence<'_> {
         let shares: Vec<String> = doubtful.iter().map(share).collect();
         (!shares.is_empty()).then(|| {
             format!(
-                "In the model, but not to be believed as a name: {}. Each takes less than half of the \
-                 squared error beyond the noise that is there without it, so that it may stand for an \
-                 effect that is not known.",
+                "Doubtful: {}. Each explains less than half of the squared error beyond the noise that \
+                 is there without it, and may stand for an effect outside the catalogue.",
                 shares.join(", ")
             )
         })

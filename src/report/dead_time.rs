@@ -67,8 +67,8 @@ fn finding(found: &DeadTime) -> String {
             seconds(bounds)
         ),
         Finding::LagOnly(Bounds { high_s, .. }) => format!(
-            "a lag of {lag:.3} s without dead time: {what} follows at once, or within {high_s:.3} s \
-             at {confidence}"
+            "no dead time (at most {high_s:.3} s at {confidence}), but {what} follows with a lag of \
+             {lag:.3} s"
         ),
         Finding::Unknown(Unknown::TooShort) => {
             "no dead time: the record is too short, or the input hardly moves".to_owned()
@@ -80,10 +80,9 @@ fn finding(found: &DeadTime) -> String {
             "no dead time: the input is a sine of {hz:.3} Hz alone, whose phase a lag explains as well as \
              a dead time does; drive the joint at several frequencies, or in steps"
         ),
-        Finding::Unknown(Unknown::TooLong(longest_s)) => format!(
-            "no dead time: it would be longer than the {longest_s:.3} s that are looked through; \
-             `--max-delay` looks further"
-        ),
+        Finding::Unknown(Unknown::TooLong(longest_s)) => {
+            format!("no dead time up to {longest_s:.3} s; search further with `--max-delay`")
+        }
     }
 }
 
@@ -93,8 +92,8 @@ fn windows(found: &DeadTime) -> Option<String> {
     let most = known.iter().map(|bounds| bounds.value_s).max_by(f64::total_cmp)?;
     let differ = match found.same_in_all {
         None => "",
-        Some(_) if found.varies() => ", more apart than by chance",
-        Some(_) => ", no more apart than by chance",
+        Some(_) if found.varies() => ", differing by more than chance",
+        Some(_) => ", not differing by more than chance",
     };
     let (count, all) = (known.len(), found.windows.len());
     Some(format!("in {count} of {all} windows {least:.3} to {most:.3} s{differ}"))

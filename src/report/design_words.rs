@@ -166,10 +166,9 @@ fn foreseen(joint: &DesignedJoint, prediction: &Prediction) -> String {
          standard deviations) included."
     );
     match (joint.rig.range, kept_until_s(joint, prediction)) {
-        (Some(_), Some(until)) => format!(
-            "{from} After {} the model cannot promise that it stays in its range.",
-            measure(until, Some("s"))
-        ),
+        (Some(_), Some(until)) => {
+            format!("{from} After {} the output may leave its range.", measure(until, Some("s")))
+        }
         _ => from,
     }
 }

@@ -35,7 +35,7 @@ fn lines_of(spec: &Spec, width: usize) -> Vec<String> {
         texts.push(format!("confused with: {}", spec.confused_with.join(", ")));
     }
     if let Some(coarser) = spec.refines {
-        texts.push(format!("a finer form of {coarser}: looked for where that was found"));
+        texts.push(format!("finer form of {coarser}; tried after that was found"));
     }
     let head = format!("{} ({})", spec.id, spec.stage.id());
     let below = texts.iter().flat_map(|text| below(text, width));
@@ -120,9 +120,7 @@ input_saturation (input)
     #[test]
     fn a_finer_form_says_of_what() {
         let text = sheet(&OilColumn, 200);
-        assert!(
-            text.contains("\n    a finer form of resonance: looked for where that was found\n")
-        );
+        assert!(text.contains("\n    finer form of resonance; tried after that was found\n"));
     }
 
     #[test]

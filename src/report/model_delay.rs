@@ -4,7 +4,7 @@ use super::EstimatedJoint;
 use super::summary::{DelayRange, JointSummary};
 use crate::delay::{Bounds, DeadTime, Finding, InputStep};
 use crate::effect::{InputChange, Stage};
-use crate::fit::{AssessedModel, Status};
+use crate::fit::{AssessedModel, Parameter, Status};
 use crate::model::Component;
 use crate::numerics::median;
 
@@ -38,7 +38,38 @@ pub(super) fn model_delay(of: &AssessedModel, measured: EstimatedJoint<'_>) -> O
     }
     let summary = JointSummary::of(measured);
     let range = summary.delay_s.filter(|_| summary.accepted >= FEWEST)?;
-    if laws.is_empty() { constant(of, range) } else { held_law(of, &laws, measured) }
+    if !laws.is_empty() {
+        return held_law(of, &laws, measured);
+    }
+    let delay = of.parameters.iter().find(|parameter| parameter.name == "delay")?;
+    outside(of, delay, range).or_else(|| apart(delay, measured))
+}
+
+/// Of a fitted delay among those that were measured, the kinds of steps whose typical delay is another
+/// by more than both are uncertain and than a sample: what the model has behind its delay, as play or
+/// friction, makes a step seem early or late to who looks at the output alone.
+fn apart(delay: &Parameter, measured: EstimatedJoint<'_>) -> Option<String> {
+    let leeway = BY_CHANCE * delay.std_error?;
+    let periods = measured.joint.trials.iter().map(|trial| trial.period().seconds());
+    let leeway = leeway + periods.fold(0.0, f64::max);
+    let kinds = measured.delay_table().kinds;
+    let other = kinds.iter().filter_map(|kind| {
+        let typical = kind.typical?;
+        let (low, high) = typical.interval_s?;
+        let is_other = delay.value + leeway < low || delay.value - leeway > high;
+        is_other.then(|| {
+            format!("{} {:.3} s (95 %: {low:.3} to {high:.3} s)", kind.transition, typical.median_s)
+        })
+    });
+    let other: Vec<String> = other.collect();
+    (!other.is_empty()).then(|| {
+        format!(
+            "The model has one delay, {:.3} s; measured at the steps alone: {}. Where the model \
+             explains the record, its delay is the better one.",
+            delay.value,
+            other.join(", ")
+        )
+    })
 }
 
 /// Of a law that was held: where it lies, and how near it comes to what was measured.
@@ -105,8 +136,8 @@ fn over_the_record(of: &AssessedModel, found: &DeadTime) -> Option<String> {
     }
 }
 
-fn constant(of: &AssessedModel, measured: DelayRange) -> Option<String> {
-    let delay = of.parameters.iter().find(|parameter| parameter.name == "delay")?;
+/// Of a constant delay that was held, or lies outside all those that were measured.
+fn outside(of: &AssessedModel, delay: &Parameter, measured: DelayRange) -> Option<String> {
     let (value, leeway) = (delay.value, BY_CHANCE * delay.std_error.unwrap_or(0.0));
     let DelayRange { min, median, max } = measured;
     let range = format!("{min:.3} to {max:.3} s, median {median:.3} s");

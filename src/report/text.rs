@@ -90,7 +90,8 @@ fn low_pass_text(settings: &Settings) -> String {
 pub(super) fn onset_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     let model = joint.onset_model()?;
     let response = onset_sentence(model);
-    let agree = Scatter::of(&joint.fine_delays()).filter(|scatter| !scatter.is_more_than_noise());
+    let agree = Scatter::of(&joint.fine_delays())
+        .filter(|scatter| !scatter.is_more_than_noise() && !joint.against_state().has_dependence());
     let agree = agree.map_or_else(String::new, |scatter| {
         format!("; its delays are constant within {} s", rounded(scatter.within_s))
     });
@@ -128,7 +129,7 @@ pub(crate) fn onset_sentence(model: &OnsetModel) -> String {
         _ => "the output goes to a level at a constant rate".to_owned(),
     };
     format!(
-        "behind the delay {response} (`{}`); residual {} times the sensor's noise; the input explains {} \
+        "after the delay {response} (`{}`); residual {} times the sensor's noise; the input explains {} \
          of the changes of motion",
         model.shape(),
         rounded(model.misfit()),

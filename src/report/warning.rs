@@ -15,6 +15,15 @@ pub struct Warning {
     pub code: &'static str,
     /// What it means, by how much, and what to do.
     pub text: String,
+    /// What it means, without what to do: the beginning of the text.
+    #[serde(skip)]
+    pub(crate) short: String,
+}
+
+impl Warning {
+    fn new(code: &'static str, short: String, rest: &str) -> Self {
+        Self { code, text: format!("{short}{rest}"), short }
+    }
 }
 
 impl EstimatedJoint<'_> {
@@ -24,55 +33,59 @@ impl EstimatedJoint<'_> {
         found.into_iter().flatten().collect()
     }
 
-    fn obstacle(&self) -> Option<Warning> {
+    /// Why no delay of the joint can be believed, where the record shows that.
+    pub(crate) fn obstacle(&self) -> Option<Warning> {
         let model = self.onset_model()?;
-        let rejected = if self.estimate.settings.accept_anyway {
-            "its delays are listed as asked for"
+        let accepted = if self.estimate.settings.accept_anyway {
+            "its delays are accepted because of `--accept-anyway`"
         } else {
-            "no delay is accepted; `--accept-anyway` lists them nevertheless"
+            "no delay is accepted (`--accept-anyway` overrides this)"
         };
-        let (code, text) = match model.obstacle()? {
-            Obstacle::Unrelated => (
+        Some(match model.obstacle()? {
+            Obstacle::Unrelated => Warning::new(
                 "output_unrelated_to_input",
                 format!(
-                    "the output does not follow its input: the steps of the input explain {} of the \
-                     changes of its motion. Are columns exchanged, or is the joint driven by something \
-                     else? {rejected}",
+                    "the output does not follow its input, whose steps explain {} of the changes in \
+                     its motion",
                     percent(model.follows_input_r2())
                 ),
-            ),
-            Obstacle::Leads(lead_s) => (
-                "output_leads_input",
-                format!(
-                    "the output leads its input by {} s (median): it reacts before the step, so that the \
-                     clocks of the two columns differ or the input is logged late. Shift one of them; \
-                     {rejected}",
-                    number(lead_s)
+                &format!(
+                    ". Check that both columns belong to this joint and that nothing else moves it; \
+                     {accepted}"
                 ),
             ),
-            Obstacle::BeyondHolds(delay_s) => (
+            Obstacle::Leads(lead_s) => Warning::new(
+                "output_leads_input",
+                format!("the output leads its input by {} s (median)", number(lead_s)),
+                &format!(
+                    ": it reacts before the step, so the clocks of the two columns differ, or the \
+                     input is logged late. Shift one of them; {accepted}"
+                ),
+            ),
+            Obstacle::BeyondHolds(delay_s) => Warning::new(
                 "delay_longer_than_holds",
                 format!(
-                    "the delay of {} s (median) is longer than most levels of the input are held, so that \
-                     each reaction falls into a later hold. Hold levels for longer than the delay; \
-                     {rejected}",
+                    "the delay of {} s (median) is longer than most holds of the input",
                     number(delay_s)
                 ),
+                &format!(
+                    ", so each reaction falls into a later hold. Hold levels for longer than the \
+                     delay; {accepted}"
+                ),
             ),
-        };
-        Some(Warning { code, text })
+        })
     }
 
     fn misfit(&self) -> Option<Warning> {
         let model = self.onset_model().filter(|model| model.is_misfit())?;
-        let text = format!(
-            "no response fits what follows the steps: the best one, `{}`, leaves {} times the sensor's \
-             noise. Delays may be off by more than their intervals say; `tauscope improve` looks for the \
-             effect that is missing",
+        let short = format!(
+            "no response shape fits: the best, `{}`, leaves {} times the sensor noise",
             model.shape(),
             number(model.misfit())
         );
-        Some(Warning { code: "shape_misfit", text })
+        let rest = ", so delays may be off by more than their intervals. `tauscope improve` looks for \
+                    the missing effect";
+        Some(Warning::new("shape_misfit", short, rest))
     }
 
     /// Whether the delays of accepted steps differ by more than their intervals explain.
@@ -80,15 +93,13 @@ impl EstimatedJoint<'_> {
         self.onset_model()?;
         let delays = self.fine_delays();
         let scatter = Scatter::of(&delays).filter(Scatter::is_more_than_noise)?;
-        let goes_with = depends_on(&self.against_state());
-        let text = format!(
-            "the delay varies from {} to {} s (10 to 90 % of {} steps), more than its intervals \
-             explain{goes_with}",
+        let short = format!(
+            "the delay varies from {} to {} s (10 to 90 % of {} steps), more than its intervals explain",
             number(scatter.low_s),
             number(scatter.high_s),
             delays.len()
         );
-        Some(Warning { code: "delay_varies", text })
+        Some(Warning::new("delay_varies", short, &depends_on(&self.against_state())))
     }
 
     /// The delays of accepted steps between samples, with their standard errors; seconds.
@@ -181,8 +192,8 @@ fn depends_on(found: &AgainstState) -> String {
         }
     }
     if names.is_empty() {
-        ", with nothing that was logged".to_owned()
+        "; it correlates with no logged quantity".to_owned()
     } else {
-        format!("; it goes with {}", names.join(" and "))
+        format!("; it correlates with {}", names.join(" and "))
     }
 }

@@ -10,7 +10,7 @@ use crate::diagnosis::{
 pub(crate) fn lack_of_fit(test: LackOfFit) -> String {
     let p_value = p_text(test.p_value);
     match test.shown_by {
-        None if test.edges.is_some() => "not shown but for the times of the steps".to_owned(),
+        None if test.edges.is_some() => "not shown beyond the step times".to_owned(),
         None if test.p_value >= SIGNIFICANCE => format!("not shown ({p_value})"),
         None if test.misfit_share < NEGLIGIBLE => {
             format!("negligible ({} % of the squared error)", rounded(100.0 * test.misfit_share))
@@ -52,9 +52,9 @@ fn input_sentence(correlation: &InputCorrelation) -> String {
     }
     let lag = number(acting.peak_lag_s.abs());
     let at = match acting.peak_lag_s {
-        lag_s if lag_s.abs() < correlation.lag_step_s / 2.0 => "as its steps act".to_owned(),
-        lag_s if lag_s > 0.0 => format!("{lag} s after its steps act"),
-        _ => format!("{lag} s before its steps act"),
+        lag_s if lag_s.abs() < correlation.lag_step_s / 2.0 => "at lag 0".to_owned(),
+        lag_s if lag_s > 0.0 => format!("at lag +{lag} s"),
+        _ => format!("at lag -{lag} s"),
     };
     let percent = number((1000.0 * acting.share_outside).round() / 10.0);
     format!("correlated with the input, most {at} ({p}, {percent} % of lags)")

@@ -53,7 +53,7 @@ pub(crate) fn fails_or_errs(comparison: &Comparison) -> &'static str {
     /// Percent of the motion that are most of it.
     const MOST: f64 = 50.0;
     let explains_most = comparison.judged().is_some_and(|error| error.fit_percent > MOST);
-    if explains_most { "errs most" } else { "fails" }
+    if explains_most { "is least accurate" } else { "fails" }
 }
 
 /// Where a model fails, a sentence for each condition, that with the most of the error first.

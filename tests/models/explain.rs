@@ -36,14 +36,9 @@ fn a_missing_dead_band_is_named_with_its_numbers_and_its_command_works() {
     assert!(ranked.len() > 1, "{ranked:?}");
 
     let words = boom["in_words"].as_str().unwrap();
-    for part in [
-        "out = max(in - 0.",
-        "lower = -0.",
-        " ± ",
-        " V",
-        "The simulated output is farthest off in ",
-        "stiction",
-    ] {
+    for part in
+        ["out = max(in - 0.", "lower = -0.", " ± ", " V", "The residual is largest in ", "stiction"]
+    {
         assert!(words.contains(part), "no `{part}` in: {words}");
     }
     assert_eq!(boom["commands"], json!(["tauscope add dead_band log.csv --model model.toml"]));
@@ -105,7 +100,7 @@ fn what_no_effect_explains_is_not_given_the_nearest_name() {
     assert_eq!(boom["commands"], json!([]));
     let words = boom["in_words"].as_str().unwrap();
     assert!(!words.contains("is missing"), "{words}");
-    for part in ["The simulated output is farthest off in ", "Effects that show only together"] {
+    for part in ["The residual is largest in ", "Effects that show only together"] {
         assert!(words.contains(part), "no `{part}` in: {words}");
     }
 }

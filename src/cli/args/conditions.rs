@@ -16,7 +16,7 @@ pub(crate) struct ConditionArgs {
     #[arg(long, help = confidence_help(), value_name = "X|none", value_parser = confidence, allow_negative_numbers = true)]
     confidence: Option<OrNone>,
 
-    /// How often the interval of a delay is to hold the true one
+    /// Confidence level of the interval of a delay
     #[arg(long, value_name = "X", default_value_t = 0.95, value_parser = probability, allow_negative_numbers = true)]
     interval: f64,
 

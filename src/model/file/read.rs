@@ -39,9 +39,9 @@ fn check_size(place: &Place, effects: &[EffectToml]) -> Result<(), ModelError> {
     let characters: usize = effects.iter().map(EffectToml::characters).sum();
     let problem = match (count > MOST_EFFECTS, characters > MOST_CHARACTERS) {
         (false, false) => return Ok(()),
-        (true, _) => format!("{count} effects; {MOST_EFFECTS} are the most"),
+        (true, _) => format!("{count} effects; at most {MOST_EFFECTS} are allowed"),
         (false, true) => {
-            format!("{characters} characters of expressions; {MOST_CHARACTERS} are the most")
+            format!("{characters} characters of expressions; at most {MOST_CHARACTERS} are allowed")
         }
     };
     Err(place.error(problem))

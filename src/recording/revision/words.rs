@@ -115,9 +115,11 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
     let unit = compared.joint.output_unit.as_deref();
     let components = compared.comparison.fit.model.components();
     let id = |component: &Component| component.effect().spec().id;
-    let contribution = |component: &Component| {
-        let found = &improved.finding.attribution?.found;
-        found.iter().find(|one| one.effect == id(component))
+    let known = improved.finding.attribution;
+    let contribution =
+        |component: &Component| known?.found.iter().find(|one| one.effect == id(component));
+    let is_doubtful = |component: &Component| {
+        known.is_some_and(|known| known.doubtful.iter().any(|one| one.effect == id(component)))
     };
     // What explains most comes first, behind what the model had before.
     let share = |component: &Component| {
@@ -142,6 +144,7 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
             Some(one) if are_several => {
                 write!(page, " {}", plain(&measure(one.error_without, unit)))?;
             }
+            None if is_doubtful(component) => write!(page, " (doubtful)")?,
             None if are_several => write!(page, " (from the start)")?,
             _ => {}
         }

@@ -9,6 +9,9 @@ use crate::report::consequence::times_as_large;
 use crate::report::finding::Finding;
 use crate::wording::{measure, p_text, percent, range_text, rounded};
 
+/// The level of the tests of other programs, most often.
+const USUAL: f64 = 0.05;
+
 impl Finding<'_> {
     pub(super) fn adequate_headline(&self) -> String {
         let is_shown = self.comparison().lack_of_fit.is_some_and(|test| !test.adequate);
@@ -44,25 +47,32 @@ impl Finding<'_> {
                 )
             }
             Some(test) if test.p_value >= SIGNIFICANCE => {
-                format!("No lack of fit is shown ({}).", p_text(test.p_value))
+                let p_value = p_text(test.p_value);
+                // What would pass for significant elsewhere is said to be below the level here.
+                let level = 100.0 * SIGNIFICANCE;
+                let level =
+                    if test.p_value < USUAL { format!(" at {level} %") } else { String::new() };
+                format!("No lack of fit is shown{level} ({p_value}).")
             }
             Some(test) => {
                 let share = rounded(100.0 * test.misfit_share);
                 if test.misfit_share < NEGLIGIBLE {
-                    return format!("What it lacks is {share} % of the squared error: negligible.");
+                    return format!(
+                        "The lack of fit is {share} % of the squared error: negligible."
+                    );
                 }
                 let p_value = p_text(test.p_value);
                 let rest = if test.adequate {
                     "which as a whole is close to the noise"
                 } else {
-                    "and no effect that was tried takes more of it than is of consequence"
+                    "and no tried effect explains a relevant part of it"
                 };
                 format!(
                     "A pattern is left in {share} % of the squared residual ({p_value}), {rest}."
                 )
             }
             None if self.is_exact() => {
-                "What is left is no more than rounding: there is nothing to test.".to_owned()
+                "The residual is only rounding error: there is nothing to test.".to_owned()
             }
             None => "There are too few samples to test it.".to_owned(),
         }
@@ -82,7 +92,7 @@ impl Finding<'_> {
         let is_worse = times > ABOVE_NOISE && validation > ABOVE_NOISE * self.noise()?;
         is_worse.then(|| {
             format!(
-                "The test covers the part that was fitted; on the other part, which says what to \
+                "The test covers the training part; on the validation part, which shows what to \
                  expect of new data, the error is {}.",
                 times_as_large(times)
             )
@@ -95,7 +105,7 @@ impl Finding<'_> {
         let output = self.joint().trials.iter().flat_map(Trial::output);
         let input = range_text(input.copied(), self.joint().input_unit.as_deref());
         let output = range_text(output.copied(), self.joint().output_unit.as_deref());
-        format!("This holds where the record has been: input {input}, output {output}.")
+        format!("Valid only in the range of the record: input {input}, output {output}.")
     }
 
     fn undetermined(&self) -> Option<String> {

@@ -77,7 +77,7 @@ impl Finding<'_> {
                 )
             }
             Some(_) => "no other effect is significant".to_owned(),
-            None => "no effect that was tried gains enough".to_owned(),
+            None => "no tried effect reduces the error enough".to_owned(),
         }
     }
 
@@ -87,7 +87,7 @@ impl Finding<'_> {
         let strongest = failure.and_then(|failure| FailsWhere::strongest(&failure.fails_where));
         match (strongest, self.verdict) {
             (Some(condition), _) => condition.sentence(&misfit_units(self.joint())),
-            (None, Verdict::Adequate) => "nowhere by more than noise".to_owned(),
+            (None, Verdict::Adequate) => "nowhere: no lack of fit is shown".to_owned(),
             (None, _) => {
                 "under no condition more than under others: see the worst segments".to_owned()
             }

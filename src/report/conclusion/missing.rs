@@ -18,8 +18,8 @@ impl Finding<'_> {
         let (joint, name) = (&self.joint().name, best.name());
         if best.error_reduction_percent < FALLS {
             return format!(
-                "{joint}: more than one effect is missing; {name}, the first of them, leaves the error \
-                 at {after} by itself"
+                "{joint}: several effects are missing; the first, {name}, alone leaves the error at \
+                 {after}"
             );
         }
         format!("{joint}: {name} is missing; with it the error falls from {before} to {after}")
@@ -47,7 +47,7 @@ impl Finding<'_> {
         let law = filled_in(component);
         let with = if parameters.is_empty() { "" } else { ", with " };
         let summary = if is_first_order {
-            "of an integrator it makes a first order, which settles where the input holds it".into()
+            "turns the integrator into a first-order lag, which settles at a constant input".into()
         } else {
             component.summary()
         };
@@ -67,8 +67,8 @@ impl Finding<'_> {
         let Some(noise) = self.noise() else { return format!("{falls}.") };
         if best.rmse() > ABOVE_NOISE * noise {
             let times = rounded(best.rmse() / noise);
-            let rest = "more is missing, to be sought with it in the model";
-            return format!("{falls}; that is still {times} times the noise, so {rest}.");
+            let next = "add it and run `tauscope explain` again";
+            return format!("{falls}; that is still {times} times the noise: {next}.");
         }
         format!("{falls}, down to the noise.")
     }
@@ -87,7 +87,7 @@ impl Finding<'_> {
         match self.next_to(best) {
             Some(next) => {
                 let (name, error) = (next.name(), self.output(next.rmse()));
-                format!("Of the others {name} leaves least: {error} ({}).", next.judgement.reason())
+                format!("The next best, {name}, leaves {error} ({}).", next.judgement.reason())
             }
             None => "No other effect was tried.".to_owned(),
         }

@@ -56,6 +56,7 @@ impl Finding<'_> {
             (Verdict::MissingEffect, None) => (self.open_headline(), self.fails()),
             (_, None) => (self.unexplained_headline(), self.unexplained()),
         };
+        let headline = self.doubted(headline);
         passages.extend(self.curves());
         let structure = first_order(self.joint(), self.consequence().fit);
         passages.extend(Passage::of(Topic::Structure, structure));
@@ -68,6 +69,20 @@ impl Finding<'_> {
         };
         let commands = best.iter().flat_map(|best| &best.effects).map(command).collect();
         Conclusion { headline, passages, commands }
+    }
+
+    /// The headline behind the reason for which its input may not be what moves the joint: a model of
+    /// other columns explains nothing.
+    fn doubted(&self, headline: String) -> String {
+        let delays = self.delays.map(|estimate| EstimatedJoint { joint: self.joint(), estimate });
+        match delays.and_then(|delays| delays.obstacle()) {
+            Some(obstacle) => {
+                let name = &self.joint().name;
+                let found = headline.strip_prefix(&format!("{name}: ")).unwrap_or(&headline);
+                format!("{name}: {}, so check the columns first; {found}", obstacle.short)
+            }
+            None => headline,
+        }
     }
 
     /// In which trials the effects act that do not act in all.

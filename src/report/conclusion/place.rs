@@ -66,7 +66,7 @@ impl Finding<'_> {
             format!("{trial}{} ({share}{of})", worst_segment_text(worst))
         };
         let times: Vec<String> = self.segments().take(3).enumerate().map(time).collect();
-        let look = format!("The simulated output is farthest off in {}.", times.join(", "));
+        let look = format!("The residual is largest in {}.", times.join(", "));
         Passage::of(Topic::WorstSegments, Some(look).filter(|_| !times.is_empty()))
     }
 

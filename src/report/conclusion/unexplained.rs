@@ -33,8 +33,8 @@ impl Finding<'_> {
 
     /// What finds effects that show only together, where one at a time was looked for.
     fn several_together(&self) -> Option<String> {
-        let next = "Effects that show only together are sought by `tauscope improve`, which adds one \
-                    after the other and takes back what another makes superfluous.";
+        let next = "For effects that are significant only together use `tauscope improve`, which adds them \
+                    one by one and removes those that become superfluous.";
         let is_one_at_a_time = self.before.is_none() && !self.ranking.is_empty();
         (is_one_at_a_time && !self.is_down_to_noise()).then(|| next.to_owned())
     }
@@ -99,8 +99,8 @@ impl Finding<'_> {
         Some(if explained >= ONE_OF_SEVERAL && likeliest.is_significant() {
             let share = percent(explained);
             format!(
-                "The likeliest effect, {name}, would explain {share} of the misfit by itself, and the \
-                 model with it still lacks something: it is likely one of several."
+                "The likeliest effect, {name}, alone would explain {share} of the misfit, and a lack of \
+                 fit would remain: several effects are probably missing."
             )
         } else {
             let with = self.output(with);
