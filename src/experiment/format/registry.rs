@@ -93,7 +93,25 @@ struct Foreign {
     remedy: &'static str,
 }
 
-const FOREIGN: [Foreign; 8] = [
+const FOREIGN: [Foreign; 11] = [
+    Foreign {
+        starts: |start| start.starts_with(b"RRF"),
+        what: "it is a recording of Rerun",
+        remedy: "open it with `rerun FILE`",
+    },
+    Foreign {
+        starts: |start| {
+            let start = start.trim_ascii_start().to_ascii_lowercase();
+            start.starts_with(b"<!doctype html") || start.starts_with(b"<html")
+        },
+        what: "it is a web page",
+        remedy: "open it in a browser",
+    },
+    Foreign {
+        starts: |start| start.trim_ascii_start().starts_with(b"schema = \"tauscope/model/"),
+        what: "it is a model",
+        remedy: "name it behind `--model`, and the log by itself: `tauscope compare LOG --model FILE`",
+    },
     Foreign {
         starts: |start| start.starts_with(b"SQLite format 3\0"),
         what: "it is an SQLite database, as rosbag2 writes",

@@ -428,5 +428,20 @@ pub(crate) fn other_formats() -> Vec<Messy> {
             b"TDSm and more".as_slice(),
             Expected::Refused(&["log.tdms", "LabVIEW", "npTDMS"]),
         ),
+        messy(
+            "boom.rrd",
+            b"RRF2 and more".as_slice(),
+            Expected::Refused(&["boom.rrd", "recording of Rerun", "rerun FILE"]),
+        ),
+        messy(
+            "boom.html",
+            b"<!DOCTYPE html><html>".as_slice(),
+            Expected::Refused(&["boom.html", "web page"]),
+        ),
+        messy(
+            "boom.toml",
+            b"\nschema = \"tauscope/model/1\"\n".as_slice(),
+            Expected::Refused(&["boom.toml", "it is a model", "--model"]),
+        ),
     ]
 }
