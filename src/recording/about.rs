@@ -9,8 +9,7 @@ use super::recorded::Recording;
 use super::revision::judged;
 use crate::report::{
     EstimatedJoint, JointSummary, LEVEL_HEADER, ReviewCount, SUMMARY_HEADER, change_in_words,
-    chosen_line, dead_time_sentences, doubtful_lines, kind_sentence, level_cells, settings_rows,
-    summary_cells,
+    chosen_line, dead_time_sentences, doubtful_lines, level_cells, settings_rows, summary_cells,
 };
 use crate::wording::{DOUBT_MEANS, counted, doubtful_sentence, measure};
 
@@ -40,7 +39,7 @@ fn written(
     }
     for (joint, summary) in recording.joints.iter().zip(&summaries) {
         let name = plain(&joint.joint.name);
-        let sentences = summary.headline.kinds().iter().map(kind_sentence);
+        let sentences = joint.kind_sentences(summary.headline.kinds()).into_iter();
         let sentences = sentences.chain(summary.reviewed.map(ReviewCount::sentence));
         for sentence in sentences.chain(dead_time_sentences(joint)) {
             writeln!(page, "- {name}: {sentence}")?;

@@ -1,6 +1,5 @@
 //! The delays of a joint in a sentence or two, wherever they are told.
 
-use super::delay_table::kind_sentence;
 use super::{DelayRange, EstimatedJoint, Headline, JointSummary, dead_time_sentences};
 use crate::delay::Condition;
 use crate::wording::capitalized;
@@ -19,11 +18,11 @@ pub(crate) fn delay_answer(estimated: EstimatedJoint<'_>) -> String {
     let summary = JointSummary::of(estimated);
     match estimated.obstacle() {
         Some(obstacle) if summary.accepted == 0 => format!("No delay: {}.", obstacle.short),
-        _ => delay_sentence(&summary),
+        _ => delay_sentence(&summary, &estimated.kind_sentences(summary.headline.kinds())),
     }
 }
 
-fn delay_sentence(summary: &JointSummary) -> String {
+fn delay_sentence(summary: &JointSummary, kinds: &[String]) -> String {
     let JointSummary { steps, accepted, rejected, delay_s, headline, .. } = summary;
     if *steps == 0 {
         return format!("No step: {}.", summary.without_steps);
@@ -35,7 +34,6 @@ fn delay_sentence(summary: &JointSummary) -> String {
         several => format!(" ({})", several.iter().map(counted).collect::<Vec<_>>().join(", ")),
     };
     let rest = steps - accepted;
-    let kinds: Vec<_> = headline.kinds().iter().map(kind_sentence).collect();
     let kinds = kinds.join("; ");
     match (headline, delay_s) {
         (_, None) => format!("No delay: all {steps} steps were rejected{why}."),

@@ -96,8 +96,19 @@ fn joint_text(joint: &EstimatedJoint<'_>) -> String {
     }
     let neutral = neutral_sentence(&found, joint.joint.input_unit.as_deref());
     let table = level_table_text(&found.rows);
-    let kinds: Vec<_> = found.kinds.iter().map(kind_sentence).collect();
+    let kinds = joint.kind_sentences(&found.kinds);
     format!("\n{name}: {neutral}\n{table}\n{}\n", kinds.join("\n"))
+}
+
+impl EstimatedJoint<'_> {
+    /// The typical delays of `kinds` in words; where no delay of the joint can be believed, why.
+    pub(crate) fn kind_sentences(&self, kinds: &[KindDelay]) -> Vec<String> {
+        let is_none_accepted = kinds.iter().all(|kind| kind.accepted == 0);
+        match self.obstacle().filter(|_| is_none_accepted && !kinds.is_empty()) {
+            Some(obstacle) => vec![format!("no typical delay: {}", obstacle.short)],
+            None => kinds.iter().map(kind_sentence).collect(),
+        }
+    }
 }
 
 /// Where the input is neutral.
@@ -115,7 +126,7 @@ pub(super) fn neutral_sentence(found: &DelayTable, unit: Option<&str>) -> String
 }
 
 /// The typical delay of a kind, or what prevents it and what helps.
-pub(crate) fn kind_sentence(kind: &KindDelay) -> String {
+fn kind_sentence(kind: &KindDelay) -> String {
     let KindDelay { transition, steps, accepted, .. } = kind;
     let Some(typical) = kind.typical else {
         let why = kind.rejected.map_or_else(String::new, |(condition, count)| {

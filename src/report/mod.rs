@@ -60,9 +60,7 @@ pub(crate) use consequence::MANY_TIMES_NOISE;
 pub(crate) use dead_time::{dead_time_sentences, input_note};
 pub use decisions::{DecisionRow, decision_rows};
 pub(crate) use decisions::{decision_columns, decision_table};
-pub(crate) use delay_table::{
-    LEVEL_HEADER, delay_levels_text, kind_sentence, level_cells, level_table,
-};
+pub(crate) use delay_table::{LEVEL_HEADER, delay_levels_text, level_cells, level_table};
 pub(crate) use delays::delay_table;
 pub use delays::write_delays;
 pub(crate) use design::{Basis, DesignedJoint, Discrimination, input_table, preview_table};

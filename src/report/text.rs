@@ -1,6 +1,5 @@
 //! Tables for the terminal.
 
-use super::delay_table::kind_sentence;
 use super::doubt::doubtful_text;
 use super::settings::{length, own_settings};
 use super::text_table::TextTable;
@@ -18,7 +17,7 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
     for joint in joints {
         let (name, summary) = (&joint.joint.name, JointSummary::of(*joint));
         table.row(summary_cells(name, &summary));
-        let sentences = summary.headline.kinds().iter().map(kind_sentence);
+        let sentences = joint.kind_sentences(summary.headline.kinds()).into_iter();
         kinds.extend(sentences.map(|sentence| format!("{name}: {sentence}\n")));
         kinds.extend(summary.reviewed.map(|count| format!("{name}: {}\n", count.sentence())));
     }

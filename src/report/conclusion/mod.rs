@@ -71,18 +71,19 @@ impl Finding<'_> {
         Conclusion { headline, passages, commands }
     }
 
-    /// The headline behind the reason for which its input may not be what moves the joint: a model of
-    /// other columns explains nothing.
+    /// Why the input of the log may not be what moves the joint: a model of other columns explains
+    /// nothing.
+    pub(crate) fn caution(&self) -> Option<String> {
+        let joint = EstimatedJoint { joint: self.joint(), estimate: self.delays? };
+        Some(format!("{}: check the columns first", joint.obstacle()?.short))
+    }
+
+    /// The headline behind that caution.
     fn doubted(&self, headline: String) -> String {
-        let delays = self.delays.map(|estimate| EstimatedJoint { joint: self.joint(), estimate });
-        match delays.and_then(|delays| delays.obstacle()) {
-            Some(obstacle) => {
-                let name = &self.joint().name;
-                let found = headline.strip_prefix(&format!("{name}: ")).unwrap_or(&headline);
-                format!("{name}: {}, so check the columns first; {found}", obstacle.short)
-            }
-            None => headline,
-        }
+        let Some(caution) = self.caution() else { return headline };
+        let name = &self.joint().name;
+        let found = headline.strip_prefix(&format!("{name}: ")).unwrap_or(&headline);
+        format!("{name}: {caution}; {found}")
     }
 
     /// In which trials the effects act that do not act in all.

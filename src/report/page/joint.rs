@@ -6,7 +6,7 @@ use super::{dead_time, delays, model, record, segment};
 use crate::delay::{AgainstState, Condition, DelayTable, MethodSpec};
 use crate::report::against::{AGAINST_HEADER, CORRECTED, against_rows, confounded_sentences};
 use crate::report::decisions::{DetailedRow, detailed_rows};
-use crate::report::delay_table::{kind_sentence, level_table_text, neutral_sentence};
+use crate::report::delay_table::{level_table_text, neutral_sentence};
 use crate::report::difference::difference_table;
 use crate::report::text::{onset_line, tracking_line};
 use crate::report::text_table::TextTable;
@@ -89,7 +89,7 @@ fn level_blocks(estimated: EstimatedJoint<'_>, file: &str, found: &DelayTable) -
     let mut blocks = vec![
         Block::part("Delay by kind of step"),
         Block::text(sentence(&neutral_sentence(found, unit))),
-        Block::List(found.kinds.iter().map(kind_sentence).collect()),
+        Block::List(estimated.kind_sentences(&found.kinds)),
     ];
     blocks.extend(figure.map(|figure| Block::Figures(vec![figure])));
     blocks.push(Block::Table(level_table_text(&found.rows)));

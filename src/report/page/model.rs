@@ -23,11 +23,7 @@ use crate::wording::{
 pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     let compared = &improved.finding.compared;
     let conclusion = improved.conclusion();
-    let stopped = if improved.interrupted { " (stopped before the end)" } else { "" };
-    let mut blocks = vec![
-        Block::part("Model"),
-        Block::Lead(format!("{}{stopped}", lead(improved, &conclusion.headline))),
-    ];
+    let mut blocks = vec![Block::part("Model"), Block::Lead(lead(improved, &conclusion.headline))];
     let passages = conclusion.passages.into_iter();
     blocks.extend(
         passages.map(|passage| Block::Passage {
@@ -53,11 +49,26 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
 
 /// What is found, or, where effects were added, what came of that.
 fn lead(improved: &ImprovedJoint<'_>, headline: &str) -> String {
-    if improved.came().is_empty() { format!("{headline}.") } else { sentence(improved) }
+    if improved.came().is_empty() {
+        format!("{headline}.{}", stopped(improved))
+    } else {
+        sentence(improved)
+    }
+}
+
+/// What is said of the model, behind what speaks against the log, and whether the search was ended.
+pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
+    let caution = improved.finding.caution();
+    let caution = caution.map_or_else(String::new, |said| format!("{}. ", capitalized(&said)));
+    format!("{caution}{}{}", found(improved), stopped(improved))
+}
+
+fn stopped(improved: &ImprovedJoint<'_>) -> &'static str {
+    if improved.interrupted { " The search was stopped before its end." } else { "" }
 }
 
 /// What is said of the model in one sentence.
-pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
+fn found(improved: &ImprovedJoint<'_>) -> String {
     let comparison = improved.finding.compared.comparison;
     let own = effect_ids(&comparison.fit.model);
     let model = ["integrator"].into_iter().chain(own).collect::<Vec<_>>().join(" + ");
