@@ -234,7 +234,7 @@ mod interrupted {
         let desk = Desk::with(vec![slow("boom"), slow("arm")]);
         let printed = AtWork::at(&desk, "log.csv -o page.html").interrupted();
         assert!(printed.contains("(stopped before the end)"), "{printed}");
-        assert!(desk.read("page.html").contains("(stopped before the end)"));
+        assert!(desk.read("page.html").contains("The search was stopped before its end"));
     }
 
     #[test]
