@@ -19,7 +19,7 @@ pub(crate) use conditions::{ConditionArgs, ids_with, low_pass, passband};
 pub(crate) use data::{DataArgs, MemoryArgs, ReadingArgs, read};
 pub(crate) use effects::{EffectArgs, find};
 pub(crate) use model_file::{
-    ModelFileArgs, fresh_name, name_of, note_conditions, note_missing, read_model,
+    ModelFileArgs, check_known, check_models, fresh_name, name_of, read_model,
 };
 pub(crate) use own_settings::OwnSettings;
 pub(crate) use protocol::{ProtocolArgs, add_arguments};

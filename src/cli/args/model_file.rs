@@ -57,6 +57,29 @@ impl ModelFileArgs {
         self.write.as_ref().or(self.model.as_ref()).map_or(Path::new(DEFAULT), PathBuf::as_path)
     }
 
+    /// Refuses to replace a file that has models of joints which the revised one will not have.
+    pub(crate) fn check_target(&self, read: &ModelFile, joints: &[Joint]) -> anyhow::Result<()> {
+        let target = self.target();
+        if !target.exists() {
+            return Ok(());
+        }
+        let name = target.display();
+        let there = read_model(target)
+            .with_context(|| format!("{name}: it is there already; name another file"))?;
+        let stays = |name: &&str| {
+            read.joint(name).is_some() || joints.iter().any(|joint| joint.name == *name)
+        };
+        let lost: Vec<&str> = there.names().filter(|name| !stays(name)).collect();
+        if lost.is_empty() {
+            return Ok(());
+        }
+        let lost = lost.join(", ");
+        bail!(
+            "{name}: it has models of {lost}, which would be lost; `--model {name}` adds to it, \
+             `--write FILE` starts another"
+        )
+    }
+
     /// Writes `revised` unless it is what was `read`.
     pub(crate) fn write(
         &self,
@@ -112,11 +135,17 @@ pub(crate) fn fresh_name() -> String {
     names.find(|name| !Path::new(name).exists()).unwrap_or_else(|| DEFAULT.to_owned())
 }
 
-/// Says which joints a file that has some does not have.
-pub(crate) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbosity) {
+/// Refuses a log in other units than the models of `file` were fitted in, and says which joints of it a
+/// file that has some does not have.
+pub(crate) fn check_models(
+    file: &ModelFile,
+    joints: &[Joint],
+    verbosity: Verbosity,
+) -> anyhow::Result<()> {
     if file.names().next().is_none() {
-        return;
+        return Ok(());
     }
+    check_known(file, joints, verbosity)?;
     for joint in joints.iter().filter(|joint| file.joint(&joint.name).is_none()) {
         let name = &joint.name;
         // A name of the file that the log does not have may be a slip of the pen.
@@ -126,11 +155,19 @@ pub(crate) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbos
         let missing = format!("joint `{name}`: not in the model file{near}; a plain integrator");
         verbosity.say("note", missing);
     }
-    note_conditions(file, joints, verbosity);
+    Ok(())
 }
 
-/// Says which effects do nothing as no trial is of their condition, or their signal was not measured.
-pub(crate) fn note_conditions(file: &ModelFile, joints: &[Joint], verbosity: Verbosity) {
+/// Refuses a log in other units than the models of `file` were fitted in, and says which effects do
+/// nothing as no trial is of their condition, or their signal was not measured.
+pub(crate) fn check_known(
+    file: &ModelFile,
+    joints: &[Joint],
+    verbosity: Verbosity,
+) -> anyhow::Result<()> {
+    for joint in joints {
+        file.check_units(joint)?;
+    }
     for joint in joints {
         let name = &joint.name;
         let model = file.joint(name).into_iter();
@@ -149,6 +186,7 @@ pub(crate) fn note_conditions(file: &ModelFile, joints: &[Joint], verbosity: Ver
             }
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]

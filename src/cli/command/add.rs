@@ -9,7 +9,7 @@ use crate::study::{Mode, add_to_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    DataArgs, ModelFileArgs, ProtocolArgs, ResultArgs, find, name_of, note_missing,
+    DataArgs, ModelFileArgs, ProtocolArgs, ResultArgs, check_models, find, name_of,
 };
 use crate::cli::exit::Completion;
 use crate::cli::failure::outcomes;
@@ -45,13 +45,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let (data, output) = (&args.data, &args.output);
     let session = Session::of_models("add", data, output, Some(target), args.model.kept())?;
     let study = Study::of(session, &output.delay_settings())?;
+    check_models(&file, study.joints(), study.verbosity())?;
+    args.model.check_target(&file, study.joints())?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
     let added = study.work("fitting", |bar, others| {
         let watched = protocol.watched(bar).beside(others);
         add_to_joints(study.joints(), &study.estimates, starts, watched, effect, &Threads)
     })?;
-    note_missing(&file, study.joints(), study.verbosity());
     let name = name_of(Some(target));
     let (model, effect) = (name.as_str(), effect.spec().id);
     let (joints, failures) = outcomes(study.experiment(), &added, |_, joint, addition| {

@@ -11,7 +11,7 @@ use crate::report::{ComparedJoint, compare_json, compare_text};
 use crate::study::{Mode, compare_joints};
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs, note_conditions, read_model};
+use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs, check_known, read_model};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures};
 use crate::cli::run::{Session, Study};
@@ -58,6 +58,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let inputs = [args.model.as_slice(), &args.against].concat();
     let session = Session::of_models("compare", &args.data, &args.output, None, inputs)?;
     let study = Study::of(session, &args.output.delay_settings())?;
+    for file in models.iter().filter_map(|named| named.file.as_ref()) {
+        check_known(file, study.joints(), study.verbosity())?;
+    }
     let results = study.work("comparing", |bar, others| {
         let one = |named: &Named| {
             let starts = |joint: &Joint| named.starts(joint);
@@ -66,9 +69,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         };
         models.iter().map(one).collect::<Vec<_>>()
     })?;
-    for file in models.iter().filter_map(|named| named.file.as_ref()) {
-        note_conditions(file, study.joints(), study.verbosity());
-    }
     let mut failures = read_failures(study.experiment());
     let mut compared = Vec::new();
     for (named, results) in models.iter().zip(&results) {

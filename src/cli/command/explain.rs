@@ -11,8 +11,8 @@ use crate::study::{Mode, OfJoints, compare_joints, explain_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    DataArgs, EffectArgs, ProtocolArgs, ResultArgs, add_arguments, fresh_name, name_of,
-    note_missing, read_model,
+    DataArgs, EffectArgs, ProtocolArgs, ResultArgs, add_arguments, check_models, fresh_name,
+    name_of, read_model,
 };
 use crate::cli::exit::Completion;
 use crate::cli::failure::outcomes;
@@ -51,6 +51,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let session = Session::of_models("explain", data, output, None, inputs)?;
     let study = Study::of(session, &output.delay_settings())?;
     let joints = study.joints();
+    check_models(&file, joints, study.verbosity())?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
     let (explained, bests) = study.work("explaining", |bar, others| {
@@ -60,7 +61,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         let bests = output.is_recorded().then(|| args.bests(&study, others, &explained));
         (explained, bests.unwrap_or_default())
     })?;
-    note_missing(&file, joints, study.verbosity());
     let arguments = args.add_arguments(joints);
     let name = name_of(args.model.as_deref());
     let estimates = &study.estimates;

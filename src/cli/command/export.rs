@@ -132,7 +132,11 @@ fn exported(args: &Args, model: &ModelFile, joint: &str) -> anyhow::Result<Expor
     let units = Units { input, output };
     let place = || format!("{}: joint `{joint}`", args.model.display());
     let of = in_trial(of, args.trial.as_deref()).with_context(place)?;
-    Export::new(joint, &of, units, &[origin]).with_context(place)
+    let caution = "it left an error that no effect accounts for when it was fitted: its outputs may be \
+                   far off";
+    let caution = model.is_unexplained(joint).then(|| caution.to_owned());
+    let origin: Vec<String> = std::iter::once(origin).chain(caution).collect();
+    Export::new(joint, &of, units, &origin).with_context(place)
 }
 
 /// `model` in a trial of this label; as it is where it is the same in all.

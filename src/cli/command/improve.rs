@@ -11,8 +11,8 @@ use crate::study::{Mode, improve_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, add_arguments, name_of,
-    note_missing,
+    DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, add_arguments, check_models,
+    name_of,
 };
 use crate::cli::console::{Interrupt, STOPPING, message};
 use crate::cli::each_log::{Each, FolderArgs};
@@ -84,6 +84,8 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     session.stream = session.stream.expecting_revisions()?;
     let study = Study::of(session, &output.delay_settings())?;
     let joints = study.joints();
+    check_models(&file, joints, study.verbosity())?;
+    args.model.check_target(&file, joints)?;
     // What follows the effect in the command that adds one more, for each joint.
     let model = target.display().to_string();
     let arguments = add_arguments(data, &args.protocol, &model, joints);
@@ -102,7 +104,6 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
         let watched = protocol.watched(bar).beside(others);
         improve_joints(joints, estimates, starts, watched, &options, done, &Threads)
     })?;
-    note_missing(&file, joints, study.verbosity());
     let improved = |index, joint, found| progress.improved(start, index, joint, found);
     let (improved, failures) = outcomes(study.experiment(), &results, improved)?;
     let improved: Vec<_> = improved.into_iter().flatten().collect();

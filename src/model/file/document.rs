@@ -161,6 +161,13 @@ impl ModelFile {
         Ok(())
     }
 
+    /// Whether an error was left that no effect accounts for when the model of `joint` was fitted: what
+    /// it predicts may be far off.
+    pub fn is_unexplained(&self, joint: &str) -> bool {
+        let verdict = self.fitted(joint).and_then(|fitted| fitted.verdict.as_deref());
+        verdict == Some("unexplained")
+    }
+
     /// Names of the joints, in order.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.joints.keys().map(String::as_str)

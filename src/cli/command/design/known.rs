@@ -92,6 +92,19 @@ impl Known {
         self.logged(name).map_or(0.0, |logged| logged.rest)
     }
 
+    /// What is to be said of models that are given and did not explain the log they were fitted to.
+    pub(crate) fn cautions(&self) -> Vec<String> {
+        let names = self.names.iter().filter(|name| self.file.is_unexplained(name));
+        let caution = |name: &String| {
+            format!(
+                "joint `{name}`: its model left an error that no effect accounts for when it was \
+                 fitted (verdict `unexplained`): the output may leave the range that is predicted; \
+                 play the input at a small part of its size first"
+            )
+        };
+        names.map(caution).collect()
+    }
+
     /// The model of `name` in the file.
     pub(crate) fn model(&self, name: &str) -> Option<&JointModel> {
         self.file.joint(name)

@@ -49,6 +49,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         for note in known.experiment.iter().flat_map(|experiment| &experiment.notes) {
             args.run.verbosity().say("note", note);
         }
+        warn(&known.cautions());
         let (joints, failures) = designed(args, &known)?;
         anyhow::Ok((known, joints, failures))
     })??;

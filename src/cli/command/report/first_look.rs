@@ -60,10 +60,19 @@ fn next_steps(data: &DataArgs, target: Option<&Target>) -> Vec<(String, &'static
             );
         }
     }
-    steps.push((
-        format!("tauscope improve {typed} --write model.toml"),
-        "the model as a file, to be used and changed",
-    ));
+    match target.and_then(|target| target.model.as_ref()) {
+        Some(path) => {
+            let model = quoted(&[path.display().to_string()]);
+            steps.push((
+                format!("tauscope compare {typed} --model {model}"),
+                "where the model fails, in numbers",
+            ));
+        }
+        None => steps.push((
+            format!("tauscope improve {typed} --write model.toml"),
+            "the model as a file, to be used and changed",
+        )),
+    }
     steps.push((
         format!("tauscope estimate {typed} --decisions decisions.csv"),
         "every decision as a table",

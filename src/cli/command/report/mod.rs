@@ -21,7 +21,7 @@ pub(crate) use args::Args;
 use args::ModelArgs;
 use target::{Target, file_name};
 
-use crate::cli::args::{add_arguments, name_of, note_missing, read_model};
+use crate::cli::args::{add_arguments, check_models, name_of, read_model};
 use crate::cli::console::{Bar, Interrupt, STOPPING, Verbosity, message};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, said};
@@ -59,6 +59,7 @@ pub(crate) fn first_look(args: &mut Args) -> anyhow::Result<Completion> {
         }
     }
     let target = Target::of(&args.output)?;
+    let target = target.map(|target| if args.model.improve { target.with_model() } else { target });
     report(args, target.as_ref(), Shown::Everything)
 }
 
@@ -93,10 +94,8 @@ fn report(args: &Args, target: Option<&Target>, shown: Shown) -> anyhow::Result<
     if shown == Shown::Everything {
         first_look::show_delays(args, &study)?;
     }
+    check_models(&file, study.joints(), study.verbosity())?;
     let models = args.model.improved(&file, &study, &options)?;
-    if models.is_some() {
-        note_missing(&file, study.joints(), study.verbosity());
-    }
     Reported { args, file: &file, study: &study, shown }.report(models.as_ref(), target)
 }
 
@@ -246,6 +245,11 @@ impl Reported<'_> {
         if let Some(target) = target {
             write_files(&report, target, study.verbosity())?;
         }
+        if let Some((path, file)) =
+            target.and_then(|target| target.model.as_ref()).zip(revised.as_ref())
+        {
+            write_model(path, file, study.verbosity())?;
+        }
         let path = target.map(|target| target.path.display().to_string());
         let recording = recording_path.map(|path| path.display().to_string());
         let json = || report_json(&report, path.as_deref(), recording.as_deref());
@@ -290,6 +294,18 @@ impl Reported<'_> {
         }
         Ok(file)
     }
+}
+
+/// Writes the model, unless there is a file of its name, which may have been edited.
+fn write_model(path: &Path, file: &ModelFile, verbosity: Verbosity) -> anyhow::Result<()> {
+    if path.exists() {
+        let name = path.display();
+        verbosity.say("note", format!("{name}: it is there already and is left as it is"));
+        return Ok(());
+    }
+    write_bytes(path, file.text())?;
+    verbosity.say("model", path.display().to_string());
+    Ok(())
 }
 
 /// Writes the page, and the one to review the decisions on.

@@ -17,6 +17,8 @@ pub(super) struct Target {
     pub(super) recording: Option<PathBuf>,
     /// The page to review the decisions on.
     pub(super) review: Option<PathBuf>,
+    /// The model that was found.
+    pub(super) model: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -44,7 +46,12 @@ impl Target {
         let has_recording = has_recordings && !args.no_recording;
         let recording = has_recording.then(|| path.with_extension("rrd"));
         let review = args.interactive.then(|| beside(path, "_review.html"));
-        Ok(Some(Self { path: path.to_owned(), kind, recording, review }))
+        Ok(Some(Self { path: path.to_owned(), kind, recording, review, model: None }))
+    }
+
+    /// With the model beside the page.
+    pub(super) fn with_model(self) -> Self {
+        Self { model: Some(self.path.with_extension("toml")), ..self }
     }
 
     /// Refuses what cannot be written.
