@@ -21,7 +21,6 @@ use sha2::{Digest as _, Sha256};
 
 use super::chunk::{Chunks, Ids, Index, chunk_message, store_message};
 use super::error::RecordError;
-
 use super::paths::ABOUT;
 
 /// Namespace of the blueprint's rows; it is a store of its own.
