@@ -203,8 +203,10 @@ fn source_of(log: &HandedLog) -> Source {
         match &column.values {
             HandedValues::Numbers(numbers) => hash.take(numbers),
             HandedValues::Texts(texts) => {
-                texts.iter().for_each(|text| hash.hasher.update(text.as_bytes()));
-                hash.bytes += texts.iter().map(|text| text.len() as u64).sum::<u64>();
+                for text in texts {
+                    hash.hasher.update(text.as_bytes());
+                    hash.bytes += text.len() as u64;
+                }
             }
         }
     }

@@ -211,8 +211,8 @@ impl Layout {
     ) -> Result<(), ReadError> {
         let mut names: Vec<_> = joints.iter().map(|joint| &joint.name).collect();
         names.sort();
-        if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-            let text = format!("two joints are named `{}`; give each its own name", pair[0]);
+        if let Some([name, _]) = names.array_windows().find(|[one, other]| one == other) {
+            let text = format!("two joints are named `{name}`; give each its own name");
             return Err(ReadError::new(ReadErrorKind::Joints, text));
         }
         for joint in joints {
@@ -326,15 +326,12 @@ fn find_time(
         (Some(period), None) => return Ok(TimeSource::Rows(period)),
         (None, _) => {}
     }
-    match find_time_column(head) {
-        Some(column) => times(head, column, None),
-        None => {
-            let names = head.names();
-            let text = format!("no time column (`time_s`, `t_s`, `time` or `t`); found {names}");
-            let kind = ReadErrorKind::NoTime(index_column(head));
-            Err(ReadError::new(kind, text).in_row(head.header_row))
-        }
+    if let Some(column) = find_time_column(head) {
+        return times(head, column, None);
     }
+    let text = format!("no time column (`time_s`, `t_s`, `time` or `t`); found {}", head.names());
+    let kind = ReadErrorKind::NoTime(index_column(head));
+    Err(ReadError::new(kind, text).in_row(head.header_row))
 }
 
 /// The name of the first column, where it is that of an index which has none: pandas writes nothing or

@@ -69,7 +69,7 @@ impl Log<'_> {
             let labels = part_labels(&rows.label, pieces.len(), &self.trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
                 let filled = if slow_s.is_some() { piece.filled.clone() } else { Vec::new() };
-                let trial = self.trial(layout, label, grid, piece)?;
+                let trial = trial(layout, label, grid, piece)?;
                 trials.push(trial.counted_from(origin_s).with_interpolated(filled));
             }
         }
@@ -118,24 +118,6 @@ impl Log<'_> {
              gap is not seen, and what is accepted behind it then is none"
         ));
         Some((joint, notes))
-    }
-
-    fn trial(
-        &self,
-        layout: &JointLayout,
-        label: String,
-        grid: &Grid,
-        piece: Piece,
-    ) -> Result<Trial, ReadError> {
-        let Signals { input, output, covariates } = piece.signals;
-        let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
-            .and_then(|trial| trial.with_covariates(covariates));
-        trial.map_err(|source| {
-            ReadError::new(
-                ReadErrorKind::Trial(Box::new(source)),
-                format!("joint `{}`", layout.name),
-            )
-        })
     }
 
     /// A line on a trial that was split in `pieces` at gaps, the longest of which it names.
@@ -230,6 +212,21 @@ impl Log<'_> {
             covariates: layout.covariates.iter().map(|c| cut(c.column)).collect(),
         }
     }
+}
+
+fn trial(
+    layout: &JointLayout,
+    label: String,
+    grid: &Grid,
+    piece: Piece,
+) -> Result<Trial, ReadError> {
+    let Signals { input, output, covariates } = piece.signals;
+    let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
+        .and_then(|trial| trial.with_covariates(covariates));
+    trial.map_err(|source| {
+        let kind = ReadErrorKind::Trial(Box::new(source));
+        ReadError::new(kind, format!("joint `{}`", layout.name))
+    })
 }
 
 /// The first few of notes of one kind.
