@@ -5,8 +5,7 @@ mod beside;
 mod choice;
 mod conditions;
 mod data;
-mod effects;
-mod model_file;
+mod models;
 pub(crate) mod number;
 mod own_settings;
 mod protocol;
@@ -17,9 +16,8 @@ pub(crate) use beside::{AgainstArgs, ReviewArgs};
 pub(crate) use choice::{Choices, one_of};
 pub(crate) use conditions::{ConditionArgs, ids_with, low_pass, passband};
 pub(crate) use data::{DataArgs, MemoryArgs, ReadingArgs, read};
-pub(crate) use effects::{EffectArgs, find};
-pub(crate) use model_file::{
-    ModelFileArgs, check_known, check_models, fresh_name, name_of, read_model,
+pub(crate) use models::{
+    EffectArgs, ModelFileArgs, check_known, check_models, find, fresh_name, name_of, read_model,
 };
 pub(crate) use own_settings::OwnSettings;
 pub(crate) use protocol::{ProtocolArgs, add_arguments};

@@ -3,7 +3,6 @@
 mod against;
 mod estimates;
 mod revisions;
-mod sensor;
 mod session;
 mod study;
 

@@ -4,9 +4,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::estimates::{Estimates, estimated};
+use super::estimates::{Estimates, estimated, spikes_of};
 use super::revisions::{models, revision_names};
-use super::sensor::spikes_of;
 use super::session::Session;
 use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 
-use super::values::{self, BandChoice, Levels};
 use crate::cli::args::number::at_least_one;
 use crate::cli::args::{ReadingArgs, RunArgs};
 use crate::experiment::format_names;
+use crate::numerics::to_decimals;
 
 /// Design the next experiment: an input to play
 ///
@@ -29,28 +29,28 @@ pub(crate) struct Args {
 
     /// How far the numbers of a model may be off that no log confirms, in parts
     #[arg(
-        long, value_name = "SHARE", value_parser = values::share, default_value_t = 0.1,
+        long, value_name = "SHARE", value_parser = share, default_value_t = 0.1,
         allow_negative_numbers = true
     )]
     pub(super) uncertainty: f64,
 
     /// The levels: a list, or a range with its step, as in -2,-1,0,1,2 or -2..2:0.5
     #[arg(
-        long, value_name = "LIST", value_parser = values::levels, allow_hyphen_values = true
+        long, value_name = "LIST", value_parser = levels, allow_hyphen_values = true
     )]
     pub(super) levels: Option<Levels>,
 
     /// Largest magnitude of the input, or of its difference to where the joint rests, where levels
     /// are not given [default: that of the logs, else what suits the model, else 2]
     #[arg(
-        long, value_name = "X", value_parser = values::above_zero, allow_negative_numbers = true
+        long, value_name = "X", value_parser = above_zero, allow_negative_numbers = true
     )]
     pub(super) largest: Option<f64>,
 
     /// Shortest and longest hold in seconds [default: longer than the model takes to respond,
     /// else 1,2.5]
     #[arg(
-        long, value_name = "MIN,MAX", value_parser = values::ascending,
+        long, value_name = "MIN,MAX", value_parser = ascending,
         allow_hyphen_values = true
     )]
     pub(super) hold: Option<(f64, f64)>,
@@ -58,7 +58,7 @@ pub(crate) struct Args {
     /// Length in seconds; with `--separate` the longest that is tried [default: 120, or less where
     /// the range cannot be kept as long; with `--separate` 60]
     #[arg(
-        long, value_name = "SECONDS", value_parser = values::above_zero,
+        long, value_name = "SECONDS", value_parser = above_zero,
         allow_negative_numbers = true
     )]
     pub(super) duration: Option<f64>,
@@ -73,7 +73,7 @@ pub(crate) struct Args {
 
     /// Samples per second [default: as the logs, but no more than 100 without `--separate`]
     #[arg(
-        long, value_name = "HZ", value_parser = values::above_zero,
+        long, value_name = "HZ", value_parser = above_zero,
         allow_negative_numbers = true
     )]
     pub(super) rate: Option<f64>,
@@ -86,21 +86,21 @@ pub(crate) struct Args {
     /// as much as predictions of the joint were off on parts of the log, or refused [default with
     /// `--separate` and a log: where the log has been]
     #[arg(
-        long, value_name = "LO,HI", value_parser = values::ascending,
+        long, value_name = "LO,HI", value_parser = ascending,
         allow_hyphen_values = true
     )]
     pub(super) output_range: Option<(f64, f64)>,
 
     /// The output at which it starts [default: the middle of the range; without one, of the log, or 0]
     #[arg(
-        long, value_name = "X", value_parser = values::number, allow_negative_numbers = true
+        long, value_name = "X", value_parser = number, allow_negative_numbers = true
     )]
     pub(super) start: Option<f64>,
 
     /// `cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a
     /// band in which none is to lie
     #[arg(
-        long, value_name = "cross|avoid|LO,HI", value_parser = values::band,
+        long, value_name = "cross|avoid|LO,HI", value_parser = band,
         allow_hyphen_values = true
     )]
     pub(super) dead_band: Option<BandChoice>,
@@ -114,7 +114,7 @@ pub(crate) struct Args {
 
     /// The probability of success that is wanted
     #[arg(
-        long, value_name = "SHARE", value_parser = values::power, default_value_t = 0.95,
+        long, value_name = "SHARE", value_parser = power, default_value_t = 0.95,
         allow_negative_numbers = true
     )]
     pub(super) power: f64,
@@ -122,13 +122,13 @@ pub(crate) struct Args {
     /// Standard deviation of the measurement noise [default: that of the log, else the error
     /// in the model file's history]
     #[arg(
-        long, value_name = "X", value_parser = values::above_zero, allow_negative_numbers = true
+        long, value_name = "X", value_parser = above_zero, allow_negative_numbers = true
     )]
     pub(super) noise: Option<f64>,
 
     /// How often the experiment is rehearsed with either effect, in simulation
     #[arg(
-        long, value_name = "N", value_parser = values::rehearsals, default_value_t = 40
+        long, value_name = "N", value_parser = rehearsals, default_value_t = 40
     )]
     pub(super) rehearsals: usize,
 
@@ -150,4 +150,133 @@ fn data_help() -> String {
         "Logs of earlier experiments ({}), or folders of logs: what they show of the joints is used",
         format_names()
     )
+}
+
+/// Levels of an input, each once, ascending.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Levels(pub(crate) Vec<f64>);
+
+/// What becomes of the dead band, and which.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum BandChoice {
+    /// A level lies in that of the model.
+    Cross,
+    /// None does.
+    Avoid,
+    /// None lies in this one.
+    Given(f64, f64),
+}
+
+pub(crate) fn levels(text: &str) -> Result<Levels, String> {
+    /// More than anybody plays.
+    const MOST: usize = 100;
+    let expected = || "expected two levels or more, as in -2,-1,0,1,2 or -2..2:0.5".to_owned();
+    let mut levels = match text.split_once("..") {
+        Some((first, rest)) => range(first, rest, MOST).ok_or_else(expected)?,
+        None => text.split(',').map(finite).collect::<Option<Vec<f64>>>().ok_or_else(expected)?,
+    };
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    if levels.len() < 2 {
+        return Err(expected());
+    }
+    if levels.len() > MOST {
+        return Err(format!("more than {MOST} levels"));
+    }
+    Ok(Levels(levels))
+}
+
+/// `first`, and on in steps, as long as `most` and one more.
+fn range(first: &str, rest: &str, most: usize) -> Option<Vec<f64>> {
+    let (last, step) = rest.split_once(':')?;
+    let (first, last, step) = (finite(first)?, finite(last)?, finite(step)?);
+    if step <= 0.0 || last < first {
+        return None;
+    }
+    // The last level belongs to the range, however its multiple is rounded.
+    let end = last + 1e-9 * step;
+    let level = |k: usize| {
+        let level = first + k as f64 * step;
+        // Zero is meant where rounding leaves a little.
+        if level.abs() < 1e-9 * step { 0.0 } else { to_decimals(level, 9) }
+    };
+    Some((0..=most).map(level).take_while(|level| *level <= end).collect())
+}
+
+/// A number that inputs, outputs and seconds can have: squares of larger ones leave double precision,
+/// and so do the inverses of smaller ones.
+fn finite(text: &str) -> Option<f64> {
+    const RANGE: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
+    let number = text.trim().parse().ok();
+    number.filter(|number: &f64| *number == 0.0 || RANGE.contains(&number.abs()))
+}
+
+pub(crate) fn number(text: &str) -> Result<f64, String> {
+    finite(text).ok_or_else(|| "expected a number, as in 12.5".to_owned())
+}
+
+pub(crate) fn ascending(text: &str) -> Result<(f64, f64), String> {
+    pair(text).ok_or_else(|| "expected two numbers, the lower one first, as in 0.9,2".to_owned())
+}
+
+fn pair(text: &str) -> Option<(f64, f64)> {
+    let (low, high) = text.split_once(',')?;
+    let (low, high) = (finite(low)?, finite(high)?);
+    (low <= high).then_some((low, high))
+}
+
+pub(crate) fn band(text: &str) -> Result<BandChoice, String> {
+    match text {
+        "cross" => Ok(BandChoice::Cross),
+        "avoid" => Ok(BandChoice::Avoid),
+        _ => {
+            let given = pair(text).map(|(low, high)| BandChoice::Given(low, high));
+            given.ok_or_else(|| "expected cross, avoid, or two ends, as in -0.4,0.4".to_owned())
+        }
+    }
+}
+
+pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
+    finite(text).filter(|x| *x > 0.0).ok_or_else(|| "expected a number above zero".to_owned())
+}
+
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    let share = finite(text).filter(|share| (0.0..1.0).contains(share));
+    share.ok_or_else(|| "expected a share from 0 and below 1".to_owned())
+}
+
+pub(crate) fn power(text: &str) -> Result<f64, String> {
+    let power = finite(text).filter(|power| *power > 0.0 && *power < 1.0);
+    power.ok_or_else(|| "expected a probability above 0 and below 1".to_owned())
+}
+
+pub(crate) fn rehearsals(text: &str) -> Result<usize, String> {
+    const MOST: usize = 10_000;
+    let number = text.parse().ok().filter(|number| *number <= MOST);
+    number.ok_or_else(|| format!("expected a whole number from 0 to {MOST}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_are_a_list_or_a_range() {
+        assert_eq!(levels("2, -1,0,-1"), Ok(Levels(vec![-1.0, 0.0, 2.0])));
+        assert_eq!(levels("-1..1:0.5"), Ok(Levels(vec![-1.0, -0.5, 0.0, 0.5, 1.0])));
+        assert_eq!(levels("-0.3..0.3:0.1").map(|levels| levels.0.len()), Ok(7));
+        for wrong in ["", "1", "1,1", "1,x", "1..2", "2..1:0.5", "0..1:0", "0..1:nan"] {
+            assert!(levels(wrong).is_err_and(|why| why.starts_with("expected")), "{wrong}");
+        }
+        assert!(levels("0..1000:0.1").is_err_and(|why| why.contains("more than 100")));
+    }
+
+    #[test]
+    fn pairs_ascend() {
+        assert_eq!(ascending("0.9,2"), Ok((0.9, 2.0)));
+        assert!(ascending("2,0.9").is_err() && ascending("2").is_err());
+        assert_eq!(band("-0.4,0.4"), Ok(BandChoice::Given(-0.4, 0.4)));
+        assert_eq!(band("avoid"), Ok(BandChoice::Avoid));
+        assert!(band("across").is_err_and(|why| why.contains("avoid")));
+    }
 }

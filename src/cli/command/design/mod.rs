@@ -4,7 +4,6 @@ mod args;
 mod known;
 mod random;
 mod separate;
-mod values;
 
 use std::path::{Path, PathBuf};
 

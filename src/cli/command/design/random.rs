@@ -12,9 +12,8 @@ use crate::report::{
 use crate::study::{OfJoints, know_joints};
 use anyhow::{anyhow, bail};
 
-use super::args::Args;
+use super::args::{Args, BandChoice, Levels};
 use super::known::{Known, PROTOCOL};
-use super::values::{BandChoice, Levels};
 use crate::cli::console::Bar;
 use crate::cli::failure::said;
 
