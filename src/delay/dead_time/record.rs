@@ -160,12 +160,13 @@ impl Design {
         let mut columns: Vec<Rows> =
             vec![changes.iter().map(|rows| vec![1.0; rows.len()]).collect()];
         let lagged: Vec<_> = trials.iter().map(|trial| trial.lagged(lags)).collect();
-        for index in 0..lagged.first().map_or(0, Vec::len) {
+        let count = lagged.first().map_or(0, Vec::len);
+        columns.extend((0..count).map(|index| -> Rows {
             let column = |(n, rows): (usize, &Range<usize>)| {
                 rows.clone().map(|k| driven(&lagged[n][index], numerators, k)).collect()
             };
-            columns.push(parts().map(column).collect());
-        }
+            parts().map(column).collect()
+        }));
         Self { columns, changes }
     }
 
