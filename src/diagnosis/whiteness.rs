@@ -51,7 +51,9 @@ pub fn whiteness(trials: &[TrialSignals<'_>], period_s: f64) -> Option<Whiteness
     let lags = Lags::new(period_s, windows.iter().map(Vec::len).max()?)?;
     let windows = windows.iter().map(|window| means(window, lags.block));
     let mut windows: Vec<Vec<f64>> = windows.filter(|window| !window.is_empty()).collect();
-    windows.iter_mut().for_each(|window| centre(window));
+    for window in &mut windows {
+        centre(window);
+    }
     let samples: usize = windows.iter().map(Vec::len).sum();
     let correlation = centred_autocorrelation(&windows, lags.count)?;
     let n = samples as f64;

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt::Debug;
 
-use super::{Definition, InputChange, Moment, RecordRange, Spec, Stage};
+use super::{Definition, InputChange, Moment, RecordRange, Spec, Stage, Start};
 
 /// An effect, and the word in the labels of the trials in which it acts.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +39,7 @@ pub trait Effect: Debug + Send + Sync {
     /// Puts the memory into the state it has when `at.signal` has long been held.
     fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
         if let [first, others @ ..] = memory
-            && self.spec().starts_at_signal
+            && self.spec().start == Start::Signal
         {
             *first = at.signal;
             others.fill(0.0);

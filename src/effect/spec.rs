@@ -34,9 +34,8 @@ pub struct Spec {
     pub parameters: &'static [Parameter],
     /// How many numbers it remembers.
     pub memory: usize,
-    /// Whether the first number that it remembers is the signal where that was long held, and the
-    /// others zero; if not, [`settle`](super::Effect::settle) says what they are.
-    pub starts_at_signal: bool,
+    /// What it remembers where the signal was long held.
+    pub start: Start,
     /// Ids of effects that look alike in a record.
     pub confused_with: &'static [&'static str],
     /// Ids of effects that it contains: to add it to a model is to put it in their
@@ -75,6 +74,15 @@ pub struct Spec {
     pub acts_on_state: bool,
 }
 
+/// What an effect remembers where the signal was long held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// What its [`settle`](super::Effect::settle) says.
+    Own,
+    /// The signal, and then zeros.
+    Signal,
+}
+
 /// What an effect is where one of its parameters is 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LimitingCase {
@@ -96,7 +104,7 @@ impl Spec {
             drawing: None,
             parameters: &[],
             memory: 0,
-            starts_at_signal: false,
+            start: Start::Own,
             confused_with: &[],
             absorbs: &[],
             looks_like_both: &[],
@@ -140,10 +148,10 @@ impl Spec {
         Self { memory, ..self }
     }
 
-    /// Its memory [starts at the signal](Self::starts_at_signal).
+    /// Its memory [starts](Self::start) at the signal.
     #[must_use]
     pub const fn starting_at_signal(self) -> Self {
-        Self { starts_at_signal: true, ..self }
+        Self { start: Start::Signal, ..self }
     }
 
     /// [Confused](Self::confused_with) with these.

@@ -14,8 +14,11 @@ const OUTPUT_DECIMALS: usize = 6;
 /// Decimals of what the truth derives from other numbers.
 const TRUTH_DECIMALS: usize = 9;
 
+/// What stands in a column of the truth.
+type Cell = fn(&StepTruth) -> String;
+
 /// The columns of the truth, and what stands in them.
-const TRUTH_COLUMNS: [(&str, fn(&StepTruth) -> String); 11] = [
+const TRUTH_COLUMNS: [(&str, Cell); 11] = [
     ("joint", |step| step.joint.clone()),
     ("trial", |step| step.trial.clone()),
     ("i", |step| step.i.to_string()),

@@ -24,8 +24,11 @@ pub(crate) enum Function {
     Not,
 }
 
+/// What a function of one number computes.
+type OfOne = fn(f64) -> f64;
+
 /// Each function with its name in expressions and what it computes, in their order.
-pub(super) const FUNCTIONS: [(Function, &str, fn(f64) -> f64); 16] = [
+pub(super) const FUNCTIONS: [(Function, &str, OfOne); 16] = [
     (Function::Abs, "abs", f64::abs),
     (Function::Sign, "sign", sign),
     (Function::Sqrt, "sqrt", f64::sqrt),
