@@ -35,6 +35,7 @@ pub struct Spec {
     /// How many numbers it remembers.
     pub memory: usize,
     /// What it remembers where the signal was long held.
+    #[serde(skip)]
     pub start: Start,
     /// Ids of effects that look alike in a record.
     pub confused_with: &'static [&'static str],
