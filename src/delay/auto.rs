@@ -44,9 +44,9 @@ use serde::Serialize;
 use super::decision::{Decision, Verdict};
 use super::input_motion::InputMotion;
 use super::interval::FineDelay;
-use super::method::Method;
 use super::prepared::Prepared;
 use super::settings::{FirstLast, InSeconds, Settings};
+use super::spec::Method;
 use crate::experiment::{Record, Trial};
 use crate::numerics::{
     LowPass, NoiseModel, RunningLine, autocovariances, median, quantile, to_digits,

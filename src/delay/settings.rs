@@ -1,7 +1,7 @@
 //! What is asked for: a method, and its settings.
 
 use super::input_motion::{InputKind, InputMotion};
-use super::method::Method;
+use super::spec::Method;
 use crate::numerics::LowPass;
 use crate::units::SamplePeriod;
 use serde::Serialize;

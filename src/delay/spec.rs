@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use crate::delay::onset_model::Family;
-
 /// What a method says of itself: help, defaults, tables and pages follow from it.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub struct MethodSpec {
@@ -19,8 +17,6 @@ pub struct MethodSpec {
     /// an interval. The decisions of others depend on no sample behind the next step, and come in steps
     /// of β.
     pub has_intervals: bool,
-    /// The responses that it chooses from.
-    pub(in crate::delay) families: &'static [Family],
 }
 
 /// How a delay is found: one of [`Method::all`].
@@ -28,14 +24,8 @@ pub struct MethodSpec {
 pub struct Method(&'static MethodSpec);
 
 /// What all onset models have in common.
-const ONSET: MethodSpec = MethodSpec {
-    id: "",
-    fits: "onset model",
-    source: None,
-    summary: "",
-    has_intervals: true,
-    families: &Family::ALL,
-};
+const ONSET: MethodSpec =
+    MethodSpec { id: "", fits: "onset model", source: None, summary: "", has_intervals: true };
 
 impl Method {
     /// The onset model of the response that a joint's record supports.
@@ -53,7 +43,6 @@ impl Method {
         source: Some("Albrecht and Taylor, Algorithm 1"),
         summary: "Two regression lines (Albrecht and Taylor)",
         has_intervals: false,
-        families: &[],
     });
 
     /// The onset model of a speed that changes at once.
@@ -61,7 +50,6 @@ impl Method {
         id: "hinge",
         fits: "two lines that meet",
         summary: "`auto` of a joint whose speed changes at once",
-        families: &[Family::Bend],
         ..ONSET
     });
 
@@ -70,7 +58,6 @@ impl Method {
         id: "lag-aware",
         fits: "two lines that meet, behind a lag or an oscillation",
         summary: "`auto` of a joint whose speed changes at once, or behind a lag or an oscillation",
-        families: &[Family::Bend, Family::Lag, Family::Pair],
         ..ONSET
     });
 
@@ -167,7 +154,7 @@ mod tests {
 
     #[test]
     fn each_is_in_the_documentation() {
-        let documented = include_str!("../../../docs/methods.md");
+        let documented = include_str!("../../docs/methods.md");
         for method in Method::all() {
             assert!(documented.contains(&format!("\n| `{method}` |")), "{method}");
         }
