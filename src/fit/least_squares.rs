@@ -92,8 +92,8 @@ fn fit_to(
     limits: Limits,
 ) -> Result<Fit, FitError> {
     let space = Space::of(model, range);
-    check_changes(record)?;
     check_record(record, &space)?;
+    check_changes(record)?;
     let slopes = record.training_samples() * space.free.len();
     let _turn = turn::wait_for(slopes);
     let (training, short) = (record.for_training(), record.shortened());

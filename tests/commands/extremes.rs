@@ -132,23 +132,23 @@ fn a_model_that_gives_no_finite_numbers_is_refused_and_nothing_is_written() {
 }
 
 #[test]
-fn an_output_that_never_moves_is_said_without_dividing_by_its_error() {
+fn a_signal_that_never_changes_is_said_and_not_fitted() {
     let folder = TempDir::new().unwrap();
-    let row = |k: i32| format!("{}.{:02},{},1.5\n", k / 100, k % 100, k / 150 % 3 - 1);
-    let rows: String = (0..6000).map(row).collect();
-    fs::write(folder.path().join("still.csv"), format!("time_s,a.input,a.output\n{rows}")).unwrap();
-    for format in ["text", "json"] {
-        let name = format!("{format}.toml");
-        let arguments = ["add", "dead_band", "still.csv", "--format", format, "-w", &name];
-        let ended = tauscope(folder.path(), &arguments);
-        let text = String::from_utf8(ended.stdout).unwrap();
-        assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
-        assert!(format == "json" || text.contains("stays 0"), "{text}");
-        assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    for (signal, input, output) in [("output", 1, 0), ("input", 0, 1)] {
+        let level = |k: i32, moves: i32| moves * (k / 150 % 3 - 1);
+        let row = |k: i32| {
+            let time = format!("{}.{:02}", k / 100, k % 100);
+            format!("{time},{},{}\n", level(k, input), level(k, output))
+        };
+        let rows: String = (0..6000).map(row).collect();
+        let log = format!("time_s,a.input,a.output\n{rows}");
+        fs::write(folder.path().join("still.csv"), log).unwrap();
+        for command in [&["add", "dead_band"][..], &["explain"], &["improve"]] {
+            let said = refused(folder.path(), &[command, &["still.csv"]].concat());
+            assert!(said.contains(&format!("its {signal} never changes")), "{said}");
+        }
+        assert!(!folder.path().join("model.toml").exists());
     }
-    let ended = tauscope(folder.path(), &["explain", "still.csv"]);
-    let text = String::from_utf8(ended.stdout).unwrap();
-    assert!(text.contains("no more than rounding"), "{text}");
 }
 
 #[test]

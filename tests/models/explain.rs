@@ -100,7 +100,7 @@ fn what_no_effect_explains_is_not_given_the_nearest_name() {
     assert_eq!(boom["commands"], json!([]));
     let words = boom["in_words"].as_str().unwrap();
     assert!(!words.contains("is missing"), "{words}");
-    for part in ["The residual is largest in ", "Effects that show only together"] {
+    for part in ["The residual is largest in ", "For effects that are significant only together"] {
         assert!(words.contains(part), "no `{part}` in: {words}");
     }
 }

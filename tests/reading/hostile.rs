@@ -279,8 +279,8 @@ fn a_model_larger_than_any_is_refused_and_one_without_end() {
     let long = file(&folder, "long.toml", &model_of(5, &long));
     let endless = if cfg!(unix) { Path::new("/dev/zero") } else { &effects };
     for (model, expected) in [
-        (effects.as_path(), "300 effects; 60 are the most"),
-        (&long, "4030 characters of expressions; 4000 are the most"),
+        (effects.as_path(), "300 effects; at most 60 are allowed"),
+        (&long, "4030 characters of expressions; at most 4000 are allowed"),
         (endless, if cfg!(unix) { "64 MB" } else { "300" }),
     ] {
         let model = model.to_str().unwrap();

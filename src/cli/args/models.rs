@@ -63,12 +63,10 @@ impl ModelFileArgs {
     /// Refuses to replace a file that has models of joints which the revised one will not have.
     pub(crate) fn check_target(&self, read: &ModelFile, joints: &[Joint]) -> anyhow::Result<()> {
         let target = self.target();
-        if !target.exists() {
+        // What is no model is replaced as by every command.
+        let Some(there) = target.is_file().then(|| read_model(target)).and_then(Result::ok) else {
             return Ok(());
-        }
-        let name = target.display();
-        let there = read_model(target)
-            .with_context(|| format!("{name}: it is there already; name another file"))?;
+        };
         let stays = |name: &&str| {
             read.joint(name).is_some() || joints.iter().any(|joint| joint.name == *name)
         };
@@ -76,7 +74,7 @@ impl ModelFileArgs {
         if lost.is_empty() {
             return Ok(());
         }
-        let lost = lost.join(", ");
+        let (name, lost) = (target.display(), lost.join(", "));
         bail!(
             "{name}: it has models of {lost}, which would be lost; `--model {name}` adds to it, \
              `--write FILE` starts another"

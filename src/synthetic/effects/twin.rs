@@ -35,7 +35,7 @@ pub(in super::super) struct At {
     pub(in super::super) radians: f64,
     /// Width of the rounded corners, in input units.
     pub(in super::super) edge: f64,
-    /// The same in output units per second.
+    /// Their width in output units per second.
     pub(in super::super) speed_edge: f64,
     /// 1 where the valve is far enough open to move the joint, 0 where it sticks.
     pub(in super::super) moves: f64,
