@@ -20,7 +20,7 @@ pub(super) const DECAY: &str = "
     mean = if(is_over, 0, if(ratio < 1e-300, 1, -expm1(-ratio) / ratio))
 ";
 
-/// The same with the time constant `lag`.
+/// The decay over `dt` with the time constant `lag`.
 pub(super) const LAG_DECAY: &str = "
     ratio = interval / lag
     is_over = lag <= 0 || !is_finite(ratio)

@@ -148,11 +148,11 @@ fn open_on_the_first(
         None => index,
     };
     for (path, component) in shown {
-        chunks.repeat((&path, component), segment.opening, &index)?;
+        chunks.repeat((path, component), segment.opening, &index)?;
     }
     let candidates = segment.opening + 1..=segment.verdict();
     for path in ["drawing/candidate", "drawing/candidate/mark"] {
-        chunks.replay(&path, candidates.clone(), layout.first.tick + 1)?;
+        chunks.replay(path, candidates.clone(), layout.first.tick + 1)?;
     }
     Ok(())
 }

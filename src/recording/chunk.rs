@@ -421,7 +421,7 @@ fn column<T, A: Array + FromIterator<Option<T>> + 'static>(
     let values: Vec<Option<T>> = values.into_iter().collect();
     let is_there: Vec<bool> = values.iter().map(Option::is_some).collect();
     let lengths = is_there.iter().map(|is_there| usize::from(*is_there));
-    let items: A = values.into_iter().filter(Option::is_some).collect();
+    let items: A = values.into_iter().flatten().map(Some).collect();
     lists_of(name, items, lengths, Some(is_there.clone().into()))
 }
 

@@ -12,12 +12,13 @@ use crate::wording::bracketed;
 /// Adds all signals of `joint` below the entity `root`.
 pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     type Values = fn(&TrialLayout<'_>) -> Vec<Option<f64>>;
+    type Drawn = (&'static str, String, (Rgb, f32), InterpolationMode, Values);
     // Input and delay are held between samples; what was measured is drawn from point to point.
     let (held, drawn) = (InterpolationMode::StepAfter, InterpolationMode::Linear);
     let joint = layout.joint;
     let unit = |unit: &Option<String>| bracketed("", unit.as_deref());
     let (input, output) = (unit(&joint.input_unit), unit(&joint.output_unit));
-    let signals: [(&str, String, (Rgb, f32), InterpolationMode, Values); 4] = [
+    let signals: [Drawn; 4] = [
         (paths::INPUT, format!("input{input}"), (palette::INPUT, 1.5), held, |trial| {
             known(trial.trial.input())
         }),

@@ -53,7 +53,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
 fn text(checks: &[Check]) -> String {
     let mut text = String::new();
     let width = checks.iter().map(|check| check.name.len()).max().unwrap_or(0);
-    for Check { name, found: Found { state, found, remedy } } in checks {
+    for Check { name, found: Finding { state, found, remedy } } in checks {
         let (word, tone) = match state {
             State::Ok => ("ok", Tone::Good),
             State::Note => ("note", Tone::Notice),
@@ -82,7 +82,7 @@ enum State {
 
 /// What was found of one thing, and what to do where it is not as it should be.
 #[derive(Debug, Serialize)]
-struct Found {
+struct Finding {
     state: State,
     found: String,
     remedy: Option<String>,
@@ -93,23 +93,23 @@ struct Found {
 struct Check {
     name: &'static str,
     #[serde(flatten)]
-    found: Found,
+    found: Finding,
 }
 
-fn ok(found: impl Into<String>) -> Found {
-    Found { state: State::Ok, found: found.into(), remedy: None }
+fn ok(found: impl Into<String>) -> Finding {
+    Finding { state: State::Ok, found: found.into(), remedy: None }
 }
 
-fn note(found: impl Into<String>, remedy: impl Into<String>) -> Found {
-    Found { state: State::Note, ..missing(found, remedy) }
+fn note(found: impl Into<String>, remedy: impl Into<String>) -> Finding {
+    Finding { state: State::Note, ..missing(found, remedy) }
 }
 
-fn missing(found: impl Into<String>, remedy: impl Into<String>) -> Found {
-    Found { state: State::Missing, found: found.into(), remedy: Some(remedy.into()) }
+fn missing(found: impl Into<String>, remedy: impl Into<String>) -> Finding {
+    Finding { state: State::Missing, found: found.into(), remedy: Some(remedy.into()) }
 }
 
 /// What of this program was built.
-fn program() -> Found {
+fn program() -> Finding {
     let found = format!("tauscope {}", env!("CARGO_PKG_VERSION"));
     if cfg!(feature = "rrd") {
         return ok(format!("{found}, with recordings (feature `rrd`)"));
@@ -122,7 +122,7 @@ fn is_set(name: &str) -> bool {
     env::var_os(name).is_some_and(|value| !value.is_empty())
 }
 
-fn screen() -> Found {
+fn screen() -> Finding {
     if !cfg!(target_os = "linux") {
         return ok("the system's own");
     }
@@ -139,7 +139,7 @@ fn screen() -> Found {
     )
 }
 
-fn graphics() -> Found {
+fn graphics() -> Finding {
     if !cfg!(target_os = "linux") {
         return ok("the system's own");
     }
@@ -165,7 +165,7 @@ fn first_in(folder: &str, prefix: &str) -> Option<String> {
     names.filter(|name| name.starts_with(prefix)).min()
 }
 
-fn threads() -> Found {
+fn threads() -> Finding {
     match std::thread::available_parallelism() {
         Ok(number) => ok(number.to_string()),
         Err(error) => note(error.to_string(), "say how many with `--threads N`"),
@@ -173,7 +173,7 @@ fn threads() -> Found {
 }
 
 /// Whether results can be written where the program is.
-fn folder() -> Found {
+fn folder() -> Finding {
     let here = env::current_dir().unwrap_or_default();
     let here = here.display();
     match tempfile::Builder::new().prefix(".tauscope-").tempfile_in(".") {
@@ -185,7 +185,7 @@ fn folder() -> Found {
     }
 }
 
-fn terminal() -> Found {
+fn terminal() -> Finding {
     let said = |is: bool| if is { "a terminal" } else { "no terminal" };
     let (out, err) = (io::stdout().is_terminal(), io::stderr().is_terminal());
     let colors = if console::has_colors() { "with colours" } else { "without colours" };
@@ -197,7 +197,7 @@ fn terminal() -> Found {
 }
 
 /// Whether the terminal is likely to show tables and Greek letters.
-fn letters() -> Found {
+fn letters() -> Finding {
     if cfg!(windows) {
         return ok("the system's own");
     }
@@ -222,7 +222,7 @@ fn remedy() -> String {
     format!("pip install rerun-sdk=={VERSION}")
 }
 
-fn importer() -> Found {
+fn importer() -> Finding {
     if let Some(place) = installed() {
         return ok(format!("{}: `rerun LOG.csv` opens a log", place.display()));
     }
@@ -230,7 +230,7 @@ fn importer() -> Found {
     note(found, "`tauscope importer --install` lets it")
 }
 
-fn viewer() -> Found {
+fn viewer() -> Finding {
     if let Some(path) = on_path("rerun", env::var_os("PATH").as_deref()) {
         let place = path.display();
         let answer = output(Command::new(&path).arg("--version").env("RERUN_ANALYTICS", "0"));
@@ -249,14 +249,14 @@ fn viewer() -> Found {
             let found = format!("rerun-sdk {version} of {python}, not on PATH");
             let check = judged(version, &found);
             let remedy = format!("start it with: {python} -m rerun FILE.rrd");
-            return Found { remedy: check.remedy.or(Some(remedy)), ..check };
+            return Finding { remedy: check.remedy.or(Some(remedy)), ..check };
         }
     }
     missing("no `rerun` on PATH, no package `rerun-sdk` of python3", remedy())
 }
 
 /// Whether `version` fits: an older minor version does not.
-fn judged(version: &str, found: &str) -> Found {
+fn judged(version: &str, found: &str) -> Finding {
     if [VERSION, NEWEST].contains(&version) {
         return ok(found);
     }
@@ -271,7 +271,7 @@ fn minor(version: &str) -> Option<(u32, u32)> {
     numbers.next().flatten().zip(numbers.next().flatten())
 }
 
-fn running() -> Found {
+fn running() -> Finding {
     if is_listening(SocketAddr::from((Ipv4Addr::LOCALHOST, PORT))) {
         return ok(format!("something listens on port {PORT}, where viewers do"));
     }

@@ -49,7 +49,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     tables.check(&kept_in(&args.folders)?)?;
     let Merged { command, results, failures, notes } = read_folders(&args.folders)?;
     let verbosity = Verbosity::from(args.quiet);
-    notes.iter().for_each(|note| verbosity.say("note", note));
+    for note in &notes {
+        verbosity.say("note", note);
+    }
     let report = FolderReport::new(&command, results);
     if command != "estimate" && tables.decisions.is_some() {
         anyhow::bail!("--decisions: these are results of `{command}`, which makes no decisions");

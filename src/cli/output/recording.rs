@@ -247,15 +247,16 @@ impl Recorded<'_> {
     fn write(self, file: &mut OutputFile) -> anyhow::Result<()> {
         use crate::recording::{PreviewRecording, write_preview, write_recording, write_sweep};
 
-        Ok(match self {
+        match self {
             Self::Decisions(contents) => {
-                contents.with_recording(|recording| write_recording(recording, file))?
+                contents.with_recording(|recording| write_recording(recording, file))?;
             }
             Self::Sweep(contents) => write_sweep(&contents.recording(), file)?,
             Self::Preview(PreviewContents { joints, sources, reading, model }) => {
-                write_preview(&PreviewRecording { joints, sources, reading, model }, file)?
+                write_preview(&PreviewRecording { joints, sources, reading, model }, file)?;
             }
-        })
+        }
+        Ok(())
     }
 
     #[cfg(not(feature = "rrd"))]

@@ -133,7 +133,7 @@ pub(crate) fn revised(
         |file, joint: &ImprovedJoint<'_>| revised_for(file, joint, judged(joint), sources);
     let is_known = |joint: &&ImprovedJoint<'_>| file.joint(joint.name()).is_some();
     let known = improved.iter().filter(is_known);
-    let file = known.clone().try_fold(file.clone(), |file, joint| revised_for(file, joint))?;
+    let file = known.clone().try_fold(file.clone(), &revised_for)?;
     let new = improved.iter().filter(|joint| !is_known(joint));
     let new: Vec<ModelFile> =
         new.map(|joint| revised_for(file.emptied(), joint)).collect::<anyhow::Result<_>>()?;

@@ -63,6 +63,7 @@ pub(super) fn add_numbers(
     joint: &Joint,
     placed: &[Placed<'_, '_>],
 ) -> Result<(), RecordError> {
+    type Value = fn(&StepState) -> Option<f64>;
     let accepted = || {
         placed.iter().filter_map(|placed| {
             let moment = placed.trial.opening(placed.segment);
@@ -72,7 +73,7 @@ pub(super) fn add_numbers(
     let index: Index = accepted().map(|(moment, ..)| moment).collect();
     let delta = accepted().map(|(_, decision, _)| Some(decision.breakpoint()?.delay));
     let fine: Vec<_> = accepted().map(|(_, decision, _)| decision.fine).collect();
-    let quantities: [(&str, fn(&StepState) -> Option<f64>); 6] = [
+    let quantities: [(&str, Value); 6] = [
         ("delay_s", |step| Some(step.delay_s)),
         ("average_speed", |step| Some(step.average_speed)),
         ("input_change", |step| Some(step.input_change)),
@@ -81,8 +82,7 @@ pub(super) fn add_numbers(
         ("time_s", |step| Some(step.time_s)),
     ];
     let mut columns = vec![integers("delta", delta)];
-    let of_steps =
-        |value: fn(&StepState) -> Option<f64>| accepted().map(move |(.., step)| value(step));
+    let of_steps = |value: Value| accepted().map(move |(.., step)| value(step));
     columns.extend(quantities.map(|(name, value)| numbers(name, of_steps(value))));
     columns.extend(fine_columns(&fine));
     chunks.push("delay/state", index, columns)?;

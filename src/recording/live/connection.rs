@@ -192,7 +192,9 @@ impl Live {
         }
         let id = format!("{}-{}", self.store.recording_id().as_str(), self.used);
         let messages = view_messages(content, self.growth, (self.store.application_id(), &id))?;
-        messages.into_iter().for_each(|message| self.post(message));
+        for message in messages {
+            self.post(message);
+        }
         self.views = Some(views);
         Ok(())
     }
