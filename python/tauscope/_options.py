@@ -62,7 +62,7 @@ class EstimateOptions(ReadOptions, total=False):
     """Reject a step as `nothing_happened` unless its change of slope is this unlikely to be noise,
     or `none` [default: 0.99; `none` for two-line]."""
     interval: float | None
-    """How often the interval of a delay is to hold the true one [default: 0.95]."""
+    """Confidence level of the interval of a delay [default: 0.95]."""
     filter_order: int | None
     """Order of the low-pass [default: 4]."""
     min_delay: float | str | None
@@ -152,7 +152,7 @@ class SweepOptions(ReadOptions, total=False):
     """Reject a step as `nothing_happened` unless its change of slope is this unlikely to be noise,
     or `none` [default: 0.99; `none` for two-line]."""
     interval: float | None
-    """How often the interval of a delay is to hold the true one [default: 0.95]."""
+    """Confidence level of the interval of a delay [default: 0.95]."""
     filter_order: int | None
     """Order of the low-pass [default: 4]."""
     min_delay: float | str | None
@@ -301,7 +301,7 @@ class ReportOptions(ReadOptions, total=False):
     """Reject a step as `nothing_happened` unless its change of slope is this unlikely to be noise,
     or `none` [default: 0.99; `none` for two-line]."""
     interval: float | None
-    """How often the interval of a delay is to hold the true one [default: 0.95]."""
+    """Confidence level of the interval of a delay [default: 0.95]."""
     filter_order: int | None
     """Order of the low-pass [default: 4]."""
     min_delay: float | str | None
