@@ -32,6 +32,13 @@ fn the_files_go_beside_the_log_or_where_they_are_named() {
     let text = printed(&desk, "log.csv --effects dead_band -q -o", 0);
     assert_eq!((desk.has("log.html"), desk.has("log.rrd")), (true, recorded));
     assert_eq!(text.contains("rerun log.rrd"), recorded, "{text}");
+    assert!(text.contains("tauscope compare log.csv --model log.toml"), "{text}");
+    // A model may have been edited.
+    let edited = format!("# mine\n{}", desk.read("log.toml"));
+    assert!(edited.contains("dead_band"), "{edited}");
+    desk.write("log.toml", &edited);
+    printed(&desk, "log.csv --effects dead_band -q -o", 0);
+    assert_eq!(desk.read("log.toml"), edited);
     printed(&desk, "log.csv --effects dead_band -q -o second", 0);
     assert_eq!((desk.has("second.html"), desk.has("second.rrd")), (true, recorded));
     printed(&desk, "-q -o second.html log.csv --effects dead_band", 0);
@@ -67,4 +74,37 @@ fn what_is_no_log_and_no_command_is_said() {
     assert!(desk.refusal("notes").contains("notes"));
     let help = printed(&desk, "--help", 0);
     assert!(help.contains("tauscope <LOG>...") && !help.contains("first-look"), "{help}");
+}
+
+#[test]
+fn a_model_is_kept_from_logs_that_are_not_its_own() {
+    let desk = Desk::with(vec![banded("boom"), banded("arm")]);
+    printed(&desk, "improve log.csv --effects dead_band -q -w both.toml", 0);
+    let both = desk.read("both.toml");
+    let refused = desk.refusal("improve log.csv --joint arm --effects dead_band -w both.toml");
+    assert!(refused.contains("it has models of boom, which would be lost"), "{refused}");
+    assert_eq!(desk.read("both.toml"), both);
+    let millivolts = desk.read("log.csv").replacen("boom.input [V]", "boom.input [mV]", 1);
+    desk.write("millivolts.csv", &millivolts);
+    for command in ["compare", "explain", "improve -w new.toml"] {
+        let refused = desk.refusal(&format!("{command} millivolts.csv --model both.toml"));
+        let reason = "both.toml, joint `boom`: its input was in V when it was fitted, and is in mV";
+        assert!(refused.contains(reason), "{refused}");
+    }
+}
+
+#[test]
+fn that_an_output_does_not_follow_its_input_is_said_first() {
+    let desk = Desk::with(vec![banded("boom"), banded("arm")]);
+    let log = desk.read("log.csv");
+    let crossed =
+        log.replacen("boom.output", "x.output", 1).replacen("arm.output", "boom.output", 1);
+    desk.write("crossed.csv", &crossed.replacen("x.output", "arm.output", 1));
+    let text = printed(&desk, "crossed.csv --joint boom --effects dead_band -q -o", 0);
+    let reason = "boom: the output does not follow its input";
+    assert!(text.contains(&format!("{reason}, whose steps explain")), "{text}");
+    assert!(text.contains("check the columns first"), "{text}");
+    let page = desk.read("crossed.html");
+    let at = |part: &str| page.find(part).unwrap_or_else(|| panic!("no {part}"));
+    assert!(at("does not follow its input") < at("Model: "), "the caution comes first");
 }
