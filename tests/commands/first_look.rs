@@ -94,6 +94,16 @@ fn a_model_is_kept_from_logs_that_are_not_its_own() {
 }
 
 #[test]
+fn no_model_is_offered_where_none_was_found() {
+    let desk = Desk::with(vec![banded("boom")]);
+    let rows = (0..600).map(|k| format!("{}.{:02},{},1.5\n", k / 100, k % 100, k / 150 % 2));
+    let rows: String = rows.collect();
+    desk.write("still.csv", &format!("time_s,a.input,a.output\n{rows}"));
+    let text = printed(&desk, "still.csv -q -o", 1);
+    assert!(!desk.has("still.toml") && !text.contains("still.toml"), "{text}");
+}
+
+#[test]
 fn that_an_output_does_not_follow_its_input_is_said_first() {
     let desk = Desk::with(vec![banded("boom"), banded("arm")]);
     let log = desk.read("log.csv");

@@ -1,7 +1,7 @@
 //! What `tauscope LOG` prints: what was measured, its delays, what a model lacks, what to do next.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::args::Args;
 use super::target::Target;
@@ -31,7 +31,10 @@ pub(super) fn rest(args: &Args, report: &Report<'_>, target: Option<&Target>) ->
         text += &improve_text(report.models);
         text.push('\n');
     }
-    let steps = next_steps(&args.data, target);
+    let model = target.and_then(|target| target.model.as_deref());
+    // Where no joint has a model there is no such file.
+    let model = model.filter(|_| report.revised.is_some());
+    let steps = next_steps(&args.data, target, model);
     let width = steps.iter().map(|(command, _)| command.len()).max().unwrap_or(0);
     text += "what next:\n";
     for (command, what) in steps {
@@ -41,7 +44,11 @@ pub(super) fn rest(args: &Args, report: &Report<'_>, target: Option<&Target>) ->
 }
 
 /// Commands, and what each of them does.
-fn next_steps(data: &DataArgs, target: Option<&Target>) -> Vec<(String, &'static str)> {
+fn next_steps(
+    data: &DataArgs,
+    target: Option<&Target>,
+    model: Option<&Path>,
+) -> Vec<(String, &'static str)> {
     let typed = quoted(&data.typed(None));
     let mut steps = Vec::new();
     match target {
@@ -60,7 +67,7 @@ fn next_steps(data: &DataArgs, target: Option<&Target>) -> Vec<(String, &'static
             );
         }
     }
-    match target.and_then(|target| target.model.as_ref()) {
+    match model {
         Some(path) => {
             let model = quoted(&[path.display().to_string()]);
             steps.push((
