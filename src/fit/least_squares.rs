@@ -96,10 +96,14 @@ fn fit_to(
     check_changes(record)?;
     let slopes = record.training_samples() * space.free.len();
     let _turn = turn::wait_for(slopes);
-    let (training, short) = (record.for_training(), record.shortened());
-    let searches = rough(&short, Some(&training), model, &space, range).into_iter();
-    let finished = searches.map(|s| s.across_flats().onto(&training).descended(limits));
-    let best = finished.min_by(|a, b| a.cost.total_cmp(&b.cost));
+    // Where the valleys are is seen in a part of a long record; the deepest is followed in all of it.
+    let (part, training) = (record.thinned(), record.for_training());
+    let short = part.shortened();
+    let enough = comparing(part.training_samples());
+    let searches = rough(&short, Some(&part), model, &space, range).into_iter();
+    let searches = searches.map(|s| s.across_flats().onto(&part).descended(enough));
+    let best = searches.min_by(|a, b| a.cost.total_cmp(&b.cost));
+    let best = best.map(|s| s.onto(&training).descended(limits));
     // A value that does nothing may lie outside of the bounds.
     let given = plain(other);
     let held = space.holding(&given);
