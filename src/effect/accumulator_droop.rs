@@ -6,7 +6,8 @@
 //!
 //! A pump that is smaller than the largest demand feeds an accumulator: its pressure falls with the
 //! oil that was drawn, here as the way `w` that the joint went, and recovers with the time constant
-//! of the pump. At the start of a record the accumulator is full.
+//! of the pump. At the start of a record the accumulator is full. One that recovers at once is a
+//! [curve of the flow](super::FlowCurve).
 //!
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (hydraulic power supplies with accumulators).
@@ -34,6 +35,7 @@ static SPEC: Spec = Spec::new(
 ])
 .memory(1 + DECAY_MEMORY)
 .confused_with(&["thermal_drift", "creep", "input_saturation"])
+.limiting_case("recovery_time", &["flow_curve"])
 .equations(
     Equations::new(&[
         "interval = dt\ntime_constant = recovery_time\n",

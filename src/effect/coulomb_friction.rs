@@ -37,6 +37,7 @@
 //! Automatica 30; Åström, K. J., and Canudas de Wit, C., 2008, Revisiting the `LuGre`
 //! friction model, IEEE Control Systems Magazine 28.
 
+use super::band::is_seen;
 use super::decay::DECAY;
 use super::sliding::{self, SLIDING_MEMORY};
 use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
@@ -62,7 +63,7 @@ static SPEC: Spec = Spec::new(
 .drawing(include_str!("drawing/coulomb_friction.txt"))
 .parameters(&[POSITIVE, NEGATIVE, TIME_CONSTANT])
 .memory(SLIDING_MEMORY)
-.confused_with(&["dead_band", "stiction", "input_offset"])
+.confused_with(&["dead_band", "stiction", "input_offset", "flow_curve"])
 .absorbing(&["actuator_lag"])
 .limiting_case("time_constant", &["dead_band"])
 .looking_like_both(&[["dead_band", "spool_lag"], ["dead_band", "actuator_lag"]])
@@ -112,6 +113,11 @@ impl Effect for CoulombFriction {
 
     fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
         sliding::settle(parameters, memory, at);
+    }
+
+    fn shows_its_form(&self, parameters: &[f64], record: &RecordRange<'_>) -> bool {
+        let &[positive, negative, _] = parameters else { return true };
+        is_seen(-negative, positive, record)
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {

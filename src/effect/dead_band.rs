@@ -21,7 +21,7 @@
 //! Sensor Nonlinearities; Merritt, H. E., 1967, Hydraulic Control Systems (overlapped
 //! valves).
 
-use super::band::shifted;
+use super::band::{is_seen, shifted};
 use super::{
     CoulombFriction, Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage,
     UNLIMITED,
@@ -64,6 +64,11 @@ impl Effect for DeadBand {
         shifted(at.signal, lower, upper)
     }
 
+    fn shows_its_form(&self, parameters: &[f64], record: &RecordRange<'_>) -> bool {
+        let &[lower, upper] = parameters else { return true };
+        is_seen(lower, upper, record)
+    }
+
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
         record.thresholds(GAPS).into_iter().map(|end| vec![-end, end]).collect()
     }
@@ -98,6 +103,14 @@ mod tests {
         let Some(band) = DeadBand.in_place_of(spec, &friction) else { panic!("no values") };
         assert_close(&run(&DeadBand, &band, &inputs), &run(&CoulombFriction, &friction, &inputs));
         assert_eq!(DeadBand.in_place_of(DeadBand.spec(), &band), None);
+    }
+
+    #[test]
+    fn it_shows_where_levels_lie_within_the_band() {
+        let levels = [0.0, 0.1, 0.2, 0.5, 1.0];
+        let record = RecordRange { input_levels: &levels, ..RecordRange::default() };
+        assert!(DeadBand.shows_its_form(&[-0.1, 0.3], &record));
+        assert!(!DeadBand.shows_its_form(&[-0.1, 0.2], &record), "at one level alone");
     }
 
     #[test]

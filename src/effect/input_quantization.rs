@@ -36,6 +36,10 @@ static SPEC: Spec = Spec::new(
 /// input come to another multiple.
 const TRIED: usize = 14;
 
+/// Neighbouring levels with the same multiple that show a step: one pair may be a flat piece of a
+/// curve.
+const SHARED: usize = 2;
+
 impl Effect for InputQuantization {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -45,6 +49,15 @@ impl Effect for InputQuantization {
         let &[step] = parameters else { return at.signal };
         let count = (at.signal.abs() / step + 0.5).floor();
         if step > 0.0 && count.is_finite() { (step * count).copysign(at.signal) } else { at.signal }
+    }
+
+    /// Whether levels that differ do the same: multiples that are as many as the levels are a curve
+    /// through these.
+    fn shows_its_form(&self, parameters: &[f64], record: &RecordRange<'_>) -> bool {
+        let multiple = |level: &f64| self.step(parameters, &mut [], &Moment::of(*level));
+        let multiples: Vec<f64> = record.input_levels.iter().map(multiple).collect();
+        let same = multiples.windows(2).filter(|pair| pair[0].total_cmp(&pair[1]).is_eq());
+        same.count() >= SHARED
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
@@ -69,5 +82,13 @@ mod tests {
         let inputs = [0.0, 0.2, 0.3, -0.7, -0.8, 2.1];
         let outputs = [0.0, 0.0, 0.5, -0.5, -1.0, 2.0];
         assert_close(&run(&InputQuantization, &[0.5], &inputs), &outputs);
+    }
+
+    #[test]
+    fn it_shows_where_levels_that_differ_do_the_same() {
+        let levels = [0.0, 0.2, 0.3, 0.6, 0.9, 1.1];
+        let record = RecordRange { input_levels: &levels, ..RecordRange::default() };
+        assert!(InputQuantization.shows_its_form(&[0.5], &record));
+        assert!(!InputQuantization.shows_its_form(&[0.3], &record), "a multiple for each level");
     }
 }

@@ -66,8 +66,9 @@ pub trait Effect: Debug + Send + Sync {
 
     /// Whether the effect, over the range of `record`, has the feature after which it is named.
     ///
-    /// A flow limit has it where the input passes the knee. Where only a part of the knee is seen, the
-    /// curve is one of several that bend alike, and the record does not tell which.
+    /// A flow limit has it where the input passes the knee, a dead band where the input is held within
+    /// it. Where that is not seen, the curve is one of several that bend alike, and the record does not
+    /// tell which.
     fn shows_its_form(&self, _parameters: &[f64], _record: &RecordRange<'_>) -> bool {
         true
     }

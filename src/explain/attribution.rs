@@ -23,6 +23,7 @@ use super::contribution::{Attribution, Contribution};
 use super::determined::is_determined;
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
+use super::likeness::are_distinguished;
 use super::limiting_case::limiting_case;
 use super::misfit::{CONSEQUENCE, Errors, Misfit, generalizes};
 use super::options::Options;
@@ -127,7 +128,9 @@ impl Grown<'_, '_> {
         let count = |fit: &AssessedModel| fit.parameters.len();
         let fewer = exchanged.iter().filter(|(_, fit)| count(fit) < count(self.whole));
         let as_little = fewer.filter(|(change, fit)| {
+            let range = self.record.range_for(&fit.model);
             self.leaves_as_little(fit)
+                && are_distinguished(fit, change.new_effect().as_slice(), &range)
                 && generalizes(own, fit.errors)
                 && (is_as_likely(fit) || self.is_to_limiting_case(*change))
         });

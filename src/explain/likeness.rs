@@ -60,9 +60,10 @@ mod tests {
         AssessedModel { model, parameters: effects.iter().map(parameter).collect() }
     }
 
-    /// Whether they are distinguished; none of these effects needs the range of a record.
+    /// Whether they are distinguished in a record with levels within every band.
     fn is_told(fit: &AssessedModel, new: &[&str]) -> bool {
-        are_distinguished(fit, new, &RecordRange::default())
+        let record = RecordRange { input_levels: &[0.02, 0.04], ..RecordRange::default() };
+        are_distinguished(fit, new, &record)
     }
 
     #[test]

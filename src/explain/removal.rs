@@ -28,7 +28,7 @@ const WORSE: f64 = 1.3;
 /// What the cost with two effects in the place of one, or with a finer form of one, must be in parts
 /// of the cost without, whatever the criterion says, which is less sure where more is missing. Chosen:
 /// 2 % of the error, as a single effect has to explain.
-const LESS: f64 = 0.96;
+pub(super) const LESS: f64 = 0.96;
 
 /// Changes that are fitted, at most. Chosen: each more costs a fit.
 const FINALISTS: usize = 6;
@@ -69,11 +69,7 @@ impl Exchange {
 
     /// The effects that it brings.
     fn new_effects(self) -> impl Iterator<Item = &'static str> {
-        let replaced = match self.change {
-            Change::Replaced { new, .. } | Change::Added(new) => Some(new),
-            Change::Removed(_) | Change::Start => None,
-        };
-        replaced.into_iter().chain(self.then)
+        self.change.new_effect().into_iter().chain(self.then)
     }
 
     /// `model` after it, once for each start of what is new.

@@ -38,6 +38,14 @@ impl Change {
             None => Self::Added(new),
         }
     }
+
+    /// The effect that it brought.
+    pub(super) fn new_effect(self) -> Option<&'static str> {
+        match self {
+            Self::Replaced { new, .. } | Self::Added(new) => Some(new),
+            Self::Removed(_) | Self::Start => None,
+        }
+    }
 }
 
 /// A model and its error.
