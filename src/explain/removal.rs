@@ -28,7 +28,7 @@ const WORSE: f64 = 1.3;
 /// What the cost with two effects in the place of one, or with a finer form of one, must be in parts
 /// of the cost without, whatever the criterion says, which is less sure where more is missing. Chosen:
 /// 2 % of the error, as a single effect has to explain.
-pub(super) const LESS: f64 = 0.96;
+const LESS: f64 = 0.96;
 
 /// Changes that are fitted, at most. Chosen: each more costs a fit.
 const FINALISTS: usize = 6;

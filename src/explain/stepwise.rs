@@ -187,7 +187,8 @@ pub(super) fn add_stepwise(
 /// The ranking of `laws`, of which none is added though some show, beside curves of any form, and
 /// the place of the one that is added.
 ///
-/// Where such a curve does not come near the noise either, it is not the curve that is missing.
+/// Where such a curve does not come near the noise either, it is not the curve that is missing, unless a
+/// law of the model is one: then it takes the place of that.
 fn curve_beside(
     laws: &[Candidate],
     record: &FitRecord<'_>,
@@ -200,8 +201,11 @@ fn curve_beside(
     let floor = sensor_noise(&record.measured().trials).unwrap_or(0.0);
     let mut ranking = rank_free_forms(record, judge.base, floor, judge.options, laws, workers);
     let index = judge.judge_all(&mut ranking)?;
-    let comes_near = !judge.misfit.is_far_from_noise(ranking[index].fit.errors);
-    comes_near.then_some((index, ranking))
+    let curve = &ranking[index];
+    let comes_near = !judge.misfit.is_far_from_noise(curve.fit.errors);
+    let change = Change::between(&judge.base.model, &curve.fit.model, curve.newest());
+    let takes_a_place = matches!(change, Change::Replaced { .. });
+    (comes_near || takes_a_place).then_some((index, ranking))
 }
 
 /// `step` with effects removed or exchanged for as long as that is better; how the search ended
