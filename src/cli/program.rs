@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::{Arg, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 use crate::cli::args::{DataArgs, read};
@@ -21,7 +21,7 @@ use crate::cli::exit::Completion;
 use crate::cli::failure::said;
 use crate::cli::help::arranged;
 use crate::cli::output::meet_file_limits;
-use crate::experiment::{Experiment, ReadError, is_named_like_a_log};
+use crate::experiment::{Experiment, ReadError, did_you_mean, is_named_like_a_log, nearest_name};
 
 /// Estimate the variable delay of hydraulic joints, record every decision, and find the physics that
 /// a model lacks.
@@ -78,14 +78,16 @@ enum Command {
 pub(super) fn run() -> ExitCode {
     end_with_parent();
     meet_file_limits();
-    let outcome = match parsed(with_command(std::env::args_os().collect())) {
-        Ok(cli) => perform(cli.command),
-        Err(fault) if fault.use_stderr() => fault.exit(),
-        // Help and the version are results, which may be lost like others.
-        Err(asked) => {
-            asked.print().context("standard output cannot be written").map(|()| Completion::Whole)
-        }
-    };
+    let outcome =
+        with_command(std::env::args_os().collect()).and_then(|words| match parsed(words) {
+            Ok(cli) => perform(cli.command),
+            Err(fault) if fault.use_stderr() => fault.exit(),
+            // Help and the version are results, which may be lost like others.
+            Err(asked) => asked
+                .print()
+                .context("standard output cannot be written")
+                .map(|()| Completion::Whole),
+        });
     match outcome {
         Ok(Completion::Whole) => ExitCode::SUCCESS,
         Ok(Completion::Partial) => ExitCode::from(1),
@@ -116,19 +118,27 @@ fn first_look_output(output: Arg) -> Arg {
 
 /// The words as they were typed; where a log stands in the place of a command, also behind options,
 /// they get one.
-fn with_command(mut words: Vec<OsString>) -> Vec<OsString> {
+///
+/// # Errors
+/// When the first word is neither.
+fn with_command(mut words: Vec<OsString>) -> anyhow::Result<Vec<OsString>> {
     let own = words.get(1..).unwrap_or_default();
-    let begins_with_option =
-        own.first().is_some_and(|word| word.to_string_lossy().starts_with('-'));
-    let is_first_look = if begins_with_option {
-        own.iter().any(|word| is_log(word)) && !own.iter().any(|word| is_command(word))
-    } else {
-        own.first().is_some_and(|word| is_log(word))
+    let is_option = |word: &OsString| word.to_string_lossy().starts_with('-');
+    let is_first_look = match own.first() {
+        Some(first) if is_option(first) => {
+            let is_about_the_program =
+                ["-h", "--help", "-V", "--version"].iter().any(|option| first == option);
+            let names_a_log = own.iter().any(|word| !is_option(word));
+            names_a_log && !is_about_the_program && !own.iter().any(|word| is_command(word))
+        }
+        Some(first) if is_command(first) => false,
+        Some(first) if !is_log(first) => bail!(neither_log_nor_command(first)),
+        first => first.is_some(),
     };
     if is_first_look {
         words.insert(1, "first-look".into());
     }
-    words
+    Ok(words)
 }
 
 fn is_command(word: &OsStr) -> bool {
@@ -136,11 +146,17 @@ fn is_command(word: &OsStr) -> bool {
     text == "help" || program().find_subcommand(&*text).is_some()
 }
 
-/// Whether a word names a log, and neither a command nor an option.
+/// Whether a word that is no command names a log.
 fn is_log(word: &OsStr) -> bool {
-    let text = word.to_string_lossy();
-    let is_named_so = || is_named_like_a_log(&text) || Path::new(word).exists();
-    !text.starts_with('-') && !is_command(word) && is_named_so()
+    is_named_like_a_log(&word.to_string_lossy()) || Path::new(word).exists()
+}
+
+fn neither_log_nor_command(word: &OsStr) -> String {
+    let program = program();
+    let commands = program.get_subcommands().filter(|command| !command.is_hide_set());
+    let word = word.to_string_lossy();
+    let near = did_you_mean(nearest_name(&word, commands.map(clap::Command::get_name)));
+    format!("{word}: no such file, and no command{near}; `tauscope help` lists the commands")
 }
 
 /// Why a command that a program runs inside itself has no results.

@@ -204,7 +204,7 @@ fn names_that_were_mistyped_are_answered_with_the_nearest() {
         \"integrator\"\nparameters = { gain = 10.0, delay = 0.1 }\n",
     );
     let refused = [
-        ("estimte log.csv", "'estimate'"),
+        ("estimte log.csv", "`estimate`"),
         ("estimate log.csv --methd hinge", "'--method'"),
         ("estimate log.csv --method hing", "'hinge'"),
         ("estimate log.csv --joint arm=bom.input:boom.output", "`boom.input`"),

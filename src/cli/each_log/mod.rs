@@ -9,8 +9,6 @@ mod typed;
 mod with_parent;
 mod work;
 
-use std::collections::BTreeSet;
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use crate::report::{FolderReport, folder_json};
@@ -20,10 +18,9 @@ use clap::Args;
 use crate::cli::args::Format;
 use crate::cli::console::{Verbosity, warn};
 use crate::cli::exit::Completion;
-use crate::cli::output::{CsvText, Outputs, target_of, write_table};
+use crate::cli::output::{CsvText, OutputKind, Outputs, write_table};
 
 pub(crate) use each::Each;
-use store::name_of;
 pub(crate) use store::{Merged, kept_in, read_folders};
 pub(crate) use with_parent::end_with_parent;
 
@@ -117,7 +114,6 @@ impl FolderArgs {
             each.run.verbosity().say("note", note);
         }
         tables.check(&[each.data.files(), typed.files.clone()].concat())?;
-        tables.check_beside(results, &all)?;
         if all.is_empty() {
             bail!(failures.into_iter().next().unwrap_or_else(|| "no log is given".to_owned()));
         }
@@ -149,27 +145,10 @@ impl Tables<'_> {
         [self.decisions, self.summary].into_iter().flatten()
     }
 
-    /// Refuses what would replace the result or the model of one of `logs`.
-    fn check_beside(&self, results: &Path, logs: &[PathBuf]) -> anyhow::Result<()> {
-        let folder = results.canonicalize().unwrap_or_else(|_| results.to_owned());
-        let named: BTreeSet<PathBuf> = logs.iter().map(|log| folder.join(name_of(log))).collect();
-        let is_taken = |table: &&Path| {
-            let target = target_of(table);
-            let ending = target.extension().and_then(OsStr::to_str).unwrap_or_default();
-            ["json", "toml"].contains(&ending) && named.contains(&target.with_extension(""))
-        };
-        match self.files().find(is_taken) {
-            Some(table) => bail!(
-                "{}: the result of a log has this name; give the table another",
-                table.display()
-            ),
-            None => Ok(()),
-        }
-    }
-
-    /// Refuses what cannot be written, or would replace an input or another table.
+    /// Refuses what cannot be written, or would replace an input or another table. No result of a log has the
+    /// name of a table.
     pub(crate) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
-        Outputs { tables: self.files().collect(), ..Outputs::default() }.check(inputs)
+        Outputs::default().with(OutputKind::Table, self.files()).check(inputs)
     }
 }
 
