@@ -21,7 +21,8 @@ use crate::cli::exit::Completion;
 use crate::cli::failure::said;
 use crate::cli::help::arranged;
 use crate::cli::output::meet_file_limits;
-use crate::experiment::{Experiment, ReadError, did_you_mean, is_named_like_a_log, nearest_name};
+use crate::cli::unknown::{neither_log_nor_command, with_tip};
+use crate::experiment::{Experiment, ReadError, is_named_like_a_log};
 
 /// Estimate the variable delay of hydraulic joints, record every decision, and find the physics that
 /// a model lacks.
@@ -107,7 +108,10 @@ fn program() -> clap::Command {
 
 /// What the words of a command line ask for.
 fn parsed(words: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
-    Cli::from_arg_matches(&program().try_get_matches_from(words)?)
+    let words: Vec<OsString> = words.into_iter().collect();
+    let program = program();
+    let tip = |fault| with_tip(fault, &program, words.get(1).map(OsString::as_os_str));
+    Cli::from_arg_matches(&program.clone().try_get_matches_from(&words).map_err(tip)?)
 }
 
 /// The output of a first look: beside the log where it has no name, and nowhere unless it is asked
@@ -132,7 +136,7 @@ fn with_command(mut words: Vec<OsString>) -> anyhow::Result<Vec<OsString>> {
             names_a_log && !is_about_the_program && !own.iter().any(|word| is_command(word))
         }
         Some(first) if is_command(first) => false,
-        Some(first) if !is_log(first) => bail!(neither_log_nor_command(first)),
+        Some(first) if !is_log(first) => bail!(neither_log_nor_command(&program(), first)),
         first => first.is_some(),
     };
     if is_first_look {
@@ -149,14 +153,6 @@ fn is_command(word: &OsStr) -> bool {
 /// Whether a word that is no command names a log.
 fn is_log(word: &OsStr) -> bool {
     is_named_like_a_log(&word.to_string_lossy()) || Path::new(word).exists()
-}
-
-fn neither_log_nor_command(word: &OsStr) -> String {
-    let program = program();
-    let commands = program.get_subcommands().filter(|command| !command.is_hide_set());
-    let word = word.to_string_lossy();
-    let near = did_you_mean(nearest_name(&word, commands.map(clap::Command::get_name)));
-    format!("{word}: no such file, and no command{near}; `tauscope help` lists the commands")
 }
 
 /// Why a command that a program runs inside itself has no results.
@@ -275,12 +271,12 @@ pub fn options_of(command: &str) -> Option<Vec<CommandOption>> {
 
 fn perform(command: Command) -> anyhow::Result<Completion> {
     match command {
-        Command::Estimate(args) => estimate::run(&args, &program()),
+        Command::Estimate(args) => estimate::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Add(args) => add::run(&args),
-        Command::Improve(args) => improve::run(&args, &program()),
+        Command::Improve(args) => improve::run(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Columns(args) => columns::run(&args),
         Command::Report(args) => report::run(&args),

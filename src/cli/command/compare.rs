@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::batch::Threads;
 use crate::diagnosis::Comparison;
-use crate::experiment::{Joint, did_you_mean, listed, nearest_name};
+use crate::experiment::{Joint, listed};
 use crate::fit::FitError;
 use crate::model::{JointModel, ModelFile};
 use crate::report::{ComparedJoint, compare_json, compare_text};
@@ -129,11 +129,7 @@ impl Named<'_> {
         let file = self.file.as_ref();
         let path = file.map(|(path, _)| path.display().to_string()).unwrap_or_default();
         let names: Vec<&str> = file.iter().flat_map(|(_, file)| file.names()).collect();
-        let near = did_you_mean(nearest_name(joint, names.iter().copied()));
-        format!(
-            "joint `{joint}`: {path} has no model of it{near}, but of {}",
-            listed(names.into_iter())
-        )
+        format!("joint `{joint}`: {path} has no model of it, but of {}", listed(names.into_iter()))
     }
 
     fn mode(&self, args: &Args) -> Mode {

@@ -4,8 +4,8 @@
 //! is what anybody gets who calls it so.
 
 mod each;
+mod options;
 mod store;
-mod typed;
 mod with_parent;
 mod work;
 
@@ -21,6 +21,7 @@ use crate::cli::exit::Completion;
 use crate::cli::output::{CsvText, OutputKind, Outputs, write_table};
 
 pub(crate) use each::Each;
+use options::LogOptions;
 pub(crate) use store::{Merged, kept_in, read_folders};
 pub(crate) use with_parent::end_with_parent;
 
@@ -105,7 +106,7 @@ impl FolderArgs {
                  `--summary`, and give them to `tauscope merge` when all parts are done"
             );
         }
-        let typed = typed::options(each.program, each.command)?;
+        let options = LogOptions::of(&each.data.typed);
         // A table may be in the folder.
         std::fs::create_dir_all(results)
             .with_context(|| format!("{}: cannot be made", results.display()))?;
@@ -113,14 +114,14 @@ impl FolderArgs {
         for note in each.data.left_out() {
             each.run.verbosity().say("note", note);
         }
-        tables.check(&[each.data.files(), typed.files.clone()].concat())?;
+        tables.check(&[each.data.files(), options.files.clone()].concat())?;
         if all.is_empty() {
             bail!(failures.into_iter().next().unwrap_or_else(|| "no log is given".to_owned()));
         }
         let part =
             |(index, _): &(usize, &PathBuf)| self.shard.is_none_or(|shard| shard.has(*index));
         let logs: Vec<&PathBuf> = all.iter().enumerate().filter(part).map(|(_, log)| log).collect();
-        let work = work::Work { each, results, typed: &typed, of: all.len() };
+        let work = work::Work { each, results, options: &options, of: all.len() };
         let done = work.run(&logs)?;
         failures.extend(done.failures);
         if let Some(Shard { number, of }) = self.shard {
