@@ -127,9 +127,11 @@ fn equations(compared: &ComparedJoint<'_>) -> String {
         components.filter(of_stages).map(law)
     };
     let of_steps = delay_of_steps(compared.joint, &fit.model);
-    let of_steps =
-        of_steps.map_or_else(String::new, |of_steps| format!(" + extra: of the steps {of_steps}"));
-    let mut lines = vec![format!("in = input(t − delay), delay = {}{of_steps}", own(1))];
+    let delay = match of_steps {
+        Some(of_steps) => format!("delay of the steps {of_steps}: {} + extra", own(1)),
+        None => format!("delay = {}", own(1)),
+    };
+    let mut lines = vec![format!("in = input(t − delay), {delay}")];
     lines.extend(laws(Stage::Transport, Stage::Dynamics));
     let acting = behind("in", laws(Stage::Spool, Stage::Dynamics).count());
     lines.push(format!("speed = gain · {acting}, gain = {}", own(0)));
@@ -164,9 +166,12 @@ fn parameters(compared: &ComparedJoint<'_>) -> TextTable {
     let fit = &compared.comparison.fit;
     let units = parameter_units(compared.joint, &fit.model);
     let header = ["parameter", "value ± standard error", "unit", "remark"];
+    let has_law = delay_of_steps(compared.joint, &fit.model).is_some();
     let row = |(parameter, unit): (&Parameter, String)| {
         let value = known_value(parameter.value, parameter.std_error);
-        let remark = remark(parameter.status).unwrap_or_default().to_owned();
+        let constant = Some("constant of its law").filter(|_| has_law && parameter.name == "delay");
+        let remarks: Vec<_> = constant.into_iter().chain(remark(parameter.status)).collect();
+        let remark = remarks.join(", ");
         [parameter.name.clone(), value, unit, remark]
     };
     TextTable::of(header, &[1], fit.parameters.iter().zip(units).map(row))

@@ -259,6 +259,22 @@ mod tests {
     }
 
     #[test]
+    fn where_there_are_intervals_the_narrowest_is_the_clearest() {
+        let settings = Settings { first_last: FirstLast::Keep, ..Settings::of(Method::AUTO) };
+        let joint = joint();
+        let estimate = estimate_joints(std::slice::from_ref(&joint), &settings, || (), &Threads);
+        let estimate = estimate.into_iter().next().unwrap().unwrap();
+        let estimated = EstimatedJoint { joint: &joint, estimate: &estimate };
+        let width = |found: &Doubted<'_>| found.decision.fine.map(|fine| fine.high - fine.low);
+        let clear = doubted(estimated).filter(|found| found.decision.accepted_delay().is_some());
+        let clear = clear.filter(|found| found.doubt.flags.is_empty());
+        let narrowest = clear.filter_map(|found| width(&found)).fold(f64::INFINITY, f64::min);
+        let choices = choices(estimated);
+        let clearest = choices.iter().find(|choice| choice.why == "Clearest").unwrap();
+        assert_eq!(width(&clearest.found), Some(narrowest));
+    }
+
+    #[test]
     fn a_rejected_decision_is_shown_where_one_says_something() {
         let settings = Settings { low_pass: None, ..Settings::of(Method::TWO_LINE) };
         assert!(chosen(&settings).iter().all(|(why, _)| *why != "Rejected"), "ends are not judged");
