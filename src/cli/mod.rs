@@ -9,6 +9,7 @@
 //! - `viewer`: recordings shown while they are made
 //! - `output`: files, tables and recordings
 //! - `failure`, `advice`: what is said of errors, and the option to use
+//! - `unknown`: what is said of words that the program does not know
 //! - `typed`: command lines that are suggested or reported
 //! - `console`: messages, results and progress on the terminal
 
@@ -25,6 +26,7 @@ mod output;
 mod program;
 mod run;
 mod typed;
+mod unknown;
 mod viewer;
 
 pub use console::Hosting;

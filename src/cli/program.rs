@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::{Arg, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 use crate::cli::args::{DataArgs, read};
@@ -21,6 +21,7 @@ use crate::cli::exit::Completion;
 use crate::cli::failure::said;
 use crate::cli::help::arranged;
 use crate::cli::output::meet_file_limits;
+use crate::cli::unknown::{neither_log_nor_command, with_tip};
 use crate::experiment::{Experiment, ReadError, is_named_like_a_log};
 
 /// Estimate the variable delay of hydraulic joints, record every decision, and find the physics that
@@ -78,14 +79,16 @@ enum Command {
 pub(super) fn run() -> ExitCode {
     end_with_parent();
     meet_file_limits();
-    let outcome = match parsed(with_command(std::env::args_os().collect())) {
-        Ok(cli) => perform(cli.command),
-        Err(fault) if fault.use_stderr() => fault.exit(),
-        // Help and the version are results, which may be lost like others.
-        Err(asked) => {
-            asked.print().context("standard output cannot be written").map(|()| Completion::Whole)
-        }
-    };
+    let outcome =
+        with_command(std::env::args_os().collect()).and_then(|words| match parsed(words) {
+            Ok(cli) => perform(cli.command),
+            Err(fault) if fault.use_stderr() => fault.exit(),
+            // Help and the version are results, which may be lost like others.
+            Err(asked) => asked
+                .print()
+                .context("standard output cannot be written")
+                .map(|()| Completion::Whole),
+        });
     match outcome {
         Ok(Completion::Whole) => ExitCode::SUCCESS,
         Ok(Completion::Partial) => ExitCode::from(1),
@@ -105,7 +108,10 @@ fn program() -> clap::Command {
 
 /// What the words of a command line ask for.
 fn parsed(words: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
-    Cli::from_arg_matches(&program().try_get_matches_from(words)?)
+    let words: Vec<OsString> = words.into_iter().collect();
+    let program = program();
+    let tip = |fault| with_tip(fault, &program, words.get(1).map(OsString::as_os_str));
+    Cli::from_arg_matches(&program.clone().try_get_matches_from(&words).map_err(tip)?)
 }
 
 /// The output of a first look: beside the log where it has no name, and nowhere unless it is asked
@@ -116,19 +122,27 @@ fn first_look_output(output: Arg) -> Arg {
 
 /// The words as they were typed; where a log stands in the place of a command, also behind options,
 /// they get one.
-fn with_command(mut words: Vec<OsString>) -> Vec<OsString> {
+///
+/// # Errors
+/// When the first word is neither.
+fn with_command(mut words: Vec<OsString>) -> anyhow::Result<Vec<OsString>> {
     let own = words.get(1..).unwrap_or_default();
-    let begins_with_option =
-        own.first().is_some_and(|word| word.to_string_lossy().starts_with('-'));
-    let is_first_look = if begins_with_option {
-        own.iter().any(|word| is_log(word)) && !own.iter().any(|word| is_command(word))
-    } else {
-        own.first().is_some_and(|word| is_log(word))
+    let is_option = |word: &OsString| word.to_string_lossy().starts_with('-');
+    let is_first_look = match own.first() {
+        Some(first) if is_option(first) => {
+            let is_about_the_program =
+                ["-h", "--help", "-V", "--version"].iter().any(|option| first == option);
+            let names_a_log = own.iter().any(|word| !is_option(word));
+            names_a_log && !is_about_the_program && !own.iter().any(|word| is_command(word))
+        }
+        Some(first) if is_command(first) => false,
+        Some(first) if !is_log(first) => bail!(neither_log_nor_command(&program(), first)),
+        first => first.is_some(),
     };
     if is_first_look {
         words.insert(1, "first-look".into());
     }
-    words
+    Ok(words)
 }
 
 fn is_command(word: &OsStr) -> bool {
@@ -136,11 +150,9 @@ fn is_command(word: &OsStr) -> bool {
     text == "help" || program().find_subcommand(&*text).is_some()
 }
 
-/// Whether a word names a log, and neither a command nor an option.
+/// Whether a word that is no command names a log.
 fn is_log(word: &OsStr) -> bool {
-    let text = word.to_string_lossy();
-    let is_named_so = || is_named_like_a_log(&text) || Path::new(word).exists();
-    !text.starts_with('-') && !is_command(word) && is_named_so()
+    is_named_like_a_log(&word.to_string_lossy()) || Path::new(word).exists()
 }
 
 /// Why a command that a program runs inside itself has no results.
@@ -259,12 +271,12 @@ pub fn options_of(command: &str) -> Option<Vec<CommandOption>> {
 
 fn perform(command: Command) -> anyhow::Result<Completion> {
     match command {
-        Command::Estimate(args) => estimate::run(&args, &program()),
+        Command::Estimate(args) => estimate::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Add(args) => add::run(&args),
-        Command::Improve(args) => improve::run(&args, &program()),
+        Command::Improve(args) => improve::run(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Columns(args) => columns::run(&args),
         Command::Report(args) => report::run(&args),

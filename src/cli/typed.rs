@@ -1,4 +1,61 @@
-//! Command lines that are suggested or reported.
+//! Command lines that are suggested or reported, and the options in them.
+
+use std::ffi::OsString;
+
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+
+/// The options of a command with their values, as they were typed; by their names.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Typed(Vec<(String, Option<OsString>)>);
+
+impl Typed {
+    /// Those whose names, without dashes, are wanted: a flag has no value.
+    pub(crate) fn of(
+        &self,
+        is_wanted: impl Fn(&str) -> bool,
+    ) -> impl Iterator<Item = (&str, Option<&OsString>)> {
+        let wanted = self.0.iter().filter(move |(name, _)| is_wanted(name));
+        wanted.map(|(name, value)| (name.as_str(), value.as_ref()))
+    }
+}
+
+impl FromArgMatches for Typed {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let mut typed = Vec::new();
+        for id in matches.ids().map(clap::Id::as_str) {
+            // Groups are named like their types.
+            let is_group = id.starts_with(char::is_uppercase);
+            if is_group || matches.value_source(id) != Some(ValueSource::CommandLine) {
+                continue;
+            }
+            let name = id.replace('_', "-");
+            if matches!(matches.try_get_one::<bool>(id), Ok(Some(true))) {
+                typed.push((name, None));
+                continue;
+            }
+            let values = matches.get_raw(id).into_iter().flatten();
+            typed.extend(values.map(|value| (name.clone(), Some(value.to_owned()))));
+        }
+        typed.sort_by(|(one, _), (other, _)| one.cmp(other));
+        Ok(Self(typed))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for Typed {
+    fn augment_args(command: Command) -> Command {
+        command
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        command
+    }
+}
 
 /// Words of a command line, each so that a shell takes it for one.
 pub(crate) fn quoted(words: &[String]) -> String {

@@ -20,6 +20,7 @@ const END: f64 = 0.01;
 /// above it is off by more than one and a half rows of β, of the others one in fifty.
 const DOUBTFUL: f64 = 0.3;
 
+#[cfg(feature = "rrd")]
 impl Doubt {
     /// Doubt from which on a decision is doubtful, in percent.
     pub(crate) const DOUBTFUL_PERCENT: f64 = 100.0 * DOUBTFUL;

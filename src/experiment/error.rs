@@ -50,8 +50,10 @@ pub enum ReadErrorKind {
     /// the time, and the name, the input and the output of each joint, the likeliest of several mappings
     /// first.
     NoJoints(Box<Likely>),
-    /// Joints that are asked for are not there, or contradict one another.
+    /// Joints contradict one another.
     Joints,
+    /// A joint that is asked for is not there.
+    NoSuchJoint,
     /// There is no time, and no sample period was given: the name of the first column, where it is one
     /// that programs give to an index without a name.
     NoTime(Option<String>),

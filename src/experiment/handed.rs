@@ -98,6 +98,7 @@ impl Experiment {
             let stem = (!is_one).then(|| log.name.clone());
             experiment.add(read(log, stem.as_deref(), options, &budget), &path);
         }
+        experiment.skip_logs_without();
         experiment
     }
 

@@ -230,7 +230,7 @@ pub(super) fn unknown_joint(joint: &str, names: &[String]) -> ReadError {
     let names = || names.iter().map(String::as_str);
     let (nearest, all) = (did_you_mean(nearest_name(joint, names())), listed(names()));
     let text = format!("no joint `{joint}`{nearest}; the joints are: {all}");
-    ReadError::new(ReadErrorKind::Joints, text)
+    ReadError::new(ReadErrorKind::NoSuchJoint, text)
 }
 
 /// Joint and signal of a native column: `boom.output` is `("boom", "output")`.

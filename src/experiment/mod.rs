@@ -50,7 +50,7 @@ pub use handed::{HandedColumn, HandedLog, HandedValues};
 pub use joint::{Joint, Signal};
 pub use memory::MemoryLimit;
 pub(crate) use memory::address_space;
-pub(crate) use names::{did_you_mean, is_control, nearest_name};
+pub(crate) use names::{did_you_mean, is_control, listed, nearest_name};
 pub(crate) use read::notes_on_subfolders;
 pub use read::{Experiment, Failure, ReadOptions, expand_folders};
 pub use record::{Property, Record};

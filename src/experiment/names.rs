@@ -40,7 +40,7 @@ pub(super) fn shown(text: &str) -> String {
 }
 
 /// Names as a list, cut where nobody reads on.
-pub(super) fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+pub(crate) fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     /// Names that are shown.
     const SHOWN: usize = 30;
     let all = names.len();

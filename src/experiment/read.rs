@@ -89,7 +89,33 @@ impl Experiment {
             experiment.add(read_log(path, stem.as_deref(), options, &budget), path);
             stems.extend(stem);
         }
+        experiment.skip_logs_without();
         experiment
+    }
+
+    /// That a log lacks a joint which is asked for is no failure where another log has it: how many do is
+    /// said.
+    pub(super) fn skip_logs_without(&mut self) {
+        let is_mapped = !self.options.columns.joints.is_empty();
+        let is_absent = |kind: &ReadErrorKind| match kind {
+            ReadErrorKind::NoSuchJoint => true,
+            ReadErrorKind::MissingColumn => is_mapped,
+            _ => false,
+        };
+        let is_read = |name: &&String| self.joints.iter().any(|joint| joint.name == **name);
+        for name in self.options.joints.iter().filter(is_read) {
+            let before = self.failures.len();
+            self.failures.retain(|failure| {
+                failure.joint.as_ref() != Some(name) || !is_absent(&failure.error.kind)
+            });
+            let (without, all) = (before - self.failures.len(), self.sources.len());
+            if without > 0 {
+                let note = format!(
+                    "joint `{name}`: {without} of {all} logs do not have it and are skipped"
+                );
+                self.notes.push(note);
+            }
+        }
     }
 
     /// Adds what was read of the log at `path`, whose name stands before what is said of it; a note that begins

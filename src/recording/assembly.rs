@@ -89,7 +89,7 @@ fn add_joint(
 ) -> Result<(), RecordError> {
     let joint = layout.joint;
     place::add(chunks, layout)?;
-    headline::add(chunks, layout, recording.sources)?;
+    headline::add(chunks, layout, recording.sources, recording.revisions_of(joint))?;
     signals::add(chunks, layout)?;
     decisions::add(chunks, layout)?;
     verdict::add(chunks, layout, others)?;

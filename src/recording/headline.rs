@@ -1,12 +1,15 @@
-//! What was found of a joint, what is doubtful, what to do next: a strip above its decisions.
+//! What was found of a joint and its model, what is doubtful, what to do next: a strip above its
+//! decisions and above the revisions of its model.
 
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layout::JointLayout;
 use super::markdown::plain;
 use super::paths;
+use crate::delay::KindDelay;
 use crate::experiment::Source;
-use crate::report::delay_answer;
+use crate::explain::Verdict;
+use crate::report::{EstimatedJoint, Headline, ImprovedJoint, JointSummary, delay_answer};
 use crate::wording::capitalized;
 
 /// Adds `/headline`.
@@ -14,18 +17,26 @@ pub(super) fn add(
     chunks: &mut Chunks,
     layout: &JointLayout<'_>,
     sources: &[Source],
+    improved: Option<&ImprovedJoint<'_>>,
 ) -> Result<(), RecordError> {
-    chunks.page(paths::HEADLINE, text(layout, sources))
+    chunks.page(paths::HEADLINE, text(layout, sources, improved))
 }
 
-fn text(layout: &JointLayout<'_>, sources: &[Source]) -> String {
+fn text(
+    layout: &JointLayout<'_>,
+    sources: &[Source],
+    improved: Option<&ImprovedJoint<'_>>,
+) -> String {
     let estimated = layout.estimated;
     let name = plain(&estimated.joint.name);
-    let answer = format!("**{name}: {}**", plain(&delay_answer(estimated)));
+    let answer = format!("**{name}: {}**", plain(&delays(estimated)));
     // What to do about a warning is in the report and on the terminal.
     let warnings = estimated.warnings().into_iter();
     let mut sentences: Vec<String> =
         warnings.map(|warning| format!("⚠ {}.", plain(&capitalized(&warning.short)))).collect();
+    sentences.extend(
+        improved.map(|improved| format!("**Model: {}.**", plain(&improved.finding.headline()))),
+    );
     let doubtful = layout.segments().filter(|(_, segment)| segment.is_open()).count();
     let log = match sources {
         [source] => source.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -37,11 +48,39 @@ fn text(layout: &JointLayout<'_>, sources: &[Source]) -> String {
         _ if estimated.obstacle().is_some() => {
             format!("What the columns are taken for: `tauscope columns {}`", quoted(&log))
         }
-        0 => format!("No decision is doubtful. What a model lacks: `tauscope improve {data}`"),
+        0 => format!("No decision is doubtful. {}", next(&data, improved)),
         1 => format!("1 decision is doubtful. {}", review(&data)),
         count => format!("{count} decisions are doubtful. {}", review(&data)),
     });
     format!("{answer}  \n{}", sentences.join(" "))
+}
+
+/// The delays in a sentence that fits into the strip.
+fn delays(estimated: EstimatedJoint<'_>) -> String {
+    let summary = JointSummary::of(estimated);
+    let Headline::Kinds(kinds) = &summary.headline else { return delay_answer(estimated) };
+    let median = |kind: &KindDelay| {
+        let typical = kind.typical.as_ref()?;
+        Some(format!("{} {:.3} s", kind.transition, typical.median_s))
+    };
+    let medians: Vec<String> = kinds.iter().filter_map(median).collect();
+    let (accepted, steps) = (summary.accepted, summary.steps);
+    format!("Delay (median) {}; {accepted} of {steps} steps accepted.", medians.join(", "))
+}
+
+/// What follows where no decision is doubtful.
+fn next(data: &str, improved: Option<&ImprovedJoint<'_>>) -> String {
+    let Some(improved) = improved else {
+        return format!("What a model lacks: `tauscope improve {data}`");
+    };
+    let add = improved.finding.conclusion().commands.into_iter().next();
+    match (add, improved.finding.verdict) {
+        (Some(add), _) => format!("To add it: `{add}`"),
+        (None, Verdict::Adequate) => {
+            "To check it on another log: `tauscope compare LOG --model MODEL.toml`".to_owned()
+        }
+        (None, _) => "Where the rest arises is on the tab behind the ladder.".to_owned(),
+    }
 }
 
 /// How decisions are corrected.

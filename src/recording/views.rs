@@ -210,8 +210,13 @@ impl Tab<'_> {
         let right = [(7.2, self.text("Verdict", paths::VERDICT)), (2.8, self.lists())];
         let columns =
             [(6.8, Page::stacked("Segment", left)), (3.2, Page::stacked("Verdicts", right))];
+        self.below_headline("Decisions", Page::beside("Steps", columns))
+    }
+
+    /// A page below what was found of the joint.
+    fn below_headline(&self, name: &str, page: Page) -> Page {
         let headline = self.text("What was found", paths::HEADLINE);
-        Page::stacked("Decisions", [(1.3, headline), (8.7, Page::beside("Steps", columns))])
+        Page::stacked(name, [(1.3, headline), (8.7, page)])
     }
 
     fn drawing(&self) -> Page {
@@ -334,7 +339,8 @@ impl Tab<'_> {
         let parameters = self.text("Parameters", paths::REVISION_PARAMETERS);
         let left = [(4.4, Page::tabs("Ladder", [sheet, share])), (5.6, record)];
         let right = Page::tabs("Texts", [words, parameters]);
-        Page::beside("Revisions", [(7.3, Page::stacked("Drawings", left)), (2.7, right)])
+        let columns = [(7.3, Page::stacked("Drawings", left)), (2.7, right)];
+        self.below_headline("Revisions", Page::beside("Model", columns))
     }
 
     /// Numbers of the models that are drawn beside the measurement: of many revisions of one model the

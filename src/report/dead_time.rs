@@ -25,18 +25,6 @@ pub(crate) fn dead_time_sentences(joint: &EstimatedJoint<'_>) -> Vec<String> {
     sentences
 }
 
-/// The dead time of a joint in a line, where its input moves all the time, and what may bias it.
-pub(super) fn dead_time_answer(joint: EstimatedJoint<'_>) -> Option<String> {
-    let found = joint.estimate.dead_time.as_ref()?;
-    Some(
-        [Some(finding(found)), feedback(found)]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join("; "),
-    )
-}
-
 fn moves(motion: &InputMotion) -> String {
     let changes = percent(motion.changes);
     let steps = motion.travel_in_steps.map_or_else(String::new, |share| {

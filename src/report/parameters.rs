@@ -19,11 +19,16 @@ pub(super) fn model_text(joint: &Joint, comparison: &Comparison, called: Option<
     let Comparison { fit, termination, .. } = comparison;
     let called = called.map_or_else(String::new, |called| format!("{called}; "));
     let mut lines = vec![format!("model of {} ({called}{termination}):", joint.name)];
+    let of_steps = delay_of_steps(joint, &fit.model);
     let said = |(parameter, unit): (&Parameter, String)| {
-        let own = |name: &str| format!("{name} {}", parameter_value(parameter, &unit));
-        match parameter.name.rsplit_once('.') {
-            Some((effect, name)) => (format!("{effect}: "), own(name)),
-            None => (String::new(), own(&parameter.name)),
+        let value = parameter_value(parameter, &unit);
+        match (parameter.name.rsplit_once('.'), &of_steps) {
+            (Some((effect, name)), _) => (format!("{effect}: "), format!("{name} {value}")),
+            (None, Some(of_steps)) if parameter.name == "delay" => (
+                String::new(),
+                format!("delay of the steps {of_steps} (constant of its law {value})"),
+            ),
+            (None, _) => (String::new(), format!("{} {value}", parameter.name)),
         }
     };
     let said: Vec<_> = telling_parameters(joint, fit).map(said).collect();
@@ -32,13 +37,8 @@ pub(super) fn model_text(joint: &Joint, comparison: &Comparison, called: Option<
         let values: Vec<_> = of_effect.iter().map(|(_, value)| value.as_str()).collect();
         lines.push(format!("  {effect}{}", values.join(", ")));
     }
-    let delays = delay_of_steps(joint, &fit.model);
-    lines.extend(delays.map(|delays| format!("  {DELAY_OF_STEPS}: {delays}")));
     lines.join("\n")
 }
-
-/// What [`delay_of_steps`] is.
-const DELAY_OF_STEPS: &str = "delay of the steps in the record";
 
 /// Which delays a law gives to the steps of the record: those of its parameters are of a step of
 /// no size.
@@ -50,7 +50,7 @@ pub(crate) fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String
         return None;
     }
     if model.takes_measured_delays() {
-        return Some("of each as it was measured".to_owned());
+        return Some("as measured at each".to_owned());
     }
     let mut delays_s = Vec::new();
     for (trial, start_s) in joint.trials.iter().zip(starts_s(&joint.trials)) {

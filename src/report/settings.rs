@@ -1,7 +1,7 @@
 //! The settings in words.
 
 use super::EstimatedJoint;
-use crate::delay::{CONFIDENCE, FirstLast, Method, Settings};
+use crate::delay::{Automatic, CONFIDENCE, FirstLast, Method, Settings};
 use crate::study::JointEstimate;
 use crate::units::Length;
 use crate::wording::number;
@@ -79,25 +79,48 @@ fn reaction(settings: &Settings) -> String {
     }
 }
 
+/// Rows that are said with every method: its lengths and its low-pass, and of some the interval.
+const ALWAYS: [&str; 4] = ["α", "β", "low-pass", "interval of a delay"];
+
+/// Those of the [`settings_rows`] that are said `always`, or are not as the method has them by itself.
+fn telling<'a>(
+    settings: &Settings,
+    always: &'a [&str],
+) -> impl Iterator<Item = (&'static str, String)> + use<'a> {
+    let usual = settings_rows(&Settings::of(settings.method));
+    let rows = settings_rows(settings).into_iter().zip(usual);
+    rows.filter(|(row, usual)| always.contains(&row.0) || row != usual).map(|(row, _)| row)
+}
+
 /// The settings in one line: the method with its lengths and its low-pass, and what is not as the
+/// method has it by itself. What is `automatic` stands above, for each joint.
+pub(super) fn settings_line(settings: &Settings, automatic: Automatic) -> String {
+    let spec = settings.method.spec();
+    let Automatic { alpha, beta, passband } = automatic;
+    let chosen = ALWAYS.into_iter().zip([alpha, beta, passband]);
+    let is_chosen = |name: &str| chosen.clone().any(|it| it == (name, true));
+    let always = ALWAYS.get(..if spec.has_intervals { 4 } else { 3 }).unwrap_or_default();
+    let said = telling(settings, always).map(|(name, value)| {
+        if is_chosen(name) { format!("{name} as above") } else { format!("{name} {value}") }
+    });
+    format!("{}: {}", spec.fits, said.collect::<Vec<_>>().join("; "))
+}
+
+/// The settings as a name: the method with its lengths and its low-pass, and what is not as the
 /// method has it by itself.
 pub(crate) fn settings_in_short(settings: &Settings) -> String {
-    /// Rows of [`settings_rows`] that are there in any case.
-    const ALWAYS: [&str; 4] = ["method", "α", "β", "low-pass"];
     let Settings { method, low_pass, .. } = settings;
     let (alpha, beta) = (settings.alpha_length(), settings.beta_length());
     let mut parts = vec![method.to_string()];
     parts.push(format!("α {alpha}, β {beta}"));
     parts.extend(low_pass.map(|filter| format!("{} Hz", number(filter.cutoff_hz))));
-    let usual = settings_rows(&Settings::of(*method));
-    let changed = settings_rows(settings).into_iter().zip(usual);
-    let changed = changed.filter(|(row, usual)| row != usual && !ALWAYS.contains(&row.0));
-    parts.extend(changed.map(|((name, value), _)| format!("{name} {value}")));
+    let changed = telling(settings, &[]).filter(|(name, _)| !ALWAYS[..3].contains(name));
+    parts.extend(changed.map(|(name, value)| format!("{name} {value}")));
     parts.join(", ")
 }
 
 /// A length in words: `10 samples` or `0.1 s`.
-pub(super) fn length(length: Length) -> String {
+fn length(length: Length) -> String {
     match length {
         Length::Samples(samples) => format!("{samples} samples"),
         Length::Seconds(seconds) => format!("{seconds} s"),

@@ -1,13 +1,12 @@
 //! Tables for the terminal.
 
 use super::doubt::doubtful_text;
-use super::settings::{length, own_settings};
+use super::settings::{own_settings, settings_line};
 use super::text_table::TextTable;
 use super::warning::Scatter;
 use super::{DelayRange, EstimatedJoint, Headline, JointSummary, dead_time_sentences};
-use crate::delay::{Automatic, Chosen, Condition, FirstLast, Interpolation, OnsetModel, Settings};
+use crate::delay::{Chosen, Condition, OnsetModel, Settings};
 use crate::numerics::LowPass;
-use crate::units::Length;
 use crate::wording::{measure, percent, rounded};
 
 /// The table of `estimate`: a row per joint, and the settings below it.
@@ -180,53 +179,4 @@ pub(crate) fn summary_cells(name: &str, summary: &JointSummary) -> [String; 7] {
 fn reasons(rejected: &[(Condition, usize)]) -> String {
     let parts: Vec<_> = rejected.iter().map(|(why, count)| format!("{why} {count}")).collect();
     parts.join(", ")
-}
-
-/// α and β, each with its unit where they have not the same.
-fn alpha_and_beta(settings: &Settings, automatic: Automatic) -> String {
-    let (alpha, beta) = (settings.alpha_length(), settings.beta_length());
-    let in_samples = |is_chosen: bool, value: Length| match value {
-        Length::Samples(value) if !is_chosen => Some(value),
-        _ => None,
-    };
-    if let Some((alpha, beta)) =
-        in_samples(automatic.alpha, alpha).zip(in_samples(automatic.beta, beta))
-    {
-        return format!("α = {alpha}, β = {beta} samples");
-    }
-    let own = |name: &str, is_chosen: bool, value: Length| {
-        if is_chosen { format!("{name} as above") } else { format!("{name} = {}", length(value)) }
-    };
-    format!("{}, {}", own("α", automatic.alpha, alpha), own("β", automatic.beta, beta))
-}
-
-/// The settings in one line, as a person would say them.
-pub(super) fn settings_line(settings: &Settings, automatic: Automatic) -> String {
-    let spec = settings.method.spec();
-    let low_pass =
-        if automatic.passband { "low-pass as above".to_owned() } else { low_pass_text(settings) };
-    let has_shortest = settings.min_delay_length() != Length::Samples(0);
-    let parts = [
-        Some(alpha_and_beta(settings, automatic)),
-        spec.has_intervals.then(|| format!("{} % intervals", 100.0 * settings.interval)),
-        Some(low_pass),
-        settings.confidence.map(|confidence| format!("reactions at {} %", 100.0 * confidence)),
-        settings.output_limits.map(|(low, high)| format!("output between {low} and {high}")),
-        (settings.min_slope_change > 0.0)
-            .then(|| format!("slope change ≥ {} per sample", settings.min_slope_change)),
-        has_shortest.then(|| format!("hold ≥ {}", length(settings.min_delay_length()))),
-        settings.max_delay_length().map(|delay| format!("delay ≤ {}", length(delay))),
-        settings.max_sse.map(|limit| format!("SSE < {limit}")),
-        (settings.min_step > 0.0).then(|| format!("input steps > {}", settings.min_step)),
-        (settings.interpolation == Interpolation::Linear)
-            .then(|| "delay linear between steps".to_owned()),
-        match settings.first_last {
-            FirstLast::Auto => None,
-            FirstLast::Reject => Some("first and last step rejected".to_owned()),
-            FirstLast::Keep => Some("first and last step kept".to_owned()),
-        },
-        settings.paper.then(|| "Algorithm 1 to the letter".to_owned()),
-    ];
-    let parts: Vec<_> = parts.into_iter().flatten().collect();
-    format!("{}: {}", spec.fits, parts.join("; "))
 }

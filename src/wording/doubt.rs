@@ -2,8 +2,7 @@
 
 use super::number::to_place;
 #[cfg(feature = "rrd")]
-use super::percent;
-use super::{counted, number};
+use super::{counted, number, percent};
 use crate::delay::{Condition, Doubt, Flag, Verdict};
 
 /// Margin of a condition that failed up to which it failed by little.
@@ -87,6 +86,7 @@ fn by_little(condition: Condition) -> String {
 }
 
 /// How many decisions are doubtful, and when one is: `6 of 587 decisions are doubtful (…)`.
+#[cfg(feature = "rrd")]
 pub(crate) fn doubtful_sentence<'d>(all: impl Iterator<Item = &'d Doubt>) -> String {
     let (doubtful, all) = all.fold((0_usize, 0_usize), |(doubtful, all), doubt| {
         (doubtful + usize::from(doubt.is_doubtful()), all + 1)

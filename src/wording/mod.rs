@@ -18,8 +18,8 @@ pub(crate) use difference::{
     difference_in_short, difference_sentences, missing_sentences, result_in_short, step_name,
 };
 #[cfg(feature = "rrd")]
-pub(crate) use doubt::{DOUBT_MEANS, doubt_in_short};
-pub(crate) use doubt::{doubt_percent, doubt_sentence, doubtful_sentence};
+pub(crate) use doubt::{DOUBT_MEANS, doubt_in_short, doubtful_sentence};
+pub(crate) use doubt::{doubt_percent, doubt_sentence};
 pub(crate) use effects::{effect_ids, effects_named, effects_text};
 pub(crate) use legible::legible;
 pub(crate) use misfit::{correlation_sentences, lack_of_fit};

@@ -204,8 +204,11 @@ fn names_that_were_mistyped_are_answered_with_the_nearest() {
         \"integrator\"\nparameters = { gain = 10.0, delay = 0.1 }\n",
     );
     let refused = [
-        ("estimte log.csv", "'estimate'"),
+        ("estimte log.csv", "`estimate`"),
         ("estimate log.csv --methd hinge", "'--method'"),
+        ("estimate log.csv --low-pass 5", "named in the help of `--passband`"),
+        ("explain log.csv --method hinge", "option of `estimate`, `sweep`, `report`"),
+        ("log.csv --decisions d.csv", "option of `estimate`"),
         ("estimate log.csv --method hing", "'hinge'"),
         ("estimate log.csv --joint arm=bom.input:boom.output", "`boom.input`"),
         ("estimate log.csv --time time_", "`time_s`"),
@@ -216,6 +219,7 @@ fn names_that_were_mistyped_are_answered_with_the_nearest() {
     for (arguments, near) in refused {
         let stderr = desk.refusal(arguments);
         assert!(stderr.contains(near), "{arguments}: {stderr}");
+        assert!(!stderr.contains("-- --"), "{arguments}: {stderr}");
     }
     let output = desk.run("explain log.csv --model model.toml --effects dead_band");
     let stderr = String::from_utf8(output.stderr).unwrap();
@@ -311,4 +315,54 @@ fn columns_says_what_is_mended_in_the_log() {
             "{table}"
         );
     }
+}
+
+/// What stands between backticks in a source: commands and options as they are typed.
+fn quoted_commands(source: &str) -> Vec<&str> {
+    let lines = source.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let spans = lines.flat_map(|line| line.split('`').skip(1).step_by(2));
+    spans.filter(|span| span.starts_with("--") || span.starts_with("tauscope ")).collect()
+}
+
+#[test]
+fn every_option_that_a_message_names_exists() {
+    let mut of_commands = std::collections::BTreeMap::new();
+    for command in commands() {
+        let help = printed(&tauscope(&[&command, "--help"]).output().unwrap());
+        let lines = help.lines().map(str::trim_start);
+        let options = lines.filter(|line| line.starts_with('-')).flat_map(str::split_whitespace);
+        let options = options.filter(|word| word.starts_with("--")).map(str::to_owned);
+        of_commands.insert(command, options.collect::<std::collections::BTreeSet<_>>());
+    }
+    let name = |word: &str| {
+        let is_of_name = |letter: char| letter.is_ascii_lowercase() || letter == '-';
+        word.chars().take_while(|letter| is_of_name(*letter)).collect::<String>()
+    };
+    let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
+    let mut seen = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if entry.is_dir() {
+                folders.push(entry);
+                continue;
+            }
+            let source = std::fs::read_to_string(&entry).unwrap_or_default();
+            for span in quoted_commands(&source) {
+                let mut words = span.split_whitespace();
+                let command = words.next().filter(|word| *word == "tauscope").and(words.next());
+                let known = |option: &String| match command.and_then(|one| of_commands.get(one)) {
+                    Some(own) => own.contains(option),
+                    None => of_commands.values().any(|own| own.contains(option)),
+                };
+                let options = span.split_whitespace().filter(|word| word.starts_with("--"));
+                for option in options.map(name).filter(|option| option.len() > 2) {
+                    // The second is one of Cargo.
+                    let is_other = ["--help", "--features"].contains(&option.as_str());
+                    assert!(is_other || known(&option), "{}: `{span}`", entry.display());
+                    seen += 1;
+                }
+            }
+        }
+    }
+    assert!(seen > 50, "{seen} options");
 }

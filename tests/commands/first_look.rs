@@ -69,7 +69,10 @@ fn the_commands_that_are_next_can_be_run() {
 fn what_is_no_log_and_no_command_is_said() {
     let desk = Desk::with(vec![banded("boom")]);
     assert!(desk.refusal("nothing.csv").contains("nothing.csv: cannot be read"));
-    assert!(desk.refusal("estmate log.csv").contains("'estimate'"));
+    let missing = desk.refusal("runs/log.dat2");
+    assert!(missing.contains("runs/log.dat2: no such file, and no command;"), "{missing}");
+    assert!(desk.refusal("-q runs/log.dat2").contains("runs/log.dat2: cannot be read"));
+    assert!(desk.refusal("estmate log.csv").contains("no command (did you mean `estimate`?)"));
     desk.write("notes", "no log\n");
     assert!(desk.refusal("notes").contains("notes"));
     let help = printed(&desk, "--help", 0);

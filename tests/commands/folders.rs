@@ -4,6 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
+use crate::desk::{Desk, banded};
 use serde_json::Value;
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 use tempfile::TempDir;
@@ -278,7 +279,7 @@ fn what_makes_no_sense_is_refused_with_the_remedy() {
     for table in [result.replace(".json", ".toml"), result] {
         workspace
             .run(&format!("estimate logs --results one --summary one/{table}"))
-            .is_refused_with("the result of a log has this name");
+            .is_refused_with("call it FILE.csv or FILE.parquet");
     }
     workspace.run("estimate logs --results new --summary new/all.csv").is_whole();
     fs::write(workspace.path("one/other.json"), "{\"cut\": ").unwrap();
@@ -390,4 +391,29 @@ fn dask_makes_the_bytes_of_one_process() {
     assert!(workspace.read("many.csv") == workspace.read("one.csv"));
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(said.contains("8 logs, each by itself"), "{said}");
+}
+
+#[test]
+fn a_joint_that_some_logs_lack_is_read_from_the_others() {
+    let desk = Desk::with(vec![banded("boom"), banded("arm")]);
+    fs::create_dir(desk.folder.path().join("logs")).unwrap();
+    let log = desk.read("log.csv");
+    desk.write("logs/1.csv", &log);
+    for name in ["2", "3"] {
+        desk.write(&format!("logs/{name}.csv"), &log.replace("boom.", "stick."));
+    }
+    let ended = desk.run("estimate logs --joint boom");
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(0), "{said}");
+    let note = "joint `boom`: 2 of 3 logs do not have it and are skipped";
+    assert!(said.contains(note) && !said.contains("left out"), "{said}");
+    // Also where names of columns say which logs have it.
+    let mapped = desk.run("estimate logs --joint b=boom.input:boom.output");
+    let said = String::from_utf8(mapped.stderr).unwrap();
+    assert_eq!(mapped.status.code(), Some(0), "{said}");
+    assert!(said.contains(&note.replace("boom", "b")), "{said}");
+    let refused = desk.refusal("estimate logs --joint bucket");
+    assert!(refused.contains("no joint `bucket`"), "{refused}");
+    // One that no log has is missed, whatever else is there.
+    assert_eq!(desk.run("estimate logs --joint boom --joint bucket").status.code(), Some(1));
 }

@@ -92,7 +92,16 @@ fn a_name_that_says_another_kind_of_file_is_refused() {
         ("estimate log.csv -o delays.csv", "FILE.rrd"),
         ("compare log.csv -o report.html", "FILE.rrd"),
         ("log.csv -o report.pdf", "FILE.html"),
-        ("report log.csv -o no/report.html", "no/report.html"),
+        (
+            "report log.csv -o no/report.html",
+            "no/report.html: cannot be written: there is no folder `",
+        ),
+        ("estimate log.csv --decisions d.xlsx", "FILE.csv or FILE.parquet"),
+        ("estimate log.csv --delays d.csv.gz", "FILE.csv or FILE.parquet"),
+        ("estimate log.csv --review-sheet sheet.parquet", "FILE.csv"),
+        ("improve log.csv --write m.json", "FILE.toml"),
+        ("columns log.csv --write columns.csv", "FILE.toml"),
+        ("simulate -o log.mat", "FILE.csv"),
     ];
     for (words, remedy) in cases {
         let ended = tauscope(folder.path()).args(words.split(' ')).output().unwrap();

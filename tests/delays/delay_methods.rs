@@ -445,7 +445,7 @@ fn every_step_says_how_near_it_was() {
     assert!(text.contains("--keep-first-last"), "{text}");
     assert!(text.contains("--min-slope-change 0.1"), "{text}");
     assert!(text.contains("% above at q = "), "{text}");
-    assert!(text.contains("% intervals; zero-phase"), "{text}");
+    assert!(text.contains("; interval of a delay "), "{text}");
 }
 
 #[test]

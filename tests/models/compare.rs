@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::process::Output;
 
-use crate::desk::Desk;
+use crate::desk::{Desk, banded};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
@@ -264,4 +264,14 @@ fn where_the_output_follows_the_input_no_error_is_one_of_the_speed() {
     assert!(text.contains("where the error arises (free run):"), "{text}");
     assert!(text.contains("of the squared error, in"), "{text}");
     assert!(!text.contains("of the speed"), "{text}");
+}
+
+#[test]
+fn a_joint_without_a_model_is_said_with_the_file_and_the_joints_that_it_has() {
+    let desk = Desk::with(vec![banded("boom")]);
+    let model = "schema = \"tauscope/model/1\"\n[joint.bom]\nstructure = \"integrator\"\nparameters = { gain = 1.0, delay = 0.1 }\n";
+    desk.write("model.toml", model);
+    let refused = desk.refusal("compare log.csv --model model.toml");
+    let expected = "joint `boom`: model.toml has no model of it, but of bom";
+    assert!(refused.contains(expected), "{refused}");
 }

@@ -221,3 +221,30 @@ fn a_mapping_that_was_kept_beside_a_log_holds_for_those_of_its_folder() {
     fs::write(&path, log("t,arm.input,arm.output")).unwrap();
     assert_eq!(read().joints[0].name, "arm");
 }
+
+#[test]
+fn a_speed_that_is_measured_is_no_input_and_one_that_is_given_is() {
+    let found = |late: usize, counts_per_deg: f64| {
+        let speed = |row: usize| {
+            let level = |row: usize| (row / 150 * 7919 % 13) as f64 - 6.0;
+            // Its rise takes some rows, as that of any joint.
+            (0..20).map(|k| level(row.saturating_sub(k)) / 20.0).sum::<f64>()
+        };
+        let mut position = 0.0;
+        let mut text = "__time,/arm/roll/velocity,/arm/roll/position\n".to_owned();
+        for row in 0..ROWS {
+            position += 0.01 * speed(row.saturating_sub(late));
+            let noise = 0.02 * ((row * 104_729 % 89) as f64 / 89.0 - 0.5);
+            let read = ((position + noise) * counts_per_deg).round() / counts_per_deg;
+            writeln!(text, "{:.2},{:.4},{read}", 0.01 * row as f64, speed(row)).unwrap();
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        fs::write(&path, text).unwrap();
+        Survey::of(&path, MemoryLimit::default()).unwrap().map.joints.len()
+    };
+    for counts_per_deg in [1000.0, 10.0] {
+        assert_eq!(found(0, counts_per_deg), 0, "measured, {counts_per_deg} counts per degree");
+        assert_eq!(found(8, counts_per_deg), 1, "given, {counts_per_deg} counts per degree");
+    }
+}

@@ -116,6 +116,13 @@ fn the_error_falls_along_the_revisions_as_in_the_report() {
     assert!(parts.iter().all(|(answer, _)| *answer == parts[0].0));
     let next = parts.iter().filter(|(_, page)| page.contains("is missing; with it"));
     assert_eq!(next.count(), revisions.len() - 1);
+    // Above them stands what was found, what is doubtful, and what is next.
+    let strip = back.fixed("/boom/headline", "TextDocument:text");
+    let strip = strip.as_string::<i32>().value(0);
+    let model = "**Model: no missing effect found.**";
+    for part in ["**boom: Delay ", model, "1 decision is doubtful", "`tauscope estimate "] {
+        assert!(strip.contains(part), "no `{part}` in {strip}");
+    }
 }
 
 #[test]

@@ -111,6 +111,7 @@ fn a_model_is_reported_with_its_ladder() {
     assert!(!desk.has("model.toml"), "a report changes no model");
     let page = parsed(&desk.read("report.html"));
     let text = words(page.root_element());
+    assert_eq!(text.matches(sentence).count(), 1, "each fact is said once: {sentence}");
     let improve = desk.json(
         &run.replace("report log.csv --improve", "improve log.csv --write m.toml")
             .replace(" -o report.html", ""),

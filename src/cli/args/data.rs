@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::number;
 use crate::cli::console::Host;
 use crate::cli::failure::said;
+use crate::cli::typed::Typed;
 use crate::experiment::{
     ColumnMap, Experiment, JointColumns, MemoryLimit, ReadOptions, Repair, expand_folders,
     format_names, notes_on_subfolders,
@@ -16,6 +17,11 @@ use clap::Args;
 /// Where the logs are and how they are read.
 #[derive(Args, Debug)]
 pub(crate) struct DataArgs {
+    /// The options of the command. It stands first, since what is read of a command line is taken out of
+    /// it; so does this group in each command.
+    #[command(flatten)]
+    pub(crate) typed: Typed,
+
     #[arg(help = help(), required = true, value_name = "DATA")]
     data: Vec<PathBuf>,
 
@@ -151,40 +157,26 @@ impl DataArgs {
         files.map(|file| file.canonicalize().unwrap_or_else(|_| file.clone())).collect()
     }
 
-    /// These options as they are typed, for one joint of several where it is named.
-    pub(crate) fn typed(&self, joint: Option<&str>) -> Vec<String> {
-        let ReadingArgs {
-            joint: joints,
-            time,
-            trial,
-            sample_period,
-            columns,
-            resample,
-            fill,
-            memory,
-        } = &self.reading;
+    /// Logs and options as they are typed, with those that are `further`; for one joint of several where
+    /// it is named.
+    pub(crate) fn words(&self, joint: Option<&str>, further: &[&str]) -> Vec<String> {
+        const READING: [&str; 7] =
+            ["time", "trial", "sample-period", "columns", "resample", "fill", "max-memory"];
         let is_mapped = |given: &&String| {
             joint.is_none_or(|name| given.split_once('=').is_some_and(|(own, _)| own == name))
         };
-        let mut joints: Vec<String> = joints.iter().filter(is_mapped).cloned().collect();
+        let mut joints: Vec<String> =
+            self.reading.joint.iter().filter(is_mapped).cloned().collect();
         if joints.is_empty() {
             joints.extend(joint.map(str::to_owned));
         }
-        let path = |path: &PathBuf| path.display().to_string();
-        let seconds = |period: SamplePeriod| period.seconds().to_string();
-        let options = [
-            ("--time", time.clone()),
-            ("--trial", trial.clone()),
-            ("--sample-period", sample_period.map(seconds)),
-            ("--columns", columns.as_ref().map(path)),
-            ("--resample", resample.map(seconds)),
-            ("--fill", fill.map(|fill| fill.to_string())),
-            ("--max-memory", memory.max_memory.map(|bytes| bytes.to_string())),
-        ];
-        let joints = joints.into_iter().map(|joint| ("--joint", Some(joint)));
-        let given = joints.chain(options).filter_map(|(name, value)| Some((name, value?)));
-        let options = given.flat_map(|(name, value)| [name.to_owned(), value]);
-        self.data.iter().map(path).chain(options).collect()
+        let joints = joints.into_iter().flat_map(|joint| ["--joint".to_owned(), joint]);
+        let options = self.typed.of(|name| READING.contains(&name) || further.contains(&name));
+        let options = options.filter_map(|(name, value)| {
+            Some([format!("--{name}"), value?.to_string_lossy().into_owned()])
+        });
+        let logs = self.data.iter().map(|path| path.display().to_string());
+        logs.chain(joints).chain(options.flatten()).collect()
     }
 }
 

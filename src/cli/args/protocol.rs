@@ -35,39 +35,15 @@ impl ProtocolArgs {
     pub(crate) fn split(&self) -> Option<Split> {
         self.split
     }
-
-    /// These options as they are typed.
-    pub(crate) fn typed(&self) -> Vec<String> {
-        let horizon = self.horizon.map(|horizon| match horizon {
-            Horizon::Auto => "auto".to_owned(),
-            Horizon::FreeRun => "free".to_owned(),
-            Horizon::Steps => "steps".to_owned(),
-            Horizon::Seconds(seconds) => seconds.to_string(),
-        });
-        let split = self.split.map(|split| match split {
-            Split::Time(share) => share.to_string(),
-            Split::Trials => "trials".to_owned(),
-            Split::Blocks => "blocks".to_owned(),
-        });
-        let options = [("--horizon", horizon), ("--split", split)].into_iter();
-        let given = options.filter_map(|(name, value)| Some([name.to_owned(), value?]));
-        given.flatten().collect()
-    }
 }
 
 /// What follows the effect in the command that adds it to the model of a joint, for each of
 /// `joints`; the model is in the file `model`.
-pub(crate) fn add_arguments(
-    data: &DataArgs,
-    protocol: &ProtocolArgs,
-    model: &str,
-    joints: &[Joint],
-) -> Vec<String> {
+pub(crate) fn add_arguments(data: &DataArgs, model: &str, joints: &[Joint]) -> Vec<String> {
     let of_joint = |joint: &Joint| {
         let one_of_several = (joints.len() > 1).then_some(joint.name.as_str());
-        let mut words = data.typed(one_of_several);
+        let mut words = data.words(one_of_several, &["horizon", "split"]);
         words.extend(["--model".to_owned(), model.to_owned()]);
-        words.extend(protocol.typed());
         quoted(&words)
     };
     joints.iter().map(of_joint).collect()

@@ -9,7 +9,7 @@ use clap::Args as ClapArgs;
 use crate::cli::args::{MemoryArgs, RunArgs};
 use crate::cli::console::{Verbosity, warn};
 use crate::cli::exit::Completion;
-use crate::cli::output::{Outputs, write_bytes};
+use crate::cli::output::{OutputKind, Outputs, write_bytes};
 use crate::cli::typed::mapping_options;
 use crate::experiment::{ColumnMap, Experiment, KEPT, MemoryLimit, ReadOptions, Survey};
 use crate::report::{columns_json, columns_table};
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     if let Some(path) = &args.write {
         let beside = args.log.with_file_name(KEPT);
         let path = if path.is_empty() { &beside } else { Path::new(path) };
-        let outputs = Outputs { files: vec![path], ..Outputs::default() };
+        let outputs = Outputs::default().with(OutputKind::Toml, [path]);
         outputs.check(std::slice::from_ref(&args.log))?;
         write(&survey, path, args.run.verbosity())?;
     }

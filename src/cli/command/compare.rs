@@ -1,10 +1,10 @@
 //! `tauscope compare`: a model beside the measurement.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::batch::Threads;
 use crate::diagnosis::Comparison;
-use crate::experiment::Joint;
+use crate::experiment::{Joint, listed};
 use crate::fit::FitError;
 use crate::model::{JointModel, ModelFile};
 use crate::report::{ComparedJoint, compare_json, compare_text};
@@ -47,10 +47,10 @@ pub(crate) struct Args {
 }
 
 /// A model by the name it has in the output.
-struct Named {
+struct Named<'a> {
     name: String,
-    /// None: plain integrators.
-    file: Option<ModelFile>,
+    /// Where it is, and what it holds; none: plain integrators.
+    file: Option<(&'a Path, ModelFile)>,
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
@@ -58,11 +58,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let inputs = [args.model.as_slice(), &args.against].concat();
     let session = Session::of_models("compare", &args.data, &args.output, None, inputs)?;
     let study = Study::of(session, &args.output.delay_settings())?;
-    for file in models.iter().filter_map(|named| named.file.as_ref()) {
+    for (_, file) in models.iter().filter_map(|named| named.file.as_ref()) {
         check_known(file, study.joints(), study.verbosity())?;
     }
     let results = study.work("comparing", |bar, others| {
-        let one = |named: &Named| {
+        let one = |named: &Named<'_>| {
             let starts = |joint: &Joint| named.starts(joint);
             let watched = args.protocol.with(named.mode(args)).watched(bar).beside(others);
             compare_joints(study.joints(), &study.estimates, starts, watched, &Threads)
@@ -88,7 +88,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
 }
 
 /// The models that are named, the one that the others are compared with first.
-fn models(paths: &[PathBuf], against: &[PathBuf]) -> anyhow::Result<Vec<Named>> {
+fn models<'a>(paths: &'a [PathBuf], against: &'a [PathBuf]) -> anyhow::Result<Vec<Named<'a>>> {
     let mut models = Vec::new();
     if paths.is_empty() {
         models.push(Named { name: "integrator".to_owned(), file: None });
@@ -98,17 +98,17 @@ fn models(paths: &[PathBuf], against: &[PathBuf]) -> anyhow::Result<Vec<Named>> 
         // Two files of one name in two folders are two models.
         let numbered = (2..).map(|number| format!("{stem} {number}"));
         let mut names = std::iter::once(stem.clone()).chain(numbered);
-        let is_free = |name: &String| models.iter().all(|known: &Named| known.name != *name);
+        let is_free = |name: &String| models.iter().all(|known: &Named<'_>| known.name != *name);
         let name = names.find(is_free).unwrap_or(stem.clone());
-        models.push(Named { name, file: Some(read_model(path)?) });
+        models.push(Named { name, file: Some((path, read_model(path)?)) });
     }
     Ok(models)
 }
 
-impl Named {
+impl Named<'_> {
     /// The model of `joint` in the file; none without a file, where there is none to ask.
     fn starts(&self, joint: &Joint) -> Option<JointModel> {
-        self.file.as_ref().and_then(|file| file.joint(&joint.name)).cloned()
+        self.file.as_ref().and_then(|(_, file)| file.joint(&joint.name)).cloned()
     }
 
     /// A joint's result, or a message on why there is none.
@@ -118,11 +118,18 @@ impl Named {
         result: Option<&'a Result<Comparison, FitError>>,
     ) -> Result<ComparedJoint<'a>, String> {
         let name = &joint.name;
-        let result =
-            result.ok_or_else(|| format!("joint `{name}`: not in model `{}`", self.name))?;
+        let result = result.ok_or_else(|| self.lacks(name))?;
         let comparison = result.as_ref().map_err(|error| joint_left_out(name, error))?;
-        let revision = self.file.as_ref().and_then(|file| file.revision(name)).unwrap_or(0);
+        let revision = self.file.as_ref().and_then(|(_, file)| file.revision(name)).unwrap_or(0);
         Ok(ComparedJoint { joint, model: &self.name, revision, comparison })
+    }
+
+    /// That the file has no model of `joint`, and of which joints it has.
+    fn lacks(&self, joint: &str) -> String {
+        let file = self.file.as_ref();
+        let path = file.map(|(path, _)| path.display().to_string()).unwrap_or_default();
+        let names: Vec<&str> = file.iter().flat_map(|(_, file)| file.names()).collect();
+        format!("joint `{joint}`: {path} has no model of it, but of {}", listed(names.into_iter()))
     }
 
     fn mode(&self, args: &Args) -> Mode {

@@ -88,7 +88,7 @@ impl Args {
     /// What follows the effect in the command that adds it, for each joint.
     fn add_arguments(&self, joints: &[Joint]) -> Vec<String> {
         let given = self.model.as_ref().map(|model| model.display().to_string());
-        add_arguments(&self.data, &self.protocol, &given.unwrap_or_else(fresh_name), joints)
+        add_arguments(&self.data, &given.unwrap_or_else(fresh_name), joints)
     }
 
     /// The best candidate of each joint beside the measurement, and its name.

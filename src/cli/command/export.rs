@@ -10,7 +10,7 @@ use clap::Args as ClapArgs;
 use crate::cli::args::read_model;
 use crate::cli::console::{Verbosity, message};
 use crate::cli::exit::Completion;
-use crate::cli::output::{Outputs, write_bytes};
+use crate::cli::output::{OutputKind, Outputs, write_bytes};
 use crate::experiment::{did_you_mean, nearest_name};
 use crate::export::{Export, File, Language, Units, by_ending, endings};
 use crate::model::{Component, Fitted, JointModel, ModelFile};
@@ -65,8 +65,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let joint = joint(&model, args.joint.as_deref()).with_context(|| shown(&args.model))?;
     let paths = |file: &File| target.with_extension(file.ending);
     let planned: Vec<PathBuf> = planned(language, target);
-    let planned: Vec<&Path> = planned.iter().map(PathBuf::as_path).collect();
-    let outputs = Outputs { files: planned, ..Outputs::default() };
+    let outputs = Outputs::default().with(OutputKind::Other, &planned);
     outputs.check(std::slice::from_ref(&args.model))?;
     let export = exported(args, &model, joint)?;
     let files = language.files(&export, name).with_context(|| shown(target))?;

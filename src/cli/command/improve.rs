@@ -56,9 +56,8 @@ pub(crate) struct Args {
 }
 
 /// Improves a model of each log by itself.
-fn each_log(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> {
+fn each_log(args: &Args) -> anyhow::Result<Completion> {
     args.folder.run(&Each {
-        program,
         command: "improve",
         data: &args.data,
         decisions: None,
@@ -71,9 +70,9 @@ fn each_log(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> 
     })
 }
 
-pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> {
+pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     if args.folder.is_asked_for() {
-        return each_log(args, program);
+        return each_log(args);
     }
     let file = args.model.read()?;
     let options = args.options(&file)?;
@@ -88,7 +87,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     args.model.check_target(&file, joints)?;
     // What follows the effect in the command that adds one more, for each joint.
     let model = target.display().to_string();
-    let arguments = add_arguments(data, &args.protocol, &model, joints);
+    let arguments = add_arguments(data, &model, joints);
     let name = name_of(Some(target));
     let estimates = &study.estimates;
     let start = Start { file: &file, model: &name, arguments: &arguments, estimates };

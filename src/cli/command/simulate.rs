@@ -11,7 +11,7 @@ use clap::Args as ClapArgs;
 use crate::cli::args::{Choices, one_of};
 use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
-use crate::cli::output::{OutputFile, Outputs, filled_file};
+use crate::cli::output::{OutputFile, OutputKind, Outputs, filled_file};
 use crate::experiment::read_text;
 
 /// Make a log of joints whose truth is known
@@ -107,8 +107,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         let _bar = Bar::spinner(verbosity, "sizing effects");
         spec(args)?
     };
-    let logs = std::iter::once(&args.output).chain(&args.truth).map(PathBuf::as_path).collect();
-    Outputs { logs, ..Outputs::default() }.check(args.plant.as_slice())?;
+    let (plants, tables): (Vec<_>, Vec<_>) = args.truth.iter().partition(|path| is_plant(path));
+    let outputs =
+        Outputs::default().with(OutputKind::Log, [&args.output]).with(OutputKind::Toml, plants);
+    outputs.with(OutputKind::Log, tables).check(args.plant.as_slice())?;
     let bar = Bar::spinner(verbosity, "simulating");
     let made = match &args.plant {
         Some(path) => simulate(&spec).with_context(|| path.display().to_string())?,
@@ -121,13 +123,17 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     Ok(Completion::Whole)
 }
 
+/// Whether a truth of this name is the whole plant.
+fn is_plant(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
+}
+
 /// Log and truth under their final names, or nothing.
 fn write(args: &Args, spec: &PlantSpec, made: &Synthetic) -> anyhow::Result<()> {
     let mut files = vec![filled_file(&args.output, |file| Ok(write_log(made, file)?))?];
     for path in &args.truth {
-        let is_plant = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
         files.push(filled_file(path, |file| {
-            if is_plant {
+            if is_plant(path) {
                 file.write_all(spec.to_toml()?.as_bytes())?;
             } else {
                 write_truth(&made.truth, file)?;

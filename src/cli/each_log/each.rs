@@ -2,14 +2,10 @@
 
 use std::path::Path;
 
-use clap::Command;
-
 use crate::cli::args::{DataArgs, RunArgs};
 
 /// A command that is to run for each log.
 pub(crate) struct Each<'a> {
-    /// The program, by which the options that were typed are read.
-    pub(crate) program: &'a Command,
     pub(crate) command: &'static str,
     pub(crate) data: &'a DataArgs,
     /// Where all decisions go, where the command has any.

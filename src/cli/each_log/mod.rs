@@ -4,13 +4,11 @@
 //! is what anybody gets who calls it so.
 
 mod each;
+mod options;
 mod store;
-mod typed;
 mod with_parent;
 mod work;
 
-use std::collections::BTreeSet;
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use crate::report::{FolderReport, folder_json};
@@ -20,10 +18,10 @@ use clap::Args;
 use crate::cli::args::Format;
 use crate::cli::console::{Verbosity, warn};
 use crate::cli::exit::Completion;
-use crate::cli::output::{CsvText, Outputs, target_of, write_table};
+use crate::cli::output::{CsvText, OutputKind, Outputs, write_table};
 
 pub(crate) use each::Each;
-use store::name_of;
+use options::LogOptions;
 pub(crate) use store::{Merged, kept_in, read_folders};
 pub(crate) use with_parent::end_with_parent;
 
@@ -108,7 +106,7 @@ impl FolderArgs {
                  `--summary`, and give them to `tauscope merge` when all parts are done"
             );
         }
-        let typed = typed::options(each.program, each.command)?;
+        let options = LogOptions::of(&each.data.typed);
         // A table may be in the folder.
         std::fs::create_dir_all(results)
             .with_context(|| format!("{}: cannot be made", results.display()))?;
@@ -116,15 +114,14 @@ impl FolderArgs {
         for note in each.data.left_out() {
             each.run.verbosity().say("note", note);
         }
-        tables.check(&[each.data.files(), typed.files.clone()].concat())?;
-        tables.check_beside(results, &all)?;
+        tables.check(&[each.data.files(), options.files.clone()].concat())?;
         if all.is_empty() {
             bail!(failures.into_iter().next().unwrap_or_else(|| "no log is given".to_owned()));
         }
         let part =
             |(index, _): &(usize, &PathBuf)| self.shard.is_none_or(|shard| shard.has(*index));
         let logs: Vec<&PathBuf> = all.iter().enumerate().filter(part).map(|(_, log)| log).collect();
-        let work = work::Work { each, results, typed: &typed, of: all.len() };
+        let work = work::Work { each, results, options: &options, of: all.len() };
         let done = work.run(&logs)?;
         failures.extend(done.failures);
         if let Some(Shard { number, of }) = self.shard {
@@ -149,27 +146,10 @@ impl Tables<'_> {
         [self.decisions, self.summary].into_iter().flatten()
     }
 
-    /// Refuses what would replace the result or the model of one of `logs`.
-    fn check_beside(&self, results: &Path, logs: &[PathBuf]) -> anyhow::Result<()> {
-        let folder = results.canonicalize().unwrap_or_else(|_| results.to_owned());
-        let named: BTreeSet<PathBuf> = logs.iter().map(|log| folder.join(name_of(log))).collect();
-        let is_taken = |table: &&Path| {
-            let target = target_of(table);
-            let ending = target.extension().and_then(OsStr::to_str).unwrap_or_default();
-            ["json", "toml"].contains(&ending) && named.contains(&target.with_extension(""))
-        };
-        match self.files().find(is_taken) {
-            Some(table) => bail!(
-                "{}: the result of a log has this name; give the table another",
-                table.display()
-            ),
-            None => Ok(()),
-        }
-    }
-
-    /// Refuses what cannot be written, or would replace an input or another table.
+    /// Refuses what cannot be written, or would replace an input or another table. No result of a log has the
+    /// name of a table.
     pub(crate) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
-        Outputs { tables: self.files().collect(), ..Outputs::default() }.check(inputs)
+        Outputs::default().with(OutputKind::Table, self.files()).check(inputs)
     }
 }
 

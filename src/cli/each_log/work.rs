@@ -14,8 +14,8 @@ use anyhow::{Context as _, anyhow, bail};
 use sha2::{Digest as _, Sha256};
 
 use super::each::Each;
+use super::options::LogOptions;
 use super::store::{Kept, check_own_file, is_foreign, name_of, text_of};
-use super::typed::Typed;
 use super::with_parent;
 use crate::cli::console::{Bar, Verbosity};
 
@@ -23,7 +23,7 @@ use crate::cli::console::{Bar, Verbosity};
 pub(crate) struct Work<'a> {
     pub(crate) each: &'a Each<'a>,
     pub(crate) results: &'a Path,
-    pub(crate) typed: &'a Typed,
+    pub(crate) options: &'a LogOptions,
     /// Logs in all, those of other parts included.
     pub(crate) of: usize,
 }
@@ -152,7 +152,7 @@ impl Work<'_> {
     }
 
     fn settings(&self) -> String {
-        let words: Vec<_> = self.typed.words.iter().map(|word| text_of(word)).collect();
+        let words: Vec<_> = self.options.words.iter().map(|word| text_of(word)).collect();
         words.join(" ")
     }
 
@@ -175,12 +175,12 @@ impl Work<'_> {
             hash.update(part);
             hash.update([0]);
         }
-        for word in &self.typed.words {
+        for word in &self.options.words {
             hash.update(word.as_encoded_bytes());
             hash.update([0]);
         }
         // A model file that is not there yet is made, and counts as empty.
-        for file in self.typed.files.iter().filter(|file| file.exists()) {
+        for file in self.options.files.iter().filter(|file| file.exists()) {
             hash.update(hash_of(file)?);
         }
         hash.update(hash_of(log)?);
@@ -192,7 +192,7 @@ impl Work<'_> {
         let key = key.as_ref().map_err(|error| anyhow!("{error:#}"))?;
         let program = std::env::current_exe().context("this program cannot be found")?;
         let mut command = Command::new(program);
-        command.arg(self.each.command).args(&self.typed.words);
+        command.arg(self.each.command).args(&self.options.words);
         command.args(["--format=json", "--quiet"]).arg(format!("--threads={threads}"));
         if let Some(model) = self.model_of(log) {
             check_own_file(&model)?;

@@ -118,6 +118,11 @@ impl OutputFile {
         if path.is_dir() {
             return Err(io::Error::from(io::ErrorKind::IsADirectory));
         }
+        let folder = folder_of(path);
+        if !folder.exists() {
+            let text = format!("there is no folder `{}`", folder.display());
+            return Err(io::Error::new(io::ErrorKind::NotFound, text));
+        }
         if let Some(opened) = OpenedFile::named(path) {
             return Ok(Target::Direct(BufWriter::new(opened.open(path)?)));
         }

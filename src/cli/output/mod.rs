@@ -8,7 +8,7 @@ mod table;
 
 pub(crate) use file::{OutputFile, filled_file, target_of, write_bytes, write_file};
 pub(crate) use limit::meet_file_limits;
-pub(crate) use outputs::Outputs;
+pub(crate) use outputs::{OutputKind, Outputs};
 #[cfg(not(feature = "rrd"))]
 pub(crate) use recording::left_out;
 pub(crate) use recording::{

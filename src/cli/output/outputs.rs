@@ -8,51 +8,108 @@ use super::file::{OutputFile, place_of, target_of};
 use super::table::FileKind;
 use crate::experiment::{MemoryLimit, Survey, is_named_like_a_log};
 
-/// The files that a command writes.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Outputs<'a> {
-    /// The recording for the viewer.
-    pub(crate) recording: Option<&'a Path>,
-    /// Tables, CSV or Parquet by their names' endings.
-    pub(crate) tables: Vec<&'a Path>,
-    /// Other files.
-    pub(crate) files: Vec<&'a Path>,
-    /// What has the form of a log, and may be made anew.
-    pub(crate) logs: Vec<&'a Path>,
+/// What an output is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum OutputKind {
+    /// A recording for the viewer.
+    Recording,
+    /// A table, CSV or Parquet by its name's ending.
+    Table,
+    /// A table that is CSV alone.
+    Csv,
+    /// A log as CSV, which may be made anew.
+    Log,
+    /// A model, or the columns of a log.
+    Toml,
+    /// Of which the command itself says how it is called.
+    Other,
 }
 
-impl Outputs<'_> {
-    /// Refuses what cannot be written, or would replace one of the `inputs`, one another, or a log; a
-    /// recording whose name says that it is something else, or whose parts would replace another output;
-    /// and tables that this build cannot write.
+impl OutputKind {
+    /// How its name may end, where that says what a file is.
+    fn endings(self) -> &'static [&'static str] {
+        match self {
+            Self::Recording => &[".rrd"],
+            Self::Table => &[".csv", ".txt", ".parquet", ".pq"],
+            Self::Csv | Self::Log => &[".csv", ".txt"],
+            Self::Toml => &[".toml"],
+            Self::Other => &[],
+        }
+    }
+
+    fn remedy(self) -> &'static str {
+        match self {
+            Self::Recording => {
+                "`-o` writes a recording for the Rerun viewer; call it FILE.rrd (tables of `estimate`: \
+                 `--decisions` and `--delays`; a page: `tauscope report`)"
+            }
+            Self::Table => "a table is written as CSV or Parquet; call it FILE.csv or FILE.parquet",
+            Self::Csv | Self::Log => "it is written as CSV; call it FILE.csv",
+            Self::Toml => "it is written as TOML; call it FILE.toml",
+            Self::Other => "",
+        }
+    }
+
+    /// Refuses a name that says that the file is of another kind.
+    fn check_name(self, path: &Path) -> anyhow::Result<()> {
+        const OTHERS: [&str; 9] =
+            [".html", ".htm", ".md", ".json", ".toml", ".pdf", ".rrd", ".xls", ".ods"];
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+        let ends = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
+        let says_another = is_named_like_a_log(&name) || ends(&OTHERS);
+        if self != Self::Other && says_another && !ends(self.endings()) {
+            bail!("{}: {}", path.display(), self.remedy());
+        }
+        Ok(())
+    }
+}
+
+/// The files that a command writes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Outputs<'a>(Vec<(OutputKind, &'a Path)>);
+
+impl<'a> Outputs<'a> {
+    /// With files of one kind.
+    pub(crate) fn with<P: AsRef<Path> + ?Sized + 'a>(
+        mut self,
+        kind: OutputKind,
+        paths: impl IntoIterator<Item = &'a P>,
+    ) -> Self {
+        self.0.extend(paths.into_iter().map(|path| (kind, path.as_ref())));
+        self
+    }
+
+    /// Refuses what cannot be written, or would replace one of the `inputs`, one another, or a log;
+    /// names that say another kind of file; a recording whose parts would replace another output; and
+    /// tables that this build cannot write.
     pub(crate) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
-        let others: Vec<&Path> = [&*self.files, &*self.tables].concat();
-        let outputs: Vec<&Path> = self.recording.iter().chain(&others).copied().collect();
-        check_places(outputs.iter().chain(&self.logs), inputs)?;
-        if let Some(path) = outputs.iter().find(|path| is_log(path)) {
-            bail!(
-                "{}: this is a log, which would be replaced; give the output another name",
-                path.display()
-            );
+        let Self(outputs) = self;
+        check_places(outputs.iter().map(|(_, path)| *path), inputs)?;
+        for (kind, path) in outputs {
+            let name = path.display();
+            if *kind != OutputKind::Log && is_log(path) {
+                bail!(
+                    "{name}: this is a log, which would be replaced; give the output another name"
+                );
+            }
+            kind.check_name(path)?;
+            if *kind == OutputKind::Recording {
+                check_beside_parts(path, outputs)?;
+            }
+            let is_parquet = *kind == OutputKind::Table && FileKind::of(path) == FileKind::Parquet;
+            if is_parquet && !cfg!(feature = "parquet") {
+                bail!(
+                    "{name}: Parquet is not in this build of tauscope; build it with `--features \
+                     parquet`, or give the file a name that ends in .csv"
+                );
+            }
         }
-        if let Some(recording) = self.recording {
-            check_name(recording)?;
-            check_beside_parts(recording, &others)?;
-        }
-        let parquet = self.tables.iter().find(|path| FileKind::of(path) == FileKind::Parquet);
-        match parquet {
-            Some(path) if !cfg!(feature = "parquet") => bail!(
-                "{}: Parquet is not in this build of tauscope; build it with `--features parquet`, or \
-                 give the file a name that ends in .csv",
-                path.display()
-            ),
-            _ => Ok(()),
-        }
+        Ok(())
     }
 }
 
 fn check_places<'a>(
-    outputs: impl Iterator<Item = &'a &'a Path>,
+    outputs: impl Iterator<Item = &'a Path>,
     inputs: &[PathBuf],
 ) -> anyhow::Result<()> {
     let inputs: Vec<PathBuf> = inputs.iter().map(|path| target_of(path)).collect();
@@ -81,30 +138,17 @@ fn is_log(path: &Path) -> bool {
     is_named_like_a_log(&name) && path.is_file() && survey().is_ok_and(|log| log.open.is_empty())
 }
 
-fn check_name(path: &Path) -> anyhow::Result<()> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let others = [".html", ".htm", ".md", ".json", ".toml", ".pdf"];
-    if is_named_like_a_log(&name) || others.iter().any(|ending| name.ends_with(ending)) {
-        bail!(
-            "{}: `-o` writes a recording for the Rerun viewer; call it FILE.rrd (tables of `estimate`: \
-             `--decisions` and `--delays`; a page: `tauscope report`)",
-            path.display()
-        );
-    }
-    Ok(())
-}
-
-/// Refuses `others` that have the name of one of the files to which a recording of many joints at
+/// Refuses other outputs that have the name of one of the files to which a recording of many joints at
 /// `path` goes.
-fn check_beside_parts(path: &Path, others: &[&Path]) -> anyhow::Result<()> {
+fn check_beside_parts(path: &Path, outputs: &[(OutputKind, &Path)]) -> anyhow::Result<()> {
     let (stem, ending) = (path.file_stem(), path.extension());
-    let is_part = |other: &&&Path| {
+    let is_part = |(_, other): &&(OutputKind, &Path)| {
         let number = other.file_stem().and_then(|name| {
             name.to_str()?.strip_prefix(stem?.to_str()?)?.strip_prefix('_')?.parse::<usize>().ok()
         });
         number.is_some() && other.extension() == ending && other.parent() == path.parent()
     };
-    if let Some(other) = others.iter().find(is_part) {
+    if let Some((_, other)) = outputs.iter().find(is_part) {
         bail!(
             "{}: a recording of many joints has files of this name beside {}; give it another",
             other.display(),

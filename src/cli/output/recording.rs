@@ -18,7 +18,7 @@ use crate::study::OtherResult;
 use super::file::filled_file;
 use super::file::{OutputFile, is_file, write_file};
 #[cfg(feature = "rrd")]
-use super::outputs::Outputs;
+use super::outputs::{OutputKind, Outputs};
 use crate::cli::console::{Bar, Verbosity};
 
 /// How many candidates are recorded.
@@ -110,7 +110,7 @@ impl<'a> Contents<'a> {
         let paths: Vec<PathBuf> = (1..=groups.len()).map(|number| part(path, number)).collect();
         let inputs: Vec<PathBuf> = self.sources.iter().map(|source| source.path.clone()).collect();
         let outputs: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
-        Outputs { files: outputs.clone(), ..Outputs::default() }.check(&inputs)?;
+        Outputs::default().with(OutputKind::Recording, &paths).check(&inputs)?;
         check_own(path, &outputs)?;
         let mut files = Vec::new();
         for (joints, path) in groups.iter().zip(&paths) {

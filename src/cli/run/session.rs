@@ -9,7 +9,7 @@ use crate::batch::Threads;
 use crate::cli::args::{DataArgs, OwnSettings, ResultArgs, RunArgs, read};
 use crate::cli::console::{Bar, Verbosity, warn};
 use crate::cli::exit::Completion;
-use crate::cli::output::Outputs;
+use crate::cli::output::{OutputKind, Outputs};
 use crate::cli::viewer::Stream;
 use crate::delay::{Automatic, Settings};
 use crate::experiment::{Experiment, Joint, ReadOptions};
@@ -40,9 +40,8 @@ impl<'a> Session<'a> {
         written: Option<&Path>,
         inputs: Vec<PathBuf>,
     ) -> anyhow::Result<Self> {
-        let recording = args.recording.as_deref();
-        let files = written.into_iter().collect();
-        let outputs = Outputs { recording, files, ..Outputs::default() };
+        let outputs = Outputs::default().with(OutputKind::Recording, &args.recording);
+        let outputs = outputs.with(OutputKind::Toml, written);
         outputs.check(&[data.files(), inputs].concat())?;
         let stream = args.stream.open(args.run.verbosity())?;
         Self::begin(command, data, &data.options_with_others()?, (&args.run, stream))

@@ -127,6 +127,7 @@ impl Columns<'_> {
         for pair in &mut pairs {
             pair.is_only = is_named;
         }
+        pairs.retain(|pair| !self.is_measured_rate(pair.input, pair.output));
         pairs
     }
 
@@ -423,9 +424,17 @@ impl Columns<'_> {
         self.moving.iter().copied().filter(is_free).filter(is_best).collect()
     }
 
-    /// How the output's rate follows the input, where that is clear.
+    /// How the output's rate follows the input, where that is clear; a speed that is measured is none.
     fn following(&self, input: usize, output: usize) -> Option<f64> {
-        self.signal(output)?.follows(self.signal(input)?)
+        let follows = self.signal(output)?.follows(self.signal(input)?)?;
+        (!self.is_measured_rate(input, output)).then_some(follows)
+    }
+
+    /// Whether a column that is not named like an input is the rate of `output`.
+    fn is_measured_rate(&self, input: usize, output: usize) -> bool {
+        let is_input = self.name(input).is_some_and(|name| name.side == Some(Side::Input));
+        let signals = self.signal(input).zip(self.signal(output)).filter(|_| !is_input);
+        signals.is_some_and(|(input, output)| input.is_rate_of(output))
     }
 }
 

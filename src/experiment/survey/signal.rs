@@ -90,6 +90,44 @@ impl Signal {
     }
 }
 
+impl Signal {
+    /// Whether it is the rate of `position`: its sum over some rows is what the position moves in them, and
+    /// no better so for rows before, as it would be for a speed that is given.
+    pub(super) fn is_rate_of(&self, position: &Self) -> bool {
+        /// Rows that are summed, for which the noise of the position counts the less the more they are.
+        const OVER: [usize; 3] = [5, 20, 80];
+        /// Rows that the speed may be before or behind the position's.
+        const SHIFT: usize = 20;
+        /// Rows that are looked at, spread over the record.
+        const ROWS: usize = 2_000;
+        /// Correlation from which all that moves the position is in the speed but noise: nine tenths of the
+        /// variance.
+        const WHOLE: f64 = 0.95;
+        let mut sum = 0.0;
+        let sums = std::iter::once(0.0).chain(self.values.windows(2).map(|pair| {
+            let step = 0.5 * (pair[0] + pair[1]);
+            sum += if step.is_finite() { step } else { 0.0 };
+            sum
+        }));
+        let (sums, y): (Vec<f64>, _) = (sums.collect(), &position.values);
+        let rows = sums.len().min(y.len());
+        let moved = |of: &[f64], k: usize, over: usize| Some(of.get(k + over)? - of.get(k)?);
+        let of_shift = |over: usize, shift: usize| {
+            let starts = SHIFT..rows.saturating_sub(over + SHIFT);
+            let starts = starts.step_by(rows.div_ceil(ROWS).max(1));
+            let pair =
+                |k: usize| Some([moved(&sums, k + SHIFT - shift, over)?, moved(y, k, over)?]);
+            let known = starts.filter_map(pair).filter(|pair| pair.iter().all(|x| x.is_finite()));
+            correlation(&known.collect::<Vec<_>>(), 0, 1)
+        };
+        OVER.into_iter().any(|over| {
+            let all = (0..=2 * SHIFT).map(|shift| of_shift(over, shift));
+            let best = all.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b));
+            best.is_some_and(|(shift, most)| most >= WHOLE && shift <= SHIFT)
+        })
+    }
+}
+
 /// Whether a cell is a number that is written in a way that is not read, as `9,993.91`.
 fn is_number_like(bad: &BadCell) -> bool {
     match bad {
@@ -105,16 +143,19 @@ fn is_number_like(bad: &BadCell) -> bool {
 /// The correlation of the first with the third number, each without what the second explains of it; 0 where
 /// nothing varies.
 fn partial_correlation(rows: &[[f64; 3]]) -> f64 {
-    let mean = |of: usize| rows.iter().map(|row| row[of]).sum::<f64>() / rows.len().max(1) as f64;
-    let means = [mean(0), mean(1), mean(2)];
-    let product = |a: usize, b: usize| {
-        rows.iter().map(|row| (row[a] - means[a]) * (row[b] - means[b])).sum::<f64>()
-    };
-    let correlation = |a: usize, b: usize| {
-        let scale = (product(a, a) * product(b, b)).sqrt();
-        if scale > 0.0 { product(a, b) / scale } else { 0.0 }
-    };
-    let (uy, ur, yr) = (correlation(0, 1), correlation(0, 2), correlation(1, 2));
+    let [uy, ur, yr] = [(0, 1), (0, 2), (1, 2)].map(|(a, b)| correlation(rows, a, b));
     let scale = ((1.0 - uy * uy) * (1.0 - yr * yr)).sqrt();
     if scale > f64::EPSILON { (ur - uy * yr) / scale } else { 0.0 }
+}
+
+/// The correlation of two of the numbers of each row; 0 where one does not vary.
+fn correlation<const N: usize>(rows: &[[f64; N]], a: usize, b: usize) -> f64 {
+    let mean = |of: usize| rows.iter().map(|row| row[of]).sum::<f64>() / rows.len().max(1) as f64;
+    let (of_a, of_b) = (mean(a), mean(b));
+    let sums = rows.iter().fold([0.0; 3], |[aa, bb, ab], row| {
+        let (a, b) = (row[a] - of_a, row[b] - of_b);
+        [aa + a * a, bb + b * b, ab + a * b]
+    });
+    let scale = (sums[0] * sums[1]).sqrt();
+    if scale > 0.0 { sums[2] / scale } else { 0.0 }
 }

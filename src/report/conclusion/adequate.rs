@@ -16,11 +16,10 @@ impl Finding<'_> {
     pub(super) fn adequate_headline(&self) -> String {
         let is_shown = self.comparison().lack_of_fit.is_some_and(|test| !test.adequate);
         let of_consequence = if is_shown { " of consequence" } else { "" };
-        let none = match self.explained() {
+        match self.explained() {
             None => format!("no missing effect{of_consequence} found"),
             Some(explained) => format!("{explained}; nothing more{of_consequence} is missing"),
-        };
-        format!("{}: {none}", self.joint().name)
+        }
     }
 
     pub(super) fn adequate(&self) -> Vec<Passage> {

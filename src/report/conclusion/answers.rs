@@ -3,25 +3,20 @@
 use super::figures::first_of;
 use crate::diagnosis::failure::FailsWhere;
 use crate::explain::{CONSEQUENCE, Candidate, Contribution, Verdict};
-use crate::report::dead_time::dead_time_answer;
-use crate::report::doubt::doubted;
 use crate::report::finding::Finding;
-use crate::report::{EstimatedJoint, JointSummary};
-use crate::wording::{doubtful_sentence, misfit_units, percent};
+use crate::wording::{misfit_units, percent};
 
 /// What a reviewer asks of a model first: question and answer.
 pub(crate) type Answer = (&'static str, String);
 
 impl Finding<'_> {
-    /// What was found, what is still unexplained, where the model fails, and what the delays are.
-    pub(crate) fn answers(&self) -> Vec<Answer> {
-        let delays = self.delays.map(|estimate| EstimatedJoint { joint: self.joint(), estimate });
-        let of_model = [
+    /// What was found, what is still unexplained, and where the model fails.
+    pub(crate) fn answers(&self) -> [Answer; 3] {
+        [
             ("Found", self.found()),
             ("Unexplained", self.left()),
             ("Fails", self.strongest_condition()),
-        ];
-        of_model.into_iter().chain(delays.map(|joint| ("Delays", delays_of(joint)))).collect()
+        ]
     }
 
     /// The effects that were found to be of no consequence.
@@ -91,23 +86,6 @@ impl Finding<'_> {
             (None, _) => {
                 "under no condition more than under others: see the worst segments".to_owned()
             }
-        }
-    }
-}
-
-/// The delays of a joint in a line, and how many of them are doubtful.
-fn delays_of(joint: EstimatedJoint<'_>) -> String {
-    let summary = JointSummary::of(joint);
-    match (dead_time_answer(joint), summary.steps) {
-        (Some(dead_time), _) => dead_time,
-        (None, 0) => format!("none: {}", summary.without_steps),
-        (None, steps) => {
-            let range = summary.delay_s.map_or_else(String::new, |range| {
-                format!(", median {:.3} s ({:.3} to {:.3} s)", range.median, range.min, range.max)
-            });
-            let all: Vec<_> = doubted(joint).map(|found| found.doubt).collect();
-            let doubtful = doubtful_sentence(all.iter());
-            format!("{} of {steps} steps accepted{range}; {doubtful}", summary.accepted)
         }
     }
 }

@@ -15,14 +15,14 @@ impl Finding<'_> {
         /// Percent by which an error falls at least, to be said to.
         const FALLS: f64 = 0.5;
         let (before, after) = (self.output(self.error()), self.output(best.rmse()));
-        let (joint, name) = (&self.joint().name, best.name());
+        let name = best.name();
         if best.error_reduction_percent < FALLS {
             return format!(
-                "{joint}: several effects are missing; the first, {name}, alone leaves the error at \
+                "several effects are missing; the first, {name}, alone leaves the error at \
                  {after}"
             );
         }
-        format!("{joint}: {name} is missing; with it the error falls from {before} to {after}")
+        format!("{name} is missing; with it the error falls from {before} to {after}")
     }
 
     pub(super) fn missing(&self, best: &Candidate) -> Vec<Passage> {

@@ -50,13 +50,12 @@ impl Finding<'_> {
     /// The verdict in words.
     pub(crate) fn conclusion(&self) -> Conclusion {
         let best = self.proposed();
-        let (headline, mut passages) = match (self.verdict, best) {
-            (_, Some(best)) => (self.missing_headline(best), self.missing(best)),
-            (Verdict::Adequate, None) => (self.adequate_headline(), self.adequate()),
-            (Verdict::MissingEffect, None) => (self.open_headline(), self.fails()),
-            (_, None) => (self.unexplained_headline(), self.unexplained()),
+        let mut passages = match (self.verdict, best) {
+            (_, Some(best)) => self.missing(best),
+            (Verdict::Adequate, None) => self.adequate(),
+            (Verdict::MissingEffect, None) => self.fails(),
+            (_, None) => self.unexplained(),
         };
-        let headline = self.doubted(headline);
         passages.extend(self.curves());
         let structure = first_order(self.joint(), self.consequence().fit);
         passages.extend(Passage::of(Topic::Structure, structure));
@@ -68,7 +67,19 @@ impl Finding<'_> {
             format!("tauscope add {id} {}", self.add_arguments)
         };
         let commands = best.iter().flat_map(|best| &best.effects).map(command).collect();
+        let headline = format!("{}: {}", self.joint().name, self.headline());
         Conclusion { headline, passages, commands }
+    }
+
+    /// The verdict in one sentence, without the name of the joint.
+    pub(crate) fn headline(&self) -> String {
+        let found = match (self.verdict, self.proposed()) {
+            (_, Some(best)) => self.missing_headline(best),
+            (Verdict::Adequate, None) => self.adequate_headline(),
+            (Verdict::MissingEffect, None) => self.open_headline(),
+            (_, None) => self.unexplained_headline(),
+        };
+        self.caution().map_or(found.clone(), |caution| format!("{caution}; {found}"))
     }
 
     /// Why the input of the log may not be what moves the joint: a model of other columns explains
@@ -76,14 +87,6 @@ impl Finding<'_> {
     pub(crate) fn caution(&self) -> Option<String> {
         let joint = EstimatedJoint { joint: self.joint(), estimate: self.delays? };
         Some(format!("{}: check the columns first", joint.obstacle()?.short))
-    }
-
-    /// The headline behind that caution.
-    fn doubted(&self, headline: String) -> String {
-        let Some(caution) = self.caution() else { return headline };
-        let name = &self.joint().name;
-        let found = headline.strip_prefix(&format!("{name}: ")).unwrap_or(&headline);
-        format!("{name}: {caution}; {found}")
     }
 
     /// In which trials the effects act that do not act in all.

@@ -15,7 +15,7 @@ impl Finding<'_> {
             let remains = self.consequence().remains();
             format!("{remains}, which no effect that was tried accounts for")
         };
-        format!("{}: {explained}; {rest}", self.joint().name)
+        format!("{explained}; {rest}")
     }
 
     pub(super) fn is_down_to_noise(&self) -> bool {
@@ -42,8 +42,7 @@ impl Finding<'_> {
     pub(super) fn open_headline(&self) -> String {
         let explained = self.explained().unwrap_or_else(|| self.follows());
         format!(
-            "{}: {explained}; {}: `tauscope explain` looks for what is still missing",
-            self.joint().name,
+            "{explained}; {}: `tauscope explain` looks for what is still missing",
             self.consequence().remains()
         )
     }

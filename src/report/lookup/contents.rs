@@ -7,7 +7,7 @@ use crate::delay::{
     TypicalDelay,
 };
 use crate::experiment::{Source, is_control};
-use crate::report::text::settings_line;
+use crate::report::settings::settings_line;
 use crate::report::{EstimatedJoint, dead_time_sentences};
 use crate::wording::number;
 

@@ -16,12 +16,10 @@ use crate::wording::{capitalized, difference_sentences, doubt_percent, doubt_sen
 /// Rows of a table that a reader may still want to scroll through.
 const MOST_ROWS: usize = 2000;
 
-/// All that is said of a joint.
+/// All that is said of a joint, but for its [`sentences`], which stand at the head of the page.
 pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
-    let mut blocks = vec![
-        Block::Lead(sentences(report, estimated)),
-        Block::Figures(vec![record::figure(estimated, format!("{file}-record"))]),
-    ];
+    let mut blocks =
+        vec![Block::Figures(vec![record::figure(estimated, format!("{file}-record"))])];
     blocks.extend(dead_time::blocks(estimated, file));
     let segments = segment::figures(estimated, &format!("{file}-segment"));
     if !segments.is_empty() {

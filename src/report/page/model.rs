@@ -13,7 +13,7 @@ use crate::report::equation::filled_in;
 use crate::report::finding::ranking_table;
 use crate::report::ladder::ladder_table;
 use crate::report::text_table::TextTable;
-use crate::report::{ComparedJoint, ImprovedJoint};
+use crate::report::{ComparedJoint, ImprovedJoint, Topic, delay_of_steps};
 use crate::wording::{
     capitalized, correlation_sentences, effect_ids, failure_sentences, known_value, listed,
     measure, parameter_units, parameter_value, remark,
@@ -23,8 +23,10 @@ use crate::wording::{
 pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     let compared = &improved.finding.compared;
     let conclusion = improved.conclusion();
-    let mut blocks = vec![Block::part("Model"), Block::Lead(lead(improved, &conclusion.headline))];
+    let mut blocks = vec![Block::part("Model")];
+    // Where the error arises has a part of its own.
     let passages = conclusion.passages.into_iter();
+    let passages = passages.filter(|passage| passage.topic != Topic::WhereItFails);
     blocks.extend(
         passages.map(|passage| Block::Passage {
             question: passage.topic.label(),
@@ -45,15 +47,6 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
     blocks.extend(failures(improved, file));
     blocks.extend(rankings(improved));
     blocks
-}
-
-/// What is found, or, where effects were added, what came of that.
-fn lead(improved: &ImprovedJoint<'_>, headline: &str) -> String {
-    if improved.came().is_empty() {
-        format!("{headline}.{}", stopped(improved))
-    } else {
-        sentence(improved)
-    }
 }
 
 /// What is said of the model, behind what speaks against the log, and whether the search was ended.
@@ -80,13 +73,12 @@ fn found(improved: &ImprovedJoint<'_>) -> String {
             let came = listed(&names, "and");
             let unit = improved.finding.compared.joint.output_unit.as_deref();
             let before = first.errors.judged().map_or_else(|| "-".to_owned(), |e| measure(e, unit));
-            // What is not shown to be the cause is not said to be.
-            let is_cause = improved.finding.verdict != Verdict::Unexplained;
-            let what = if is_cause { "missing" } else { "tried" };
-            format!(
-                "Model: {came} {was} {what}; with {it} ({model}) the error falls from {before} to \
-                 {error}; {rest}."
-            )
+            let falls = format!("({model}) the error falls from {before} to {error}; {rest}.");
+            // What is not shown to be the cause is not said to be missing.
+            match improved.finding.verdict {
+                Verdict::Unexplained => format!("Model: with {came} {falls}"),
+                _ => format!("Model: {came} {was} missing; with {it} {falls}"),
+            }
         }
         _ => format!("Model: {model}, error {error}; {rest}."),
     }
@@ -134,7 +126,12 @@ fn equations(compared: &ComparedJoint<'_>) -> String {
         let of_stages = move |one: &&Component| (from..=to).contains(&one.effect().spec().stage);
         components.filter(of_stages).map(law)
     };
-    let mut lines = vec![format!("in = input(t − delay), delay = {}", own(1))];
+    let of_steps = delay_of_steps(compared.joint, &fit.model);
+    let delay = match of_steps {
+        Some(of_steps) => format!("delay of the steps {of_steps}: {} + extra", own(1)),
+        None => format!("delay = {}", own(1)),
+    };
+    let mut lines = vec![format!("in = input(t − delay), {delay}")];
     lines.extend(laws(Stage::Transport, Stage::Dynamics));
     let acting = behind("in", laws(Stage::Spool, Stage::Dynamics).count());
     lines.push(format!("speed = gain · {acting}, gain = {}", own(0)));
@@ -169,9 +166,12 @@ fn parameters(compared: &ComparedJoint<'_>) -> TextTable {
     let fit = &compared.comparison.fit;
     let units = parameter_units(compared.joint, &fit.model);
     let header = ["parameter", "value ± standard error", "unit", "remark"];
+    let has_law = delay_of_steps(compared.joint, &fit.model).is_some();
     let row = |(parameter, unit): (&Parameter, String)| {
         let value = known_value(parameter.value, parameter.std_error);
-        let remark = remark(parameter.status).unwrap_or_default().to_owned();
+        let constant = Some("constant of its law").filter(|_| has_law && parameter.name == "delay");
+        let remarks: Vec<_> = constant.into_iter().chain(remark(parameter.status)).collect();
+        let remark = remarks.join(", ");
         [parameter.name.clone(), value, unit, remark]
     };
     TextTable::of(header, &[1], fit.parameters.iter().zip(units).map(row))

@@ -17,7 +17,7 @@ struct Choice<'a> {
     found: Doubted<'a>,
 }
 
-/// The best, a typical and the worst of the accepted decisions, and a rejected one.
+/// The best, a typical and the most doubtful of the accepted decisions, and a rejected one.
 pub(super) fn figures(estimated: EstimatedJoint<'_>, file: &str) -> Vec<Figure> {
     let choices = choices(estimated);
     choices.iter().map(|choice| choice.figure(estimated.joint, file)).collect()
@@ -28,12 +28,14 @@ fn choices(estimated: EstimatedJoint<'_>) -> Vec<Choice<'_>> {
     let (accepted, others): (Vec<_>, Vec<_>) =
         doubted(estimated).partition(|found| found.decision.accepted_delay().is_some());
     let mut accepted: Vec<_> = accepted.into_iter().filter(has_breakpoint).collect();
-    accepted.sort_by(|a, b| a.doubt.value().total_cmp(&b.doubt.value()));
+    accepted.sort_by(|a, b| unclear(a).total_cmp(&unclear(b)));
     let last = accepted.len().saturating_sub(1);
-    // What is odd is never clear, however little its doubt.
+    // What is odd is never clear, however well it is known.
     let clearest = accepted.iter().position(|found| found.doubt.flags.is_empty());
-    let clearest = clearest.map_or((0, "Least doubtful"), |place| (place, "Clearest"));
-    let mut places = vec![clearest, (last / 2, "Typical"), (last, "Most doubtful")];
+    let clearest = clearest.map_or((0, "Best known"), |place| (place, "Clearest"));
+    let doubt = |place: &usize| accepted.get(*place).map_or(0.0, |found| found.doubt.value());
+    let most = (0..accepted.len()).max_by(|a, b| doubt(a).total_cmp(&doubt(b)));
+    let mut places = vec![clearest, (last / 2, "Typical"), (most.unwrap_or(0), "Most doubtful")];
     let mut seen = HashSet::new();
     places.retain(|(place, _)| seen.insert(*place));
     let choice = |(place, why): (usize, &'static str)| {
@@ -42,6 +44,11 @@ fn choices(estimated: EstimatedJoint<'_>) -> Vec<Choice<'_>> {
     let rejected = others.into_iter().find(is_telling);
     let rejected = rejected.map(|found| Choice { why: "Rejected", found });
     places.into_iter().filter_map(choice).chain(rejected).collect()
+}
+
+/// How little is known of the delay of a decision: the width of its interval, without one its doubt.
+fn unclear(found: &Doubted<'_>) -> f64 {
+    found.decision.fine.map_or_else(|| found.doubt.value(), |fine| fine.high - fine.low)
 }
 
 /// Whether a rejected decision says something: the first and the last step of a trial are never
@@ -249,6 +256,22 @@ mod tests {
         };
         let chosen = chosen(&settings);
         assert_eq!(chosen, [("Clearest", 1), ("Typical", 3), ("Most doubtful", 5)]);
+    }
+
+    #[test]
+    fn where_there_are_intervals_the_narrowest_is_the_clearest() {
+        let settings = Settings { first_last: FirstLast::Keep, ..Settings::of(Method::AUTO) };
+        let joint = joint();
+        let estimate = estimate_joints(std::slice::from_ref(&joint), &settings, || (), &Threads);
+        let estimate = estimate.into_iter().next().unwrap().unwrap();
+        let estimated = EstimatedJoint { joint: &joint, estimate: &estimate };
+        let width = |found: &Doubted<'_>| found.decision.fine.map(|fine| fine.high - fine.low);
+        let clear = doubted(estimated).filter(|found| found.decision.accepted_delay().is_some());
+        let clear = clear.filter(|found| found.doubt.flags.is_empty());
+        let narrowest = clear.filter_map(|found| width(&found)).fold(f64::INFINITY, f64::min);
+        let choices = choices(estimated);
+        let clearest = choices.iter().find(|choice| choice.why == "Clearest").unwrap();
+        assert_eq!(width(&clearest.found), Some(narrowest));
     }
 
     #[test]

@@ -15,7 +15,9 @@ use crate::report::{DesignedJoint, design_json, design_text, input_table, previe
 use crate::cli::console::{Bar, warn};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, read_failures, said};
-use crate::cli::output::{Outputs, PreviewContents, Recorded, check_recordings, write_file};
+use crate::cli::output::{
+    OutputKind, Outputs, PreviewContents, Recorded, check_recordings, write_file,
+};
 
 use known::Known;
 
@@ -37,10 +39,12 @@ impl Args {
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
-    let outputs: Vec<_> = args.output.iter().chain(&args.preview).map(PathBuf::as_path).collect();
     let inputs: Vec<PathBuf> = args.data.iter().chain(&args.model).cloned().collect();
-    Outputs { logs: outputs, ..Outputs::default() }.check(&inputs)?;
-    if args.preview.as_deref().is_some_and(is_recording) {
+    let preview = args.preview.as_deref();
+    let kind =
+        if preview.is_some_and(is_recording) { OutputKind::Recording } else { OutputKind::Log };
+    Outputs::default().with(OutputKind::Log, &args.output).with(kind, preview).check(&inputs)?;
+    if kind == OutputKind::Recording {
         check_recordings()?;
     }
     let (known, joints, failures) = args.run.in_threads(|| {
@@ -56,7 +60,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         write_file(path, |file| Ok(input_table(&joints).write_csv(file)?))?;
         args.run.verbosity().say("input", path.display().to_string());
     }
-    match args.preview.as_deref() {
+    match preview {
         Some(path) if is_recording(path) => args.record(&known, &joints, path)?,
         Some(path) => {
             write_file(path, |file| Ok(preview_table(&joints).write_csv(file)?))?;

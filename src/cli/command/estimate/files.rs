@@ -10,8 +10,8 @@ use crate::report::{decision_table, delay_table, level_table, write_delays, writ
 use super::args::OutputArgs;
 use crate::cli::console::Verbosity;
 use crate::cli::output::{
-    Contents, CsvText, FileKind, Outputs, write_bytes, write_csv, write_file, write_parquet,
-    write_table,
+    Contents, CsvText, FileKind, OutputKind, Outputs, write_bytes, write_csv, write_file,
+    write_parquet, write_table,
 };
 use crate::cli::viewer::Stream;
 use crate::delay::Settings;
@@ -50,12 +50,12 @@ impl<'a> Files<'a> {
         inputs: &[PathBuf],
         text: CsvText,
     ) -> anyhow::Result<Self> {
-        let given = |path: &'a Option<PathBuf>| path.as_deref();
-        let tables = [&args.decisions, &args.delays, &args.table].into_iter().filter_map(given);
-        let files = [&args.export, &args.review_sheet].into_iter().filter_map(given);
-        let (tables, files) = (tables.collect(), files.collect());
-        let recording = args.recording.as_deref();
-        Outputs { recording, tables, files, ..Outputs::default() }.check(inputs)?;
+        let outputs = Outputs::default()
+            .with(OutputKind::Recording, &args.recording)
+            .with(OutputKind::Table, args.decisions.iter().chain(&args.delays).chain(&args.table))
+            .with(OutputKind::Csv, &args.review_sheet)
+            .with(OutputKind::Other, &args.export);
+        outputs.check(inputs)?;
         if let Some(sheet) = &args.review_sheet {
             check_sheet(sheet)?;
         }

@@ -17,9 +17,9 @@ use files::{Estimated, Files, Run};
 pub(crate) use args::Args;
 
 /// Estimates the delays of the logs; `program` is what its options are read by.
-pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> {
+pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     if args.folder.is_asked_for() {
-        return each_log(args, program);
+        return each_log(args);
     }
     let verbosity = args.output.run.verbosity();
     let is_drawn = args.output.is_recorded();
@@ -76,10 +76,9 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
 }
 
 /// Estimates each log by itself.
-fn each_log(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> {
+fn each_log(args: &Args) -> anyhow::Result<Completion> {
     let output = &args.output;
     args.folder.run(&Each {
-        program,
         command: "estimate",
         data: &args.data,
         decisions: output.decisions.as_deref(),

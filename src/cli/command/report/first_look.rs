@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::args::Args;
 use super::target::Target;
-use crate::cli::args::{DataArgs, Format};
+use crate::cli::args::{DataArgs, Format, read_model};
 use crate::cli::console;
 use crate::cli::run::{Study, estimated};
 use crate::cli::typed::quoted;
@@ -32,8 +32,8 @@ pub(super) fn rest(args: &Args, report: &Report<'_>, target: Option<&Target>) ->
         text.push('\n');
     }
     let model = target.and_then(|target| target.model.as_deref());
-    // Where no joint has a model there is no such file.
-    let model = model.filter(|_| report.revised.is_some());
+    // Where no joint has a model there is no such file, and one that was there may be no model.
+    let model = model.filter(|path| report.revised.is_some() && read_model(path).is_ok());
     let steps = next_steps(&args.data, target, model);
     let width = steps.iter().map(|(command, _)| command.len()).max().unwrap_or(0);
     text += "what next:\n";
@@ -49,7 +49,7 @@ fn next_steps(
     target: Option<&Target>,
     model: Option<&Path>,
 ) -> Vec<(String, &'static str)> {
-    let typed = quoted(&data.typed(None));
+    let typed = quoted(&data.words(None, &[]));
     let mut steps = Vec::new();
     match target {
         None => steps.push((

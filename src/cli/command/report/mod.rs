@@ -180,11 +180,11 @@ impl Reported<'_> {
         if joints.is_empty() {
             return Err(nothing_usable(failures.last()));
         }
-        let model = args.model.model.as_ref();
+        let written = target.and_then(|target| target.model.as_ref());
+        let model = args.model.model.as_ref().or(written);
         let model =
             model.map_or_else(|| "model.toml".to_owned(), |path| path.display().to_string());
-        let protocol = &args.model.protocol;
-        let arguments = add_arguments(&args.data, protocol, &model, &experiment.joints);
+        let arguments = add_arguments(&args.data, &model, &experiment.joints);
         let estimates = &study.estimates;
         let start = Start { file, model: &name, arguments: &arguments, estimates };
         let mut models = Vec::new();

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 
 use super::args::OutputArgs;
-use crate::cli::output::{Outputs, write_bytes};
+use crate::cli::output::{OutputKind, Outputs, write_bytes};
 use crate::report::Document;
 
 /// Where the report and its recording go.
@@ -56,9 +56,11 @@ impl Target {
 
     /// Refuses what cannot be written.
     pub(super) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
-        let files = [Some(&self.path), self.recording.as_ref(), self.review.as_ref()];
-        let files = files.into_iter().flatten().map(PathBuf::as_path).collect();
-        Outputs { files, ..Outputs::default() }.check(inputs)?;
+        let pages = [Some(&self.path), self.review.as_ref()].into_iter().flatten();
+        Outputs::default()
+            .with(OutputKind::Other, pages)
+            .with(OutputKind::Recording, &self.recording)
+            .check(inputs)?;
         let folder = self.folder();
         if self.kind == Kind::Markdown && folder.exists() && !folder.is_dir() {
             bail!("{}: the drawings need a folder of this name", folder.display());

@@ -20,7 +20,7 @@ use crate::cli::args::{ConditionArgs, DataArgs, RunArgs, ids_with, low_pass};
 use crate::cli::console::Bar;
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures, said};
-use crate::cli::output::{Outputs, Recorded, SweepContents};
+use crate::cli::output::{OutputKind, Outputs, Recorded, SweepContents};
 use crate::cli::run::Session;
 use crate::cli::viewer::StreamArgs;
 use values::{Values, lengths, methods, passbands};
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let verbosity = args.output.run.verbosity();
     let grid = args.grid()?;
     let recording = args.output.recording.as_deref();
-    Outputs { recording, ..Outputs::default() }.check(&args.data.files())?;
+    Outputs::default().with(OutputKind::Recording, recording).check(&args.data.files())?;
     let stream = args.output.stream.open(verbosity)?;
     let session =
         Session::begin("sweep", &args.data, &args.data.options()?, (&args.output.run, stream))?;
