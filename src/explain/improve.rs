@@ -68,10 +68,11 @@ pub fn improve(
     let begin = first.clone();
     let mut ended = add_stepwise(record, first, &given, options, workers, misfit, &mut visit);
     let is_far = misfit.is_far_from_noise(Errors::of(record, &ended.fit));
-    if !makes_strokes && is_far && ended.verdict == Verdict::Unexplained && !ended.was_stopped {
+    if !makes_strokes && is_far && !ended.was_stopped {
         /// Effects that are added to a structure, at most: what it has is most of what there is.
         const MORE: usize = 3;
         let mut steps = structured(record, &begin, options, misfit, workers);
+        steps.truncate(options.max_effects);
         if let Some(start) = steps.pop() {
             let mut later = Vec::new();
             let mut keep = |step: &Step| {
