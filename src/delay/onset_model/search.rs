@@ -295,10 +295,10 @@ impl Search {
             all.extend(found.min_by(|a, b| a.score.total_cmp(&b.score)));
         }
         let mut all = self.narrowed(all);
-        let settling = all.iter().find(|it| it.shape.family == Family::Settling);
-        let pairs = settling.and_then(|it| self.with_second_pole(it));
-        all.extend(pairs);
-        if !self.has_few_steps() {
+        if self.has_few_steps() {
+            let settling = all.iter().find(|it| it.shape.family == Family::Settling);
+            all.extend(settling.and_then(|it| self.with_second_pole(it)));
+        } else {
             let plain = all.iter().filter(|it| it.shape.family.may_be_curved());
             let curved: Vec<Candidate> = plain
                 .map(|it| {
