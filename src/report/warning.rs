@@ -77,7 +77,9 @@ impl EstimatedJoint<'_> {
     }
 
     fn misfit(&self) -> Option<Warning> {
-        let model = self.onset_model().filter(|model| model.is_misfit())?;
+        // Onsets that are no delays are none whatever the shape.
+        let model = self.onset_model();
+        let model = model.filter(|model| model.is_misfit() && model.obstacle().is_none())?;
         let responses = model.responses();
         let of_kind = |one: &ResponseOfKind| format!("{}s `{}`", one.transition.id(), one.shape);
         let shapes = responses.iter().map(of_kind).collect::<Vec<_>>().join(", ");

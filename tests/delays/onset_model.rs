@@ -141,7 +141,8 @@ fn a_response_that_is_not_alike_for_all_kinds_of_steps_is_said() {
         let model = found.onset_model.as_deref().unwrap();
         assert!(model.is_misfit() && model.obstacle().is_none(), "{model:?}");
         let one_side = |it: &&Decision| it.input_step.before * it.input_step.after > 0.0;
-        let fine: Vec<_> = found.decisions.iter().filter(one_side).filter_map(|it| it.fine).collect();
+        let fine: Vec<_> =
+            found.decisions.iter().filter(one_side).filter_map(|it| it.fine).collect();
         let holds = fine.iter().filter(|it| it.low <= 8.0 && 8.0 <= it.high).count();
         assert!(fine.len() > 15 && 10 * holds >= 8 * fine.len(), "{seed}: {holds} of {fine:?}");
     }

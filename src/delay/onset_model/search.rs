@@ -22,6 +22,7 @@ use super::dynamics::Before;
 use super::follows::Follows;
 use super::response::response_of;
 use super::shape::{Family, Shape, Shapes};
+use super::uncertainty::Residual;
 use super::windows::{Onset, Onsets, Pass, Run, Step, all};
 use crate::delay::neutral::Transition;
 use crate::numerics::median;
@@ -295,10 +296,7 @@ impl Search {
             all.extend(found.min_by(|a, b| a.score.total_cmp(&b.score)));
         }
         let mut all = self.narrowed(all);
-        if self.has_few_steps() {
-            let settling = all.iter().find(|it| it.shape.family == Family::Settling);
-            all.extend(settling.and_then(|it| self.with_second_pole(it)));
-        } else {
+        if !self.has_few_steps() {
             let plain = all.iter().filter(|it| it.shape.family.may_be_curved());
             let curved: Vec<Candidate> = plain
                 .map(|it| {
@@ -310,7 +308,14 @@ impl Search {
             self.keep_those_that_follow(&mut all);
         }
         all.sort_by(|a, b| a.score.total_cmp(&b.score));
-        self.restarted_at_best(all)
+        let mut all = self.restarted_at_best(all);
+        if self.has_few_steps() {
+            let settling = all.iter().find(|it| it.shape.family == Family::Settling);
+            let pair = settling.and_then(|it| self.with_second_pole(it));
+            all.extend(pair);
+            all.sort_by(|a, b| a.score.total_cmp(&b.score));
+        }
+        all
     }
 
     /// A candidate that settles with a second pole.
@@ -325,7 +330,15 @@ impl Search {
                 self.refined(start, ROUNDS)
             })
         });
-        found.min_by(|a, b| a.score.total_cmp(&b.score))
+        let mut two = found.min_by(|a, b| a.score.total_cmp(&b.score))?;
+        // Samples whose residuals go together are fewer than they look: those of a coarse sensor, say.
+        let pass = self.pass(Shapes::shared(two.shape), two.typical);
+        let memory = Residual::of(&self.runs, &two.onsets, &pass, None).memory;
+        let gained = one.score - two.score;
+        let windows = two.found().count() as f64;
+        let parameters = windows + self.of_parameters(&two) - self.of_parameters(one);
+        two.score = one.score - (gained + parameters) / memory + parameters;
+        Some(two)
     }
 
     /// Each candidate also from where the best has its onsets: which reaction is whose does not hang on
