@@ -27,7 +27,7 @@ impl Method {
         let families: &[Family] = match self {
             Self::TWO_LINE => return None,
             Self::HINGE => &[Family::Bend],
-            Self::LAG_AWARE => &[Family::Bend, Family::Lag, Family::Pair],
+            Self::LAG_AWARE => &Family::MOVING,
             _ => &Family::ALL,
         };
         OnsetModel::of(trials, neutral, settings, families)

@@ -151,8 +151,11 @@ impl Search {
         let same = all(&self.runs, &candidate.onsets)
             .filter(|(run, index, _)| kind.is_none_or(|kind| run.steps[*index].kind == kind));
         let (runs, onsets): (Vec<Run>, Vec<Onsets>) = same.map(alone).unzip();
-        let search = Self { runs, ..*self };
         let Candidate { shape, typical, .. } = candidate;
+        // An output that goes on moving does so in all parts of its windows.
+        let moves = shape.family.may_be_curved() && self.families.contains(&Family::Pair);
+        let families = if moves { &Family::MOVING } else { self.families };
+        let search = Self { runs, families, ..*self };
         let later = onsets.iter().map(|of_run| of_run.later(shape.mean())).collect();
         let bend = search.evaluate(Shape::BEND, later, typical + shape.mean(), 2);
         let shared = search.evaluate(*shape, onsets, *typical, 2);

@@ -33,9 +33,12 @@ impl Family {
     pub(in crate::delay) const ALL: [Self; 6] =
         [Self::Bend, Self::Lag, Self::Pair, Self::Settling, Self::SettlingPair, Self::Slew];
 
+    /// Those whose output goes on moving.
+    pub(in crate::delay) const MOVING: [Self; 3] = [Self::Bend, Self::Lag, Self::Pair];
+
     /// Whether holds may be curved: the others come to rest.
     pub(super) fn may_be_curved(self) -> bool {
-        matches!(self, Self::Bend | Self::Lag | Self::Pair)
+        Self::MOVING.contains(&self)
     }
 }
 
