@@ -192,17 +192,19 @@ impl Onsets {
         self.positions[first] =
             (run.steps[first].at + pass.typical).max(earliest).min(self.positions[first + 1]);
         (0..2).for_each(|_| self.sweep(run, affected.clone(), pass));
-        if self.lack(affected.clone(), pass.noise) >= before.lack(affected, pass.noise) {
+        if self.lack(affected.clone()) >= before.lack(affected) {
             *self = before;
         }
     }
 
-    /// What is left over in windows: the negative logarithm of their likelihood, in units of the noise.
-    fn lack(&self, range: Range<usize>, noise: f64) -> f64 {
-        let unit = (noise * noise).max(f64::MIN_POSITIVE);
-        let log = |square: f64| (square / unit).max(f64::MIN_POSITIVE).ln();
+    /// What is left over in windows: the negative logarithm of their likelihood, for a sample.
+    fn lack(&self, range: Range<usize>) -> f64 {
         let found = self.found[range].iter().flatten();
-        found.map(|onset| onset.samples() as f64 * log(onset.mean_square())).sum()
+        let (sum, samples) = found.fold((0.0, 0.0), |(sum, samples), onset| {
+            let log = onset.mean_square().max(f64::MIN_POSITIVE).ln();
+            (sum + onset.samples() as f64 * log, samples + onset.samples() as f64)
+        });
+        sum / f64::max(samples, 1.0)
     }
 }
 
