@@ -117,19 +117,20 @@ fn each_shape_is_found_with_its_delay() {
         (Plant::Oscillation(0.4, 0.3), "oscillation", 0.151),
         (Plant::Oscillation(0.5, 1.1), "bend_lag2", 0.064),
         (Plant::FirstOrder(0.3), "settling", 0.212),
-        // Its arrival, where its input says, ends what is looked at: too little to see a shape.
-        (Plant::Servo(6.0), "", 0.135),
+        // Its arrival, where its input says, ends what is looked at.
+        (Plant::Servo(6.0), "bend", 0.135),
     ];
     for (seed, (plant, shape, delay_s)) in (1..).zip(shapes) {
         let found = found(&trial(plant, delay_s, 24, 150.0, seed));
         let model = found.onset_model.as_deref().unwrap();
         let (error, covered, accepted) = against(&found, delay_s);
-        assert!(shape.is_empty() || model.shape() == shape, "{model:?}");
-        let most = if shape.is_empty() { 0.7 } else { 0.5 };
+        assert_eq!(model.shape(), shape, "{model:?}");
+        // Its windows are short.
+        let (most, least) = if matches!(plant, Plant::Servo(_)) { (0.7, 0.6) } else { (0.5, 0.7) };
         assert!(error < most, "{shape}: {error} samples");
         assert!(covered > 0.7 && accepted >= 18, "{shape}: {covered} of {accepted}");
         assert_eq!(model.obstacle(), None, "{shape}");
-        assert!(model.follows_input_r2() > 0.7, "{shape}");
+        assert!(model.follows_input_r2() > least, "{shape}");
     }
 }
 

@@ -6,19 +6,18 @@
 //! the likelihood over the samples of all windows,
 //!
 //! ```text
-//! Σ_i (n_i/2 ln(SSE_i/n_i) + k m/(m − k − 1)) + (parameters of the shape)/2 · ln n
+//! Σ_i (n_i/2 ln(SSE_i/n_i) + k) + (parameters of the shape)/2 · ln n
 //! ```
 //!
-//! with Akaike's count of the `k` parameters that each window has for itself, corrected for few samples
-//! `m` behind onsets, and Schwarz's of those of the shape; in which a window that something else disturbed
+//! with Akaike's count of the `k` parameters that each window has for itself, and Schwarz's of those of
+//! the shape; in which a window that something else disturbed
 //! counts by the logarithm of its error alone.
 //! Shapes whose onsets go far less with the input than those of others have missed them.
 //!
 //! # References
 //! G. H. Golub and V. Pereyra, "The differentiation of pseudo-inverses and nonlinear least squares
 //! problems whose variables separate", SIAM Journal on Numerical Analysis 10 (1973); G. Schwarz,
-//! "Estimating the dimension of a model", Annals of Statistics 6 (1978); C. M. Hurvich and C.-L. Tsai,
-//! "Regression and time series model selection in small samples", Biometrika 76 (1989).
+//! "Estimating the dimension of a model", Annals of Statistics 6 (1978).
 
 use super::alignment::{LONGEST, alignments};
 use super::dynamics::Before;
@@ -189,8 +188,7 @@ impl Search {
     }
 
     /// What is left over in all windows: the negative logarithm of its likelihood, and one for each
-    /// parameter that windows have for themselves, as Akaike's criterion counts those. Each candidate
-    /// has its own windows: its mean over them counts for as many samples as all have.
+    /// parameter that windows have for themselves, as Akaike's criterion counts those.
     fn score(&self, candidate: &Candidate, parameters: usize) -> f64 {
         /// Of the noise: what is left where there is none.
         const FLOOR: f64 = 0.1;
@@ -201,27 +199,12 @@ impl Search {
         if windows == 0 {
             return f64::INFINITY;
         }
-        let mean = if windows <= FEW_FOR_WEIGHTS {
-            (found().map(|onset| onset.sse).sum::<f64>() / samples).max(floor).ln()
+        let error = if windows <= FEW_FOR_WEIGHTS {
+            samples * (found().map(|onset| onset.sse).sum::<f64>() / samples).max(floor).ln()
         } else {
-            let log = |onset: &Onset| onset.samples() as f64 * onset.mean_square().max(floor).ln();
-            found().map(log).sum::<f64>() / samples
+            found().map(|onset| onset.samples() as f64 * onset.mean_square().max(floor).ln()).sum()
         };
-        // With the correction of Hurvich and Tsai for few samples, those behind the onsets.
-        let behind = found().map(|onset| onset.end as f64 - onset.position).sum::<f64>();
-        let (behind, parameters) = (behind / windows as f64, parameters as f64);
-        let counted = parameters * behind / (behind - parameters - 1.0).max(1.0);
-        self.samples() * mean / 2.0 + counted * self.steps() as f64
-    }
-
-    /// Samples of all windows, about: most stand in two of them.
-    fn samples(&self) -> f64 {
-        let of_run = |run: &Run| {
-            let steps = run.steps.len() as f64;
-            let two = run.output.len() as f64 * 2.0 * steps / (steps + 1.0);
-            two.min(2.0 * self.reach as f64 * steps)
-        };
-        self.runs.iter().map(of_run).sum()
+        error / 2.0 + (parameters * windows) as f64
     }
 
     /// What Schwarz's criterion adds for the parameters of a shape.
