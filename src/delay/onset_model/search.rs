@@ -162,7 +162,7 @@ impl Search {
         let bend = search.evaluate(Shape::BEND, later, typical + shape.mean(), 2);
         let shared = search.evaluate(*shape, onsets, *typical, 2);
         let of_shared = shared.score - search.of_parameters(&shared);
-        let mut candidates = search.select_near(bend);
+        let mut candidates = search.select_near(&bend);
         if candidates.first().is_none_or(|best| best.score >= of_shared) {
             candidates = vec![shared];
         }
@@ -280,18 +280,18 @@ impl Search {
 
     /// The shapes that the record supports, the best one first.
     pub(super) fn select(&self) -> Vec<Candidate> {
-        self.select_near(self.first())
+        self.select_near(&self.first())
     }
 
     /// The same about the onsets of broken lines.
-    fn select_near(&self, bend: Candidate) -> Vec<Candidate> {
+    fn select_near(&self, bend: &Candidate) -> Vec<Candidate> {
         let mut all = vec![bend.clone()];
         let others = Family::ALL.into_iter().skip(1).filter(|it| self.may_be(*it));
         for family in others {
             let grid = Shape::grid(family, self.hold, self.change).into_iter();
             let found =
                 grid.filter(|shape| shape.is_allowed(self.hold, self.change)).flat_map(|shape| {
-                    let starts = self.starts(shape, &bend);
+                    let starts = self.starts(shape, bend);
                     starts.into_iter().map(move |(positions, typical)| (shape, positions, typical))
                 });
             let found = found
