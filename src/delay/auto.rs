@@ -44,6 +44,7 @@ use serde::Serialize;
 use super::decision::{Decision, Verdict};
 use super::input_motion::InputMotion;
 use super::interval::FineDelay;
+use super::neutral::Neutral;
 use super::prepared::Prepared;
 use super::settings::{FirstLast, InSeconds, Settings};
 use super::spec::Method;
@@ -183,7 +184,7 @@ impl<'a> Observed<'a> {
         let prepared = Prepared::all(trials, &hinge);
         let alike = prepared.into_iter().filter(|trial| Some(trial.period) == period);
         let alike: Vec<Prepared<'_>> = alike.filter(|trial| !trial.steps.is_empty()).collect();
-        let model = Method::HINGE.shared(&alike, &hinge);
+        let model = Method::HINGE.shared(&alike, Neutral::of(trials), &hinge);
         for trial in &alike {
             let decisions = Method::HINGE.decide(trial, model.as_ref(), &hinge);
             record.add(&trial.raw, &decisions);

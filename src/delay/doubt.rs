@@ -174,14 +174,14 @@ impl Decision {
         let n = (last - self.segment.first).max(1) as f64;
         let (sum_x, sum_y) = samples().fold((0.0, 0.0), |(a, b), (x, y)| (a + x, b + y));
         let (mean_x, mean_y) = (sum_x / n, sum_y / n);
-        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        let (mut xx, mut xy) = (0.0, 0.0);
         for (x, y) in samples().map(|(x, y)| (x - mean_x, y - mean_y)) {
             xx += x * x;
             xy += x * y;
-            yy += y * y;
         }
-        // The squared error of one line through both: Σ(ŷ − ȳ)² less what its slope explains.
-        let bend = (yy - xy * xy / xx.max(f64::MIN_POSITIVE)).max(0.0);
+        // The squared error of one line through both, as a sum: nearly straight lines have hardly any.
+        let slope = xy / xx.max(f64::MIN_POSITIVE);
+        let bend: f64 = samples().map(|(x, y)| (y - mean_y - slope * (x - mean_x)).powi(2)).sum();
         let one_line = best.sse + bend;
         if one_line > 0.0 { bend / one_line } else { 0.0 }
     }
@@ -313,6 +313,19 @@ mod tests {
         }
         let expected = 1.0 - best.sse / line.sse();
         assert!((decision.doubt(&output).explained - expected).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_a_slight_break_in_a_steep_line_explains_is_no_rounding() {
+        // Without noise two lines explain all of a bend, however slight it is.
+        let input = (0..240).map(|k| f64::from(u8::from(k >= 100))).collect();
+        let line = |k: i32| 4096.0 * f64::from(k) + f64::from((k - 110).max(0)) / 1024.0;
+        let output: Vec<f64> = (0..240).map(line).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("1", 0.0, period, input, output.clone()).unwrap();
+        let decision = estimate(&trial, &settings()).unwrap().decisions.remove(0);
+        let doubt = decision.doubt(&output);
+        assert!(doubt.explained > 0.99, "{doubt:?}");
     }
 
     #[test]

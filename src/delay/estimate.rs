@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::coming_to_rest::ComingToRest;
 use super::decision::{Decision, ReviewerVerdict};
 use super::input_motion::{InputKind, InputMotion};
+use super::neutral::Neutral;
 use super::onset_model::OnsetModel;
 use super::prepared::Prepared;
 use super::profile::DelayProfile;
@@ -138,7 +139,7 @@ impl Estimator {
             let period = prepared.first().map(|trial| trial.period);
             // A response is looked for in the trials of the first one's period.
             let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
-            settings.method.shared(&prepared, &settings)
+            settings.method.shared(&prepared, Neutral::of(trials), &settings)
         });
         Ok(Self { settings, model: model.flatten().map(Arc::new), rest, motion })
     }

@@ -91,7 +91,7 @@ pub(crate) use margin::Remedy;
 pub use margin::RunnerUp;
 pub(crate) use method::end_at_the_next_step;
 pub use neutral::{Neutral, Transition};
-pub use onset_model::{Obstacle, OnsetModel, StepOnset};
+pub use onset_model::{Obstacle, OnsetModel, ResponseOfKind, StepOnset};
 pub use profile::DelayProfile;
 pub use scan::delay_scan;
 pub use search::{Candidate, Candidates};

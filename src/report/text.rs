@@ -84,9 +84,10 @@ fn low_pass_text(settings: &Settings) -> String {
     )
 }
 
-/// The response of a joint behind its dead times in words, where the method fits one.
+/// The response of a joint behind its dead times in words, where the method fits one and onsets are
+/// delays.
 pub(super) fn onset_line(joint: &EstimatedJoint<'_>) -> Option<String> {
-    let model = joint.onset_model()?;
+    let model = joint.onset_model().filter(|model| model.obstacle().is_none())?;
     let response = onset_sentence(model);
     let agree = Scatter::of(&joint.fine_delays())
         .filter(|scatter| !scatter.is_more_than_noise() && !joint.against_state().has_dependence());
@@ -126,10 +127,13 @@ pub(crate) fn onset_sentence(model: &OnsetModel) -> String {
         }
         _ => "the output goes to a level at a constant rate".to_owned(),
     };
+    let others = model.responses().into_iter().filter(|one| one.shape != model.shape());
+    let others = others.map(|one| format!(", {}s `{}`", one.transition.id(), one.shape));
     format!(
-        "after the delay {response} (`{}`); residual {} times the sensor's noise; the input explains {} \
-         of the changes of motion",
+        "after the delay {response} (`{}`{}); residual {} times the sensor's noise; the input explains \
+         {} of the changes of motion",
         model.shape(),
+        others.collect::<String>(),
         rounded(model.misfit()),
         percent(model.follows_input_r2())
     )

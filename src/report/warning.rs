@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::EstimatedJoint;
-use crate::delay::{AgainstState, Obstacle, Verdict};
+use crate::delay::{AgainstState, Obstacle, ResponseOfKind, Verdict};
 use crate::numerics::{chi_square_tail, median, quantile};
 use crate::wording::{measure, number, percent};
 
@@ -77,12 +77,22 @@ impl EstimatedJoint<'_> {
     }
 
     fn misfit(&self) -> Option<Warning> {
-        let model = self.onset_model().filter(|model| model.is_misfit())?;
-        let short = format!(
-            "no response shape fits: the best, `{}`, leaves {} times the sensor noise",
-            model.shape(),
-            number(model.misfit())
-        );
+        // Onsets that are no delays are none whatever the shape.
+        let model = self.onset_model();
+        let model = model.filter(|model| model.is_misfit() && model.obstacle().is_none())?;
+        let responses = model.responses();
+        let of_kind = |one: &ResponseOfKind| format!("{}s `{}`", one.transition.id(), one.shape);
+        let shapes = responses.iter().map(of_kind).collect::<Vec<_>>().join(", ");
+        let short = if model.has_own_shapes() {
+            format!("no response shape fits all kinds of steps: {shapes}")
+        } else {
+            format!(
+                "no response shape fits: what the best, `{}`, leaves over ({} times the sensor noise) \
+                 is alike at all steps of a kind",
+                model.shape(),
+                number(model.misfit())
+            )
+        };
         let rest = ", so delays may be off by more than their intervals. `tauscope improve` looks for \
                     the missing effect";
         Some(Warning::new("shape_misfit", short, rest))

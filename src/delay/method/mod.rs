@@ -7,6 +7,7 @@ mod step_context;
 mod two_line;
 
 use super::decision::Decision;
+use super::neutral::Neutral;
 use super::onset_model::{Family, OnsetModel};
 use super::prepared::Prepared;
 use super::settings::Settings;
@@ -17,14 +18,19 @@ pub(crate) use next_reaction::end_at_the_next_step;
 impl Method {
     /// The response behind the dead times that the `trials` of a joint share, where the method looks
     /// for it.
-    pub(super) fn shared(self, trials: &[Prepared<'_>], settings: &Settings) -> Option<OnsetModel> {
+    pub(super) fn shared(
+        self,
+        trials: &[Prepared<'_>],
+        neutral: Option<Neutral>,
+        settings: &Settings,
+    ) -> Option<OnsetModel> {
         let families: &[Family] = match self {
             Self::TWO_LINE => return None,
             Self::HINGE => &[Family::Bend],
-            Self::LAG_AWARE => &[Family::Bend, Family::Lag, Family::Pair],
+            Self::LAG_AWARE => &Family::MOVING,
             _ => &Family::ALL,
         };
-        OnsetModel::of(trials, settings, families)
+        OnsetModel::of(trials, neutral, settings, families)
     }
 
     /// The decisions on all steps of a trial, one each and in order, with what its joint shares.

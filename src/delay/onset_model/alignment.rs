@@ -147,9 +147,10 @@ impl Sums {
 mod tests {
     use super::super::dynamics::Before;
     use super::super::response::response_of;
-    use super::super::shape::Shape;
+    use super::super::shape::{Shape, Shapes};
     use super::super::windows::Step;
     use super::*;
+    use crate::delay::neutral::Transition;
     use crate::numerics::testing::uniform;
 
     /// An integrator that answers `delay` samples late.
@@ -159,6 +160,7 @@ mod tests {
         for _ in 0..20 {
             let after = 4.0 * random();
             steps.push(Step {
+                kind: Transition::Change,
                 at,
                 before,
                 after,
@@ -174,7 +176,7 @@ mod tests {
             let ramp = |step: &Step| step.change() * (k as f64 - step.at - delay).max(0.0);
             steps.iter().map(ramp).sum::<f64>() + 0.01 * random()
         };
-        Run { output: (0..1500).map(value).collect(), steps }
+        Run { output: (0..1500).map(value).collect(), steps, is_window: false }
     }
 
     #[test]
@@ -182,7 +184,8 @@ mod tests {
         for delay in [-17.0, 0.0, 12.0, 150.0] {
             let (shape, before) = (Shape::BEND, Before::Any);
             let response = response_of(&shape, 45.0, 182);
-            let pass = Pass { response, shape, reach: 90, typical: 0.0, noise: 0.005, before };
+            let (responses, shapes) = (vec![(shape, response)], Shapes::shared(shape));
+            let pass = Pass { responses, shapes, reach: 90, typical: 0.0, noise: 0.005, before };
             let found = alignments(&[run(delay)], 60.0, LONGEST, &pass);
             assert!((found[0].0 - delay).abs() <= 1.0, "{delay}: {found:?}");
         }

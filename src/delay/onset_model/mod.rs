@@ -34,4 +34,4 @@ pub(super) use reaction::{Bend, Bends};
 pub(super) use shape::Family;
 pub(super) use uncertainty::memory;
 
-pub use model::{Obstacle, OnsetModel, StepOnset};
+pub use model::{Obstacle, OnsetModel, ResponseOfKind, StepOnset};

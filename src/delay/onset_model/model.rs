@@ -8,11 +8,12 @@
 use super::follows::Follows;
 use super::reaction::p_value;
 use super::search::{Candidate, FEW, Search};
-use super::shape::{Family, Shape};
-use super::uncertainty::{Residual, choice, sensor_noise};
-use super::windows::{Onset, Pass, Run, Step, all};
+use super::shape::{Family, Shapes};
+use super::uncertainty::{Choice, Residual, sensor_noise};
+use super::windows::{Onset, Onsets, Pass, Run, Step, all};
 use crate::delay::interval::FineDelay;
 use crate::delay::motion::StepMotion;
+use crate::delay::neutral::{Neutral, Transition};
 use crate::delay::prepared::Prepared;
 use crate::delay::settings::{FirstLast, Settings};
 use crate::delay::steps::InputStep;
@@ -34,11 +35,9 @@ const REACHES: (f64, f64) = (60.0, 750.0);
 const REACH_OF_FEW: f64 = 2000.0;
 const LEAST_REACH: f64 = 16.0;
 
-/// Parts of the reach that are tried where nothing fits all of it.
-const PARTS: [f64; 3] = [0.5, 0.25, 0.125];
-
-/// What a shape leaves over in parts of the noise, from which it does not fit.
-const MISFIT: f64 = 1.15;
+/// The part of the reach that is looked at where nothing fits all of it: what the step before left has
+/// died away there, and the next one has done nothing.
+const NEAR: f64 = 0.25;
 
 /// A part of what is explained below which it matters how much it is, and by how much less it may be.
 const PLAIN: f64 = 0.7;
@@ -46,6 +45,14 @@ const WORSE: f64 = 0.03;
 
 /// Rounding of sums over windows, in parts of an output's range.
 const ROUNDING: f64 = 1e-7;
+
+/// Steps of a kind from which its own residuals say something, and may have a shape of their own.
+const FEWEST_OF_KIND: usize = 6;
+
+/// Standard deviations from which a pattern in the residuals is none of noise: once in a million of the
+/// fourteen squares that it is made of; and where one was found already.
+const PLAIN_AT_FIRST: f64 = 8.0;
+const PLAIN_AGAIN: f64 = 4.0;
 
 /// Passes over the windows of a record once its shape is known.
 const PASSES: usize = 3;
@@ -57,18 +64,21 @@ pub struct OnsetModel {
     period: SamplePeriod,
     /// The responses among which it was chosen.
     families: &'static [Family],
+    neutral: Option<Neutral>,
     /// In samples of that period.
-    shape: Shape,
+    shapes: Shapes,
     /// Samples to each side of an onset.
     reach: usize,
     /// Median delay, samples.
     typical: f64,
     /// Standard deviation of the sensor's noise.
     noise: f64,
+    /// Of all steps, and of those of each kind.
     residual: Residual,
+    kinds: [OfKind; KINDS],
+    /// Standard deviations of noise from which a pattern in what is left is one.
+    plain: f64,
     follows: Follows,
-    /// Standard deviation by which all onsets may be moved together, samples.
-    shared: f64,
     /// Median width of the intervals of the clear onsets, samples.
     width: f64,
     /// Parts of the clear onsets whose whole interval is before their step, and of those that are
@@ -77,6 +87,17 @@ pub struct OnsetModel {
     late: f64,
     /// Whether the output comes to rest where its input says, or at stops.
     comes_to_rest: bool,
+}
+
+const KINDS: usize = Transition::ALL.len();
+
+/// What is known of the steps of one kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct OfKind {
+    steps: usize,
+    residual: Residual,
+    /// Standard deviation by which all onsets may be moved together, samples.
+    shared: f64,
 }
 
 /// Why onsets are no delays of this output behind this input.
@@ -88,6 +109,19 @@ pub enum Obstacle {
     Leads(f64),
     /// Onsets come behind the next step, so many seconds late at the median.
     BeyondHolds(f64),
+}
+
+/// The response to the steps of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponseOfKind {
+    /// The kind.
+    pub transition: Transition,
+    /// As [`OnsetModel::shape`].
+    pub shape: &'static str,
+    /// As [`OnsetModel::parameters`].
+    pub parameters: Vec<(&'static str, f64)>,
+    /// Whether it leaves nothing over that these steps have in common.
+    pub fits: bool,
 }
 
 /// An onset of one step of a trial.
@@ -108,125 +142,129 @@ impl OnsetModel {
     /// `None` where there is nothing to fit.
     pub(in crate::delay) fn of(
         trials: &[Prepared<'_>],
+        neutral: Option<Neutral>,
         settings: &Settings,
         families: &'static [Family],
     ) -> Option<Self> {
-        let found = Self::among(trials, settings, families)?;
+        let found = Self::among(trials, neutral, settings, families)?;
         // Strokes from rest gather speed each in a way of its own.
         let is_stroke = |trial: &Prepared<'_>| FirstLast::Auto.are_judged(trial.steps.len());
-        let settles = !found.shape.family.may_be_curved();
+        let settles = !found.shapes.of(found.usual()).family.may_be_curved();
         let strokes = trials.iter().all(is_stroke) && found.is_misfit() && !settles;
         if !(rests(trials) && (strokes || found.is_unrelated())) {
             return Some(found);
         }
-        let bend = Self::among(trials, settings, &[Family::Bend])?;
+        let bend = Self::among(trials, neutral, settings, &[Family::Bend])?;
         Some(Self { comes_to_rest: true, ..bend })
     }
 
     /// The best model with one of some responses.
     fn among(
         trials: &[Prepared<'_>],
+        neutral: Option<Neutral>,
         settings: &Settings,
         families: &'static [Family],
     ) -> Option<Self> {
         let period = trials.first()?.period;
         let alike = trials.iter().filter(|trial| trial.period == period);
-        let longest = settings.max_delay;
-        let runs = alike.map(|trial| run_of(trial, longest, families));
+        let origin = Origin { period, neutral, families };
+        let runs = alike.map(|trial| run_of(trial, settings.max_delay, &origin));
         let mut runs: Vec<Run> = runs.filter(|run| !run.steps.is_empty()).collect();
         // What is found hangs on no order of the trials.
         runs.sort_by(|a, b| {
             let [one, other] = [a, b].map(|run| run.output.iter().map(|y| y.to_bits()));
             b.output.len().cmp(&a.output.len()).then_with(|| one.cmp(other))
         });
-        let mut all = vec![Self::within(&runs, (period, families), 1.0)?];
+        let whole = Self::within(&runs, &origin, None)?;
         // Of a bump test the whole is looked at.
         let few = runs.iter().map(|run| run.steps.len()).sum::<usize>() <= FEW;
-        let parts = if few || all[0].0.misfit() < MISFIT { &[][..] } else { &PARTS };
-        all.extend(parts.iter().filter_map(|part| Self::within(&runs, (period, families), *part)));
-        let as_well = |a: &Self, b: &Self| {
-            let [a, b] = [a, b].map(|model| model.follows.r2.min(PLAIN));
-            a > b - WORSE
-        };
-        let mut best = 0;
-        for next in 1..all.len() {
-            let (model, best_model) = (&all[next].0, &all[best].0);
-            let is_narrower = model.width < best_model.width && as_well(model, best_model);
-            if is_narrower || !as_well(best_model, model) {
-                best = next;
+        let fits = few || !whole.is_misfit();
+        let near = if fits { None } else { Self::within(&runs, &origin, Some(&whole)) };
+        let mut model = match near {
+            Some(near) => {
+                let [one, other] = [&near, &whole].map(|model| model.follows.r2.min(PLAIN));
+                let fits = near.has_own_shapes() || !near.is_misfit() || near.width < whole.width;
+                if one > other - WORSE && fits { near } else { whole }
             }
-        }
-        // What a shorter reach says, or a longer one where there is none.
-        let other = if best + 1 < all.len() { best + 1 } else { best.saturating_sub(1) };
-        let apart = apart(&all[best].1, &all[other].1);
-        let is_as_good = as_well(&all[other].0, &all[best].0);
-        let mut model = all.swap_remove(best).0;
-        if is_as_good && other != best {
-            model.shared = model.shared.hypot(apart);
-        }
+            None => whole,
+        };
         // An output that comes to rest where its input says, or at stops, follows it, whatever its speed.
         model.comes_to_rest = trials.iter().any(|trial| trial.is_tested);
         Some(model)
     }
 
-    /// The model that looks at a part of the reach, and its clear onsets.
-    fn within(
-        runs: &[Run],
-        (period, families): (SamplePeriod, &'static [Family]),
-        part: f64,
-    ) -> Option<(Self, Vec<Option<f64>>)> {
+    /// The model of the whole reach, or of a part of it where that of the `whole` does not fit.
+    fn within(runs: &[Run], origin: &Origin, whole: Option<&Self>) -> Option<Self> {
+        let (part, plain) = whole.map_or((1.0, PLAIN_AT_FIRST), |_| (NEAR, PLAIN_AGAIN));
         let holds: Vec<f64> = runs.iter().flat_map(holds).collect();
         let hold = median(&holds)?;
         let every = ceil_to_index(hold / SAMPLES_OF_HOLD).max(1);
-        let search =
-            Search::of(beginning(runs, ENOUGH_FOR_SHAPE * every), (every, part), families)?;
-        let mut candidates = search.select();
-        for candidate in &mut candidates {
-            candidate.typical *= every as f64;
-        }
-        let chosen = candidates.first()?;
+        let families = origin.families;
+        let some = |enough: usize, every: usize| {
+            Search::of(beginning(runs, enough * every), (every, part), families)
+        };
+        let search = some(ENOUGH_FOR_SHAPE, every)?;
+        let (search, candidates) = match whole {
+            None => {
+                let candidates = search.select();
+                (search, candidates)
+            }
+            // Which reaction is whose does not hang on the reach.
+            Some(whole) => {
+                let shape = whole.shapes.of(whole.usual()).scaled((every as f64).recip());
+                let typical = whole.typical / every as f64;
+                let all = search.evaluate(shape, search.starting(typical), typical, PASSES);
+                search.select_within(&all, None)
+            }
+        };
+        let (chosen, common) = (candidates.first()?, Choice::of(&search, &candidates)?);
         let factor = every as f64;
-        let shared = search.shared_variance(chosen).sqrt() * factor;
-        let (shape, typical) = (chosen.shape.scaled(factor), chosen.typical);
+        let typical = chosen.typical * factor;
         // At the rate of the record, what is left over and how the sizes go with the input.
-        let mut search = Search::of(beginning(runs, ENOUGH_FOR_MISFIT), (1, part), families)?;
+        let mut search = some(ENOUGH_FOR_MISFIT, 1)?;
         search.reach = reach_of(hold, every, part, search.longest_reach());
-        let found = search.evaluate(shape, search.starting(typical), typical, PASSES);
-        let residual = Residual::of(&search, &found);
-        let follows = Follows::of(&search.runs, &found.onsets);
-        let choice = choice(&candidates, residual.memory);
-        let shared = (shared * shared * residual.memory + choice * choice).sqrt();
-        let (reach, noise) = (search.reach, search.noise);
+        let shapes = Shapes::shared(chosen.shape.scaled(factor));
+        let mut left = Left::of(&search, shapes, typical);
+        let mut choices = [(); KINDS].map(|()| common.clone());
+        if whole.is_some() && left.is_misfit(plain) {
+            let own = some(ENOUGH_FOR_MISFIT, every)?.by_kind(chosen);
+            (left, choices) = left.with_own((own, common), (&search, factor), plain);
+        }
+        let Left { pass, found, residual, kinds, .. } = left;
+        let kinds = Transition::ALL.map(|kind| {
+            let residual = kinds[kind as usize];
+            let shared = choices[kind as usize].deviation(residual.memory) * factor;
+            OfKind { steps: search.steps_of(kind), residual, shared }
+        });
         let mut model = Self {
-            period,
+            period: origin.period,
             families,
-            shape,
-            reach,
-            typical: found.typical,
-            noise,
+            neutral: origin.neutral,
+            shapes: pass.shapes,
+            reach: search.reach,
+            typical: pass.typical,
+            noise: search.noise,
             residual,
-            follows,
-            shared,
+            kinds,
+            plain,
+            follows: Follows::of(&search.runs, &found),
             width: f64::INFINITY,
             early: 0.0,
             late: 0.0,
             comes_to_rest: false,
         };
-        model.measure(&search, &found);
-        let clear = |onset: &Option<Onset>| onset.filter(|it| it.is_clear).map(|it| it.position);
-        let onsets = found.onsets.iter().flat_map(|of_run| &of_run.found);
-        Some((model, onsets.map(clear).collect()))
+        model.measure(&search, &pass, &found);
+        Some(model)
     }
 
     /// How wide the intervals are, unless most onsets are not clear, and on which side of their steps
     /// they lie.
-    fn measure(&mut self, search: &Search, found: &Candidate) {
+    fn measure(&mut self, search: &Search, pass: &Pass, found: &[Onsets]) {
         const CONFIDENCE: f64 = 0.95;
-        let pass = search.pass(self.shape, self.typical);
         let (mut widths, mut early, mut late) = (Vec::new(), 0.0, 0.0);
-        let clear = all(&search.runs, &found.onsets).filter(|(.., onset)| onset.is_clear);
+        let clear = all(&search.runs, found).filter(|(.., onset)| onset.is_clear);
         for (run, index, onset) in clear {
-            let (low, high) = self.sides(&pass, run, (index, onset), CONFIDENCE);
+            let (low, high) = self.sides(pass, run, (index, onset), CONFIDENCE);
             widths.push(low + high);
             let next = run.steps.get(index + 1).map_or(f64::INFINITY, |next| next.at);
             // A step may have been made any time after the sample before it.
@@ -266,13 +304,17 @@ impl OnsetModel {
     ) -> (f64, f64) {
         /// Samples of all windows that count beside those of one.
         const POOLED: f64 = 20.0;
-        let freedom = (onset.samples() as f64 - pass.response.parameters() as f64).max(1.0);
-        let all = self.residual.deviation.max(self.noise).powi(2);
+        let kind = run.steps[index].kind;
+        let OfKind { residual, shared, .. } = &self.kinds[kind as usize];
+        let parameters = pass.response(kind).parameters() as f64;
+        let freedom = (onset.samples() as f64 - parameters).max(1.0);
+        let all = residual.deviation.max(self.noise).powi(2);
         let variance = (onset.sse + POOLED * all) / (freedom + POOLED);
         let t = student_quantile(f64::midpoint(1.0, confidence), freedom + POOLED);
-        let limit = onset.sse + variance.max(f64::MIN_POSITIVE) * self.residual.memory * t * t;
+        let limit = onset.sse
+            + variance.max(f64::MIN_POSITIVE) * residual.memory * (t * t + residual.pattern.energy);
         let (low, high) = pass.extent(run, index, onset, limit);
-        (low.hypot(t * self.shared), high.hypot(t * self.shared))
+        (low.hypot(t * shared), high.hypot(t * shared))
     }
 
     /// The onsets of all steps of a trial, none where a window is too short.
@@ -283,17 +325,19 @@ impl OnsetModel {
     ) -> Vec<Option<StepOnset>> {
         let confidence = settings.interval;
         let factor = self.period.seconds() / trial.period.seconds();
-        let scaled =
-            Self { shape: self.shape.scaled(factor), shared: self.shared * factor, ..self.clone() };
-        let run = run_of(trial, settings.max_delay, self.families);
+        let mut scaled = Self { shapes: self.shapes.scaled(factor), ..self.clone() };
+        scaled.kinds.iter_mut().for_each(|kind| kind.shared *= factor);
+        let origin =
+            Origin { period: trial.period, neutral: self.neutral, families: self.families };
+        let run = run_of(trial, settings.max_delay, &origin);
         let Some(mut search) = Search::of(vec![run], (1, 1.0), &[]) else {
             return vec![None; trial.steps.len()];
         };
         search.reach = ceil_to_index(self.reach as f64 * factor);
         let typical = self.typical * factor;
-        let found = search.evaluate(scaled.shape, search.starting(typical), typical, PASSES);
-        let pass = search.pass(scaled.shape, typical);
-        let onsets = found.onsets.iter().flat_map(|of_run| &of_run.found).enumerate();
+        let mut pass = search.pass(scaled.shapes, typical);
+        let found = search.found(&mut pass, search.starting(typical), PASSES);
+        let onsets = found.iter().flat_map(|of_run| &of_run.found).enumerate();
         onsets
             .map(|(index, onset)| {
                 Some(scaled.step_onset(
@@ -317,13 +361,15 @@ impl OnsetModel {
         let delay = onset.position - run.steps[index].at;
         let explained = 1.0 - onset.sse / onset.sse_without.max(f64::MIN_POSITIVE);
         let samples = onset.samples() as f64;
-        let others = pass.response.parameters() as f64 - 2.0;
-        let p_value = p_value(explained, (samples - others) / self.residual.memory, samples);
+        let kind = run.steps[index].kind;
+        let others = pass.response(kind).parameters() as f64 - 2.0;
+        let memory = self.kinds[kind as usize].residual.memory;
+        let p_value = p_value(explained, (samples - others) / memory, samples);
         StepOnset {
             fine: FineDelay { delay, low: delay - low, high: delay + high, confidence },
             explained,
             p_value,
-            rests: !self.shape.family.may_be_curved(),
+            rests: !self.shapes.of(kind).family.may_be_curved(),
         }
     }
 
@@ -331,20 +377,27 @@ impl OnsetModel {
         !self.comes_to_rest && self.follows.is_unrelated()
     }
 
-    /// Its name: `bend`, `bend_lag`, `bend_lag2`, `oscillation`, `settling` or `slew`.
+    /// The kind of most of the steps.
+    fn usual(&self) -> Transition {
+        let kinds = Transition::ALL.into_iter().zip(&self.kinds).rev();
+        kinds.max_by_key(|(_, kind)| kind.steps).map_or(Transition::Change, |(kind, _)| kind)
+    }
+
+    /// The name of the shape, that of most steps: `bend`, `bend_lag`, `bend_lag2`, `oscillation`,
+    /// `settling` or `slew`.
     pub fn shape(&self) -> &'static str {
-        self.shape.id()
+        self.shapes.of(self.usual()).id()
     }
 
     /// The parameters of the shape, with the names that they have in files; times in seconds.
     pub fn parameters(&self) -> Vec<(&'static str, f64)> {
-        self.shape.parameters(self.period.seconds())
+        self.shapes.of(self.usual()).parameters(self.period.seconds())
     }
 
     /// How late a steady motion is behind its onset, seconds; none where the speed changes at once or the
     /// output comes to rest.
     pub fn lag_s(&self) -> Option<f64> {
-        let lag = self.shape.mean() * self.period.seconds();
+        let lag = self.shapes.of(self.usual()).mean() * self.period.seconds();
         (lag > 0.0).then_some(lag)
     }
 
@@ -360,27 +413,121 @@ impl OnsetModel {
         self.follows.r2
     }
 
-    /// Whether the joint answers in another way than any shape: the mean of what is left at some distance
-    /// from the onsets of all steps is more than noise.
+    /// Whether the joint answers in another way than any shape: what is left of the steps of some kind
+    /// has more in common than noise has.
     pub fn is_misfit(&self) -> bool {
-        /// Part of the residuals' deviation, and standard errors, from which a mean counts.
-        const PART: f64 = 0.3;
-        const PLAIN: f64 = 4.0;
-        /// What is left over in parts of the noise that needs no mean.
+        /// What is left over in parts of the noise that needs nothing in common.
         const LARGE: f64 = 3.0;
-        let (part, errors) = self.residual.systematic;
-        let is_left = part > PART && errors > PLAIN && self.misfit() > MISFIT;
-        is_left || self.misfit() > LARGE
+        let kinds = self.kinds.iter().map(|kind| &kind.residual);
+        let is_left = kinds.chain([&self.residual]).any(|it| it.pattern.is_plain(self.plain));
+        is_left || self.has_own_shapes() || self.misfit() > LARGE
+    }
+
+    /// The response to the steps of each kind that there is.
+    pub fn responses(&self) -> Vec<ResponseOfKind> {
+        let kinds = Transition::ALL.into_iter().zip(&self.kinds).filter(|(_, of)| of.steps > 0);
+        kinds
+            .map(|(transition, of)| {
+                let shape = self.shapes.of(transition);
+                ResponseOfKind {
+                    transition,
+                    shape: shape.id(),
+                    parameters: shape.parameters(self.period.seconds()),
+                    fits: !of.residual.pattern.is_plain(self.plain),
+                }
+            })
+            .collect()
+    }
+
+    /// Whether kinds of steps have shapes of their own.
+    pub fn has_own_shapes(&self) -> bool {
+        self.shapes.distinct().len() > 1
     }
 }
 
-/// How far the onsets of the same steps are apart at the median.
-fn apart(one: &[Option<f64>], other: &[Option<f64>]) -> f64 {
-    let both = one.iter().zip(other).filter_map(|(one, other)| Some((*other)? - (*one)?));
-    median(&both.collect::<Vec<f64>>()).unwrap_or(0.0).abs()
+/// What shapes leave over, in all windows and in those of each kind of step.
+struct Left {
+    /// The delay from which onsets were found.
+    typical: f64,
+    pass: Pass,
+    found: Vec<Onsets>,
+    residual: Residual,
+    kinds: [Residual; KINDS],
+}
+
+impl Left {
+    fn of(search: &Search, shapes: Shapes, typical: f64) -> Self {
+        let mut pass = search.pass(shapes, typical);
+        let found = search.found(&mut pass, search.starting(typical), PASSES);
+        let residual = Residual::of(&search.runs, &found, &pass, None);
+        let kinds = Transition::ALL.map(|kind| {
+            let own = || Residual::of(&search.runs, &found, &pass, Some(kind));
+            if search.steps_of(kind) < FEWEST_OF_KIND { residual } else { own() }
+        });
+        Self { typical, pass, found, residual, kinds }
+    }
+
+    fn is_misfit(&self, plain: f64) -> bool {
+        self.kinds.iter().chain([&self.residual]).any(|it| it.pattern.is_plain(plain))
+    }
+
+    /// The same with the shapes that kinds of steps have of their own, found in samples `factor` times as
+    /// long, where these fit; and the choice for each kind.
+    fn with_own(
+        self,
+        (own, common): ([Option<Choice>; KINDS], Choice),
+        (search, factor): (&Search, f64),
+        plain: f64,
+    ) -> (Self, [Choice; KINDS]) {
+        let mut shapes = self.pass.shapes;
+        for (kind, choice) in Transition::ALL.into_iter().zip(&own) {
+            shapes.set(kind, choice.as_ref().map_or(shapes.of(kind), |it| it.shape.scaled(factor)));
+        }
+        let all = Self::of(search, shapes, self.typical);
+        let fits = |kind: Transition| !all.kinds[kind as usize].pattern.is_plain(plain);
+        // A kind that no shape fits keeps that of all.
+        let choices = Transition::ALL.map(|kind| {
+            let own = own[kind as usize].clone().filter(|_| fits(kind));
+            if own.is_none() {
+                shapes.set(kind, self.pass.shapes.of(kind));
+            }
+            own.unwrap_or_else(|| common.clone())
+        });
+        let left =
+            if shapes == all.pass.shapes { all } else { Self::of(search, shapes, self.typical) };
+        (left, choices)
+    }
+}
+
+/// Where the runs of a joint are from.
+struct Origin {
+    period: SamplePeriod,
+    neutral: Option<Neutral>,
+    families: &'static [Family],
 }
 
 impl Search {
+    fn steps_of(&self, kind: Transition) -> usize {
+        self.runs.iter().flat_map(|run| &run.steps).filter(|step| step.kind == kind).count()
+    }
+
+    /// The choice among shapes for the steps of each kind by themselves, where there are enough. What one
+    /// kind needs beyond the simplest of them may be no lag: it is unsure by how much that moves onsets.
+    fn by_kind(&self, chosen: &Candidate) -> [Option<Choice>; KINDS] {
+        let all =
+            self.evaluate(chosen.shape, self.starting(chosen.typical), chosen.typical, PASSES);
+        let enough = |kind: &Transition| self.steps_of(*kind) >= FEWEST_OF_KIND;
+        let own = Transition::ALL
+            .map(|kind| Some(kind).filter(enough).map(|_| self.select_within(&all, Some(kind))));
+        let shapes = own.iter().flatten().filter_map(|(_, it)| Some(it.first()?.shape));
+        let simplest = shapes.min_by_key(|shape| (shape.order(), shape.curved));
+        own.map(|own| {
+            let (search, candidates) = own?;
+            let choice = Choice::of(&search, &candidates)?;
+            Some(choice.or_behind(simplest?, &search, candidates.first()?))
+        })
+    }
+
     /// Samples to each side of an onset that are looked at at most.
     fn longest_reach(&self) -> f64 {
         if self.has_few_steps() { REACH_OF_FEW } else { REACHES.1 }
@@ -444,6 +591,7 @@ fn thinned(run: &Run, every: usize) -> Run {
     Run {
         output: run.output.iter().step_by(every).copied().collect(),
         steps: run.steps.iter().map(step).collect(),
+        is_window: false,
     }
 }
 
@@ -460,7 +608,8 @@ fn beginning(runs: &[Run], enough: usize) -> Vec<Run> {
         let within = run.steps.iter().filter(|step| step.at < left).count();
         let steps = within.max(FEWEST).min(run.steps.len());
         let end = run.steps.get(steps).map_or(run.output.len(), |step| floor_to_index(step.at));
-        taken.push(Run { output: run.output[..end].to_vec(), steps: run.steps[..steps].to_vec() });
+        let (output, steps) = (run.output[..end].to_vec(), run.steps[..steps].to_vec());
+        taken.push(Run { output, steps, is_window: false });
         left -= end as f64;
     }
     taken
@@ -468,10 +617,10 @@ fn beginning(runs: &[Run], enough: usize) -> Vec<Run> {
 
 /// A trial as it is fitted: its output as it was measured, and its steps with what bounds the reaction to
 /// each.
-fn run_of(trial: &Prepared<'_>, longest: Option<usize>, families: &[Family]) -> Run {
+fn run_of(trial: &Prepared<'_>, longest: Option<usize>, origin: &Origin) -> Run {
     let samples = trial.raw.len();
     // A bump test of an output that settles is its way to a level.
-    let is_bounded = trial.steps.len() > FEW || !families.contains(&Family::Settling);
+    let is_bounded = trial.steps.len() > FEW || !origin.families.contains(&Family::Settling);
     let step = |(step, motion): (&InputStep, &Option<Box<StepMotion>>)| {
         let at = step.sample - 1;
         // What was filled in while nothing was logged says nothing.
@@ -484,6 +633,7 @@ fn run_of(trial: &Prepared<'_>, longest: Option<usize>, families: &[Family]) -> 
         let asked = longest.map_or(usize::MAX, |longest| at.saturating_add(longest));
         let latest = motion.as_ref().map_or(samples, |motion| motion.latest).min(asked);
         Step {
+            kind: Transition::of(step, origin.neutral.as_ref()),
             at: at as f64,
             before: step.before,
             after: step.after,
@@ -494,5 +644,5 @@ fn run_of(trial: &Prepared<'_>, longest: Option<usize>, families: &[Family]) -> 
         }
     };
     let steps = trial.steps.iter().zip(&trial.motions).map(step).collect();
-    Run { output: trial.raw.to_vec(), steps }
+    Run { output: trial.raw.to_vec(), steps, is_window: false }
 }

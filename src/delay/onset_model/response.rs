@@ -16,6 +16,11 @@ pub(super) fn response_of(shape: &Shape, unit: f64, longest: usize) -> Box<dyn R
             let generator = Square::<2>::new(-1.0 / t, 1.0 / t, 0.0, 0.0);
             Box::new(dynamics(generator, 0..1, longest))
         }
+        (Family::SettlingPair, _) => {
+            let damping = -2.0 * zeta * t;
+            let generator = Square::<3>::new(0.0, t, 0.0, -t, damping, t, 0.0, 0.0, 0.0);
+            Box::new(dynamics(generator, 0..2, longest))
+        }
         (Family::Bend, true) => Box::new(dynamics(chain::<3>(h, &[]), 1..1, longest)),
         (Family::Lag, false) => Box::new(dynamics(chain::<3>(h, &[t]), 1..2, longest)),
         (Family::Lag, true) => Box::new(dynamics(chain::<4>(h, &[t]), 1..2, longest)),

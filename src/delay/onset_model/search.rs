@@ -3,13 +3,15 @@
 //! Each family of responses starts from a grid of its parameters, which Newton's method refines,
 //! the windows held; an onset per step is found anew at each of them, so that the parameters are
 //! those of least error over the onsets, too (variable projection). Families are compared by
-//! Schwarz's criterion over the samples of all windows,
+//! the likelihood over the samples of all windows,
 //!
 //! ```text
-//! Σ_i n_i/2 ln(SSE_i/n_i) + (parameters) ln n
+//! Σ_i (n_i/2 ln(SSE_i/n_i) + k) + (parameters of the shape)/2 · ln n
 //! ```
 //!
-//! in which a window that something else disturbed counts by the logarithm of its error alone.
+//! with Akaike's count of the `k` parameters that each window has for itself, and Schwarz's of those of
+//! the shape; in which a window that something else disturbed
+//! counts by the logarithm of its error alone.
 //! Shapes whose onsets go far less with the input than those of others have missed them.
 //!
 //! # References
@@ -21,8 +23,10 @@ use super::alignment::{LONGEST, alignments};
 use super::dynamics::Before;
 use super::follows::Follows;
 use super::response::response_of;
-use super::shape::{Family, Shape};
-use super::windows::{Onset, Onsets, Pass, Run, all};
+use super::shape::{Family, Shape, Shapes};
+use super::uncertainty::Residual;
+use super::windows::{Onset, Onsets, Pass, Run, Step, all};
+use crate::delay::neutral::Transition;
 use crate::numerics::median;
 
 /// Steps up to which a record is taken as a whole: a disturbed window is then no small part of it,
@@ -80,12 +84,13 @@ impl Search {
         self.families.contains(&family) && (family != Family::Slew || !self.has_few_steps())
     }
 
-    pub(super) fn pass(&self, shape: Shape, typical: f64) -> Pass {
+    pub(super) fn pass(&self, shapes: Shapes, typical: f64) -> Pass {
         let longest = self.runs.iter().map(|run| run.output.len()).max().unwrap_or(0);
-        let response =
-            response_of(&shape, self.reach as f64 / 2.0, (2 * self.reach).min(longest) + 2);
+        let longest = (2 * self.reach).min(longest) + 2;
+        let response = |shape| (shape, response_of(&shape, self.reach as f64 / 2.0, longest));
+        let responses = shapes.distinct().into_iter().map(response).collect();
         let before = if self.has_few_steps() { Before::Steady } else { Before::Any };
-        Pass { response, shape, reach: self.reach, typical, noise: self.noise, before }
+        Pass { responses, shapes, reach: self.reach, typical, noise: self.noise, before }
     }
 
     /// All onsets so many samples behind their steps.
@@ -104,38 +109,76 @@ impl Search {
     pub(super) fn evaluate(
         &self,
         shape: Shape,
-        mut onsets: Vec<Onsets>,
+        onsets: Vec<Onsets>,
         typical: f64,
         passes: usize,
     ) -> Candidate {
-        let mut pass = self.pass(shape, typical);
+        let mut pass = self.pass(Shapes::shared(shape), typical);
+        let onsets = self.found(&mut pass, onsets, passes);
+        let (typical, score) = (pass.typical, f64::INFINITY);
+        let mut candidate = Candidate { shape, onsets, typical, score };
+        candidate.score = self.score(&candidate, pass.responses[0].1.parameters())
+            + self.of_parameters(&candidate);
+        candidate
+    }
+
+    /// The onsets found in so many passes, and the typical delay in the last of them.
+    pub(super) fn found(
+        &self,
+        pass: &mut Pass,
+        mut onsets: Vec<Onsets>,
+        passes: usize,
+    ) -> Vec<Onsets> {
         for _ in 0..passes {
             for (run, onsets) in self.runs.iter().zip(&mut onsets) {
-                onsets.sweep(run, 0..run.steps.len(), &pass);
+                onsets.sweep(run, 0..run.steps.len(), pass);
             }
             pass.typical = self.typical(&onsets).unwrap_or(pass.typical);
         }
         if passes > 1 {
             for (run, onsets) in self.runs.iter().zip(&mut onsets) {
-                onsets.reassign(run, &pass);
+                onsets.reassign(run, pass);
             }
         }
-        let (typical, score) = (pass.typical, f64::INFINITY);
-        let mut candidate = Candidate { shape, onsets, typical, score };
-        candidate.score = self.score(&candidate, pass.response.parameters());
-        candidate
+        onsets
+    }
+
+    /// The shapes that the windows of a candidate support, those of one kind of steps or of all, with what
+    /// they were searched in; its own alone where none is more likely. All have the same samples.
+    pub(super) fn select_within(
+        &self,
+        candidate: &Candidate,
+        kind: Option<Transition>,
+    ) -> (Self, Vec<Candidate>) {
+        let same = all(&self.runs, &candidate.onsets)
+            .filter(|(run, index, _)| kind.is_none_or(|kind| run.steps[*index].kind == kind));
+        let (runs, onsets): (Vec<Run>, Vec<Onsets>) = same.map(alone).unzip();
+        let Candidate { shape, typical, .. } = candidate;
+        // An output that goes on moving does so in all parts of its windows.
+        let moves = shape.family.may_be_curved() && self.families.contains(&Family::Pair);
+        let families = if moves { &Family::MOVING } else { self.families };
+        let search = Self { runs, families, ..*self };
+        let later = onsets.iter().map(|of_run| of_run.later(shape.mean())).collect();
+        let bend = search.evaluate(Shape::BEND, later, typical + shape.mean(), 2);
+        let shared = search.evaluate(*shape, onsets, *typical, 2);
+        let of_shared = shared.score - search.of_parameters(&shared);
+        let mut candidates = search.select_near(&bend);
+        if candidates.first().is_none_or(|best| best.score >= of_shared) {
+            candidates = vec![shared];
+        }
+        (search, candidates)
     }
 
     /// The onsets of a candidate with the windows where they are.
     fn held(&self, candidate: &Candidate) -> Vec<Onsets> {
-        let pass = self.pass(candidate.shape, candidate.typical);
+        let pass = self.pass(Shapes::shared(candidate.shape), candidate.typical);
         let pairs = self.runs.iter().zip(&candidate.onsets);
         pairs.map(|(run, onsets)| onsets.held(run, &pass)).collect()
     }
 
     /// Each onset of `held` as it was, and as it is behind `shape`.
     fn moved(&self, held: &[Onsets], shape: Shape, typical: f64) -> Vec<(Onset, Onset)> {
-        let pass = self.pass(shape, typical);
+        let pass = self.pass(Shapes::shared(shape), typical);
         let of_run = |(run, was): (&Run, &Onsets)| {
             let mut now = was.clone();
             now.sweep(run, 0..run.steps.len(), &pass);
@@ -144,7 +187,8 @@ impl Search {
         self.runs.iter().zip(held).flat_map::<Vec<_>, _>(of_run).collect()
     }
 
-    /// Schwarz's criterion; each sample stands in two windows.
+    /// What is left over in all windows: the negative logarithm of its likelihood, and one for each
+    /// parameter that windows have for themselves, as Akaike's criterion counts those.
     fn score(&self, candidate: &Candidate, parameters: usize) -> f64 {
         /// Of the noise: what is left where there is none.
         const FLOOR: f64 = 0.1;
@@ -160,8 +204,16 @@ impl Search {
         } else {
             found().map(|onset| onset.samples() as f64 * onset.mean_square().max(floor).ln()).sum()
         };
-        let parameters = (parameters * windows) as f64 / 2.0 + 2.0 * candidate.shape.order() as f64;
-        error / 2.0 + parameters * (samples / 2.0).ln()
+        error / 2.0 + (parameters * windows) as f64
+    }
+
+    /// What Schwarz's criterion adds for the parameters of a shape.
+    pub(super) fn of_parameters(&self, candidate: &Candidate) -> f64 {
+        let samples: f64 = candidate.found().map(|onset| onset.samples() as f64).sum();
+        // Between two onsets each sample stands in both windows.
+        let distinct: f64 = self.runs.iter().map(|run| run.output.len() as f64).sum();
+        let distinct = distinct.min(samples).max(1.0);
+        candidate.shape.order() as f64 / 2.0 * samples / distinct * distinct.ln()
     }
 
     /// The candidate with the parameters of least error near its own, its windows held and weighted
@@ -228,14 +280,18 @@ impl Search {
 
     /// The shapes that the record supports, the best one first.
     pub(super) fn select(&self) -> Vec<Candidate> {
-        let bend = self.first();
+        self.select_near(&self.first())
+    }
+
+    /// The same about the onsets of broken lines.
+    fn select_near(&self, bend: &Candidate) -> Vec<Candidate> {
         let mut all = vec![bend.clone()];
         let others = Family::ALL.into_iter().skip(1).filter(|it| self.may_be(*it));
         for family in others {
             let grid = Shape::grid(family, self.hold, self.change).into_iter();
             let found =
                 grid.filter(|shape| shape.is_allowed(self.hold, self.change)).flat_map(|shape| {
-                    let starts = self.starts(shape, &bend);
+                    let starts = self.starts(shape, bend);
                     starts.into_iter().map(move |(positions, typical)| (shape, positions, typical))
                 });
             let found = found
@@ -255,7 +311,36 @@ impl Search {
             self.keep_those_that_follow(&mut all);
         }
         all.sort_by(|a, b| a.score.total_cmp(&b.score));
-        self.restarted_at_best(all)
+        let mut all = self.restarted_at_best(all);
+        if self.has_few_steps() {
+            let settling = all.iter().find(|it| it.shape.family == Family::Settling);
+            let pair = settling.and_then(|it| self.with_second_pole(it));
+            all.extend(pair);
+            all.sort_by(|a, b| a.score.total_cmp(&b.score));
+        }
+        all
+    }
+
+    /// A candidate that settles with a second pole.
+    fn with_second_pole(&self, one: &Candidate) -> Option<Candidate> {
+        let shapes = one.shape.with_second_pole().into_iter();
+        let found = shapes.filter(|it| it.is_allowed(self.hold, self.change)).flat_map(|shape| {
+            // The dead time takes the second pole's part in a fit with one.
+            let [_, fast] = shape.real_lags().unwrap_or_default();
+            [0.0, -fast].map(|later| {
+                let onsets = one.onsets.iter().map(|of_run| of_run.later(later)).collect();
+                let start = self.evaluate(shape, onsets, one.typical + later, 2);
+                self.refined(start, ROUNDS)
+            })
+        });
+        let mut two = found.min_by(|a, b| a.score.total_cmp(&b.score))?;
+        // Samples whose residuals go together are fewer than they look: those of a coarse sensor, say.
+        let pass = self.pass(Shapes::shared(two.shape), two.typical);
+        let memory = Residual::of(&self.runs, &two.onsets, &pass, None).memory;
+        let gained = one.score - two.score;
+        let parameters = self.steps() as f64 + self.of_parameters(&two) - self.of_parameters(one);
+        two.score = one.score - (gained + parameters) / memory + parameters;
+        Some(two)
     }
 
     /// Each candidate also from where the best has its onsets: which reaction is whose does not hang on
@@ -311,7 +396,12 @@ impl Search {
         const MORE: f64 = 0.05;
         let few = self.has_few_steps();
         let longest = if few { 1.0 } else { LONGEST };
-        let tops = alignments(&self.runs, self.hold, longest, &self.pass(Shape::BEND, 0.0));
+        let tops = alignments(
+            &self.runs,
+            self.hold,
+            longest,
+            &self.pass(Shapes::shared(Shape::BEND), 0.0),
+        );
         let bend = |delay: f64| self.evaluate(Shape::BEND, self.starting(delay), delay, 2);
         let Some((delay, most)) = tops.first().copied() else { return bend(0.0) };
         let mut best = bend(delay);
@@ -346,7 +436,7 @@ impl Search {
             return vec![(earlier.collect(), bend.typical - mean)];
         }
         // Corners say little of outputs that come to rest.
-        let mut pass = self.pass(shape, 0.0);
+        let mut pass = self.pass(Shapes::shared(shape), 0.0);
         let by = (self.hold / f64::from(PER_HOLD)).max(1.0);
         let delays = (if few { 0 } else { -LEAD }..=PER_HOLD).map(|k| f64::from(k) * by);
         let errors = delays.map(|delay| {
@@ -388,6 +478,20 @@ impl Search {
         let variance = solved.map(|[x, y]| x * gradient[0] + y * gradient[1]);
         variance.unwrap_or(0.0).max(0.0)
     }
+}
+
+/// The window of an onset with nothing else, and the onset in it.
+fn alone((run, index, onset): (&Run, usize, &Onset)) -> (Run, Onsets) {
+    let (step, start) = (run.steps[index], onset.start as f64);
+    let step = Step {
+        at: step.at - start,
+        first: 0.0,
+        end: onset.samples() as f64,
+        latest: step.latest - start,
+        ..step
+    };
+    let output = run.output[onset.start..onset.end].to_vec();
+    (Run { output, steps: vec![step], is_window: true }, Onsets::at(vec![onset.position - start]))
 }
 
 /// Rounds of Newton's method at most.

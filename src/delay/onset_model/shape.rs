@@ -9,11 +9,14 @@
 //! bend_lag2    y' = v,  v'' = ω²(s − v) − 2ζω v'  ζ ≥ 1: two real poles
 //! oscillation  the same, ζ < 1
 //! settling     T y' = s − y                       first order: a bump test is one step of it
+//!              y'' = ω²(s − y) − 2ζω y'           the same with a second pole, ζ ≥ 1
 //! slew         y' = s from the onset on for r·|Δu| samples: a constant rate into a level
 //! ```
 //!
 //! `s` is constant but for a jump at each onset. Where holds are curved, as by a gain that changes
 //! with the angle, `s' = q` with a `q` that may jump, too, and is of no interest.
+
+use crate::delay::neutral::Transition;
 
 /// Which of the responses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -22,16 +25,20 @@ pub(in crate::delay) enum Family {
     Lag,
     Pair,
     Settling,
+    SettlingPair,
     Slew,
 }
 
 impl Family {
-    pub(in crate::delay) const ALL: [Self; 5] =
-        [Self::Bend, Self::Lag, Self::Pair, Self::Settling, Self::Slew];
+    pub(in crate::delay) const ALL: [Self; 6] =
+        [Self::Bend, Self::Lag, Self::Pair, Self::Settling, Self::SettlingPair, Self::Slew];
+
+    /// Those whose output goes on moving.
+    pub(in crate::delay) const MOVING: [Self; 3] = [Self::Bend, Self::Lag, Self::Pair];
 
     /// Whether holds may be curved: the others come to rest.
     pub(super) fn may_be_curved(self) -> bool {
-        matches!(self, Self::Bend | Self::Lag | Self::Pair)
+        Self::MOVING.contains(&self)
     }
 }
 
@@ -45,6 +52,40 @@ pub(super) struct Shape {
     pub(super) logs: [f64; 2],
 }
 
+/// The responses to the kinds of steps, in the order of [`Transition::ALL`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Shapes([Shape; Transition::ALL.len()]);
+
+impl Shapes {
+    /// One for all kinds.
+    pub(super) fn shared(shape: Shape) -> Self {
+        Self([shape; Transition::ALL.len()])
+    }
+
+    pub(super) fn of(&self, kind: Transition) -> Shape {
+        self.0[kind as usize]
+    }
+
+    pub(super) fn set(&mut self, kind: Transition, shape: Shape) {
+        self.0[kind as usize] = shape;
+    }
+
+    pub(super) fn scaled(self, factor: f64) -> Self {
+        Self(self.0.map(|shape| shape.scaled(factor)))
+    }
+
+    /// Each of them once.
+    pub(super) fn distinct(&self) -> Vec<Shape> {
+        let mut found: Vec<Shape> = Vec::new();
+        for shape in self.0 {
+            if !found.contains(&shape) {
+                found.push(shape);
+            }
+        }
+        found
+    }
+}
+
 /// Damping up to which a pair of poles oscillates.
 const CRITICAL: f64 = 1.0;
 
@@ -56,7 +97,7 @@ impl Shape {
         match self.family {
             Family::Bend => 0,
             Family::Lag | Family::Settling | Family::Slew => 1,
-            Family::Pair => 2,
+            Family::Pair | Family::SettlingPair => 2,
         }
     }
 
@@ -67,7 +108,7 @@ impl Shape {
             Family::Lag => "bend_lag",
             Family::Pair if self.logs[1].exp() < CRITICAL => "oscillation",
             Family::Pair => "bend_lag2",
-            Family::Settling => "settling",
+            Family::Settling | Family::SettlingPair => "settling",
             Family::Slew => "slew",
         }
     }
@@ -75,7 +116,7 @@ impl Shape {
     /// How late a steady motion is behind its onset.
     pub(super) fn mean(&self) -> f64 {
         match self.family {
-            Family::Bend | Family::Settling | Family::Slew => 0.0,
+            Family::Bend | Family::Settling | Family::SettlingPair | Family::Slew => 0.0,
             Family::Lag => self.logs[0].exp(),
             Family::Pair => 2.0 * (self.logs[1] - self.logs[0]).exp(),
         }
@@ -93,7 +134,7 @@ impl Shape {
     pub(super) fn scaled(mut self, factor: f64) -> Self {
         match self.family {
             Family::Bend => {}
-            Family::Pair => self.logs[0] -= factor.ln(),
+            Family::Pair | Family::SettlingPair => self.logs[0] -= factor.ln(),
             Family::Lag | Family::Settling | Family::Slew => self.logs[0] += factor.ln(),
         }
         self
@@ -104,7 +145,8 @@ impl Shape {
     pub(super) fn moved(mut self, by: [f64; 2]) -> Self {
         /// Damping from which the mean of the lag is what is known best.
         const DAMPED: f64 = 0.7;
-        let is_damped = self.family == Family::Pair && self.logs[1] > DAMPED.ln();
+        let is_pair = matches!(self.family, Family::Pair | Family::SettlingPair);
+        let is_damped = is_pair && self.logs[1] > DAMPED.ln();
         self.logs[0] += if is_damped { by[1] - by[0] } else { by[0] };
         self.logs[1] += by[1];
         self
@@ -124,6 +166,13 @@ impl Shape {
             Family::Pair => {
                 (-(4.0 * hold).ln()..=0.9).contains(&first)
                     && (0.02_f64.ln()..=3.0_f64.ln()).contains(&second)
+                    && self.real_lags().is_none_or(|[_, fast]| time.contains(&fast.ln()))
+            }
+            Family::SettlingPair => {
+                second <= 3.0_f64.ln()
+                    && self
+                        .real_lags()
+                        .is_some_and(|both| both.iter().all(|lag| time.contains(&lag.ln())))
             }
         }
     }
@@ -147,6 +196,8 @@ impl Shape {
             Family::Slew => {
                 times(0.02, 2.0, 1.0).map(|part| shape(part * hold / change, 1.0)).collect()
             }
+            // Found from that with one pole.
+            Family::SettlingPair => Vec::new(),
             Family::Pair => times(10.0, 2.4, 2.0 * hold)
                 .flat_map(|t| [0.15, 0.5, 1.2].map(|zeta| shape(std::f64::consts::TAU / t, zeta)))
                 .collect(),
@@ -163,12 +214,30 @@ impl Shape {
             Family::Pair if second < CRITICAL => {
                 vec![("period_s", std::f64::consts::TAU / first * period_s), ("damping", second)]
             }
-            Family::Pair => {
-                // The real poles of s² + 2ζωs + ω².
-                let root = (second * second - 1.0).sqrt();
-                let [slow, fast] = [second + root, second - root].map(|p| p / first * period_s);
+            Family::Pair | Family::SettlingPair => {
+                let [slow, fast] = self.real_lags().unwrap_or_default().map(|t| t * period_s);
                 vec![("time_constant_s", slow), ("second_time_constant_s", fast)]
             }
         }
+    }
+
+    /// Responses with a second pole like this one that settles with one: their means are the same, and
+    /// that of the second pole is so large a part of the first.
+    pub(super) fn with_second_pole(&self) -> Vec<Self> {
+        let of_ratio = |ratio: f64| {
+            // ω² = 1/(T₁T₂) and 2ζω = (T₁ + T₂)/(T₁T₂).
+            let first = self.logs[0].exp() / (1.0 + ratio);
+            let omega = (first * first * ratio).sqrt().recip();
+            let zeta = (1.0 + ratio) * first * omega / 2.0;
+            Self { family: Family::SettlingPair, logs: [omega.ln(), zeta.ln()], ..*self }
+        };
+        [0.1, 0.4].map(of_ratio).to_vec()
+    }
+
+    /// The time constants of an overdamped pair, the longer one first: the poles of `s² + 2ζωs + ω²`.
+    pub(super) fn real_lags(&self) -> Option<[f64; 2]> {
+        let [omega, zeta] = self.logs.map(f64::exp);
+        let root = (zeta * zeta - 1.0).sqrt();
+        (zeta >= CRITICAL).then(|| [zeta + root, zeta - root].map(|p| p / omega))
     }
 }

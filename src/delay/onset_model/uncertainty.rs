@@ -15,8 +15,11 @@
 //! M. S. Bartlett's weights as in W. K. Newey and K. D. West, Econometrica 55 (1987).
 
 use super::search::{Candidate, Search};
-use super::windows::{Onset, Run, all};
+use super::shape::Shape;
+use super::windows::{Onset, Onsets, Pass, Run, all};
+use crate::delay::neutral::Transition;
 use crate::numerics::{median, noise_of_bends, quantile};
+use crate::units::ceil_to_index;
 
 /// What the residuals of all windows of a joint say.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,9 +28,18 @@ pub(super) struct Residual {
     pub(super) deviation: f64,
     /// By how much its memory enlarges variances.
     pub(super) memory: f64,
-    /// The largest mean residual at one distance from the onset over all steps, in deviations, and
-    /// in its standard errors.
-    pub(super) systematic: (f64, f64),
+    /// What all steps have in common of it.
+    pub(super) pattern: Pattern,
+}
+
+/// The mean residual as a function of the distance from the onset, over all steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pattern {
+    /// Its energy in a window, in variances of a residual: it may move an onset by the root of that many
+    /// of its standard errors.
+    pub(super) energy: f64,
+    /// Standard deviation of that energy where there is only noise.
+    error: f64,
 }
 
 /// Standard deviation of a sensor's noise, from differences of second order of what it measured; of
@@ -50,28 +62,32 @@ pub(super) fn sensor_noise<'a>(outputs: &(impl Iterator<Item = &'a [f64]> + Clon
 }
 
 impl Residual {
-    /// Of the windows of `candidate`.
-    pub(super) fn of<'a>(search: &'a Search, candidate: &'a Candidate) -> Self {
-        let pass = search.pass(candidate.shape, candidate.typical);
-        let per_window = pass.response.parameters() as f64;
-        let left = |(run, index, onset): (&Run, usize, &'a Onset)| {
+    /// Of the windows of the onsets, those of one kind of steps or of all.
+    pub(super) fn of(
+        runs: &[Run],
+        onsets: &[Onsets],
+        pass: &Pass,
+        kind: Option<Transition>,
+    ) -> Self {
+        let left = |(run, index, onset): (&Run, usize, &Onset)| {
             let fitted = pass.fitted(run, index, onset);
             let measured = run.output.get(onset.start..onset.end)?;
-            let left = measured.iter().zip(&fitted).map(|(y, fitted)| y - fitted);
-            Some((onset, left.collect::<Vec<f64>>()))
+            let left: Vec<f64> =
+                measured.iter().zip(&fitted).map(|(y, fitted)| y - fitted).collect();
+            let parameters = pass.response(run.steps[index].kind).parameters();
+            let variance = onset.sse / (left.len() as f64 - parameters as f64).max(1.0);
+            Some((*onset, variance, left))
         };
-        let windows: Vec<(&Onset, Vec<f64>)> =
-            all(&search.runs, &candidate.onsets).filter_map(left).collect();
+        let same = |run: &Run, index: usize| kind.is_none_or(|kind| run.steps[index].kind == kind);
+        let windows: Vec<(Onset, f64, Vec<f64>)> = all(runs, onsets)
+            .filter(|(run, index, _)| same(run, *index))
+            .filter_map(left)
+            .collect();
         // A window that something else disturbed is no measure of the others.
-        let variances = windows
-            .iter()
-            .map(|(onset, left)| onset.sse / (left.len() as f64 - per_window).max(1.0));
-        let deviation = median(&variances.collect::<Vec<f64>>()).unwrap_or(0.0).sqrt();
-        Self {
-            deviation,
-            memory: memory(windows.iter().map(|(_, left)| left.as_slice())),
-            systematic: systematic(&windows, deviation),
-        }
+        let variances: Vec<f64> = windows.iter().map(|(_, variance, _)| *variance).collect();
+        let deviation = median(&variances).unwrap_or(0.0).sqrt();
+        let memory = memory(windows.iter().map(|(.., left)| left.as_slice()));
+        Self { deviation, memory, pattern: Pattern::of(&windows, deviation, memory) }
     }
 }
 
@@ -103,52 +119,96 @@ pub(in crate::delay) fn memory<'a>(windows: impl Iterator<Item = &'a [f64]> + Cl
     reaches.map(of_reach).fold(1.0, f64::max)
 }
 
-/// The largest mean over all steps of the residuals at one distance from their onsets, the sign that of
-/// the onset: in deviations, and in standard errors. A noise with a memory has none.
-fn systematic(windows: &[(&Onset, Vec<f64>)], deviation: f64) -> (f64, f64) {
-    /// Distances between which residuals are averaged, samples.
-    const EDGES: [f64; 15] =
-        [-64.0, -32.0, -16.0, -8.0, -4.0, -2.0, 0.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0];
-    /// Steps of which a mean is taken.
-    const FEWEST: usize = 6;
-    let between = |from: f64, to: f64| -> Vec<f64> {
-        let clear = windows.iter().filter(|(onset, _)| onset.is_clear);
-        let mean = |(onset, left): &(&Onset, Vec<f64>)| {
-            let origin = onset.position - onset.start as f64;
-            let at = left.iter().enumerate().filter(|(k, _)| {
-                let distance = *k as f64 - origin;
-                (from..to).contains(&distance)
-            });
-            let (sum, count) = at.fold((0.0, 0.0), |(sum, n), (_, e)| (sum + e, n + 1.0));
-            (count > 0.0).then(|| sum / count * onset.size.signum())
-        };
-        clear.filter_map(mean).collect()
-    };
-    let of_pair = |pair: &[f64]| {
-        let means = between(pair[0], pair[1]);
-        if means.len() < FEWEST || deviation <= 0.0 {
-            return (0.0, 0.0);
+impl Pattern {
+    const NONE: Self = Self { energy: 0.0, error: 0.0 };
+
+    /// Whether it is more than noise by so many standard deviations, and large enough to move onsets by
+    /// more than their standard errors.
+    pub(super) fn is_plain(&self, deviations: f64) -> bool {
+        const LARGE: f64 = 1.0;
+        self.energy > LARGE && self.energy > deviations * self.error
+    }
+
+    /// Of windows whose residuals have a `memory`; the sign of each is that of its onset.
+    fn of(windows: &[(Onset, f64, Vec<f64>)], deviation: f64, memory: f64) -> Self {
+        /// Distances between which residuals are averaged, samples.
+        const EDGES: [f64; 15] = [
+            -64.0, -32.0, -16.0, -8.0, -4.0, -2.0, 0.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0,
+            256.0,
+        ];
+        /// Steps of which a mean is taken.
+        const FEWEST: usize = 6;
+        let clear: Vec<_> = windows.iter().filter(|(onset, ..)| onset.is_clear).collect();
+        if deviation <= 0.0 || clear.len() < FEWEST {
+            return Self::NONE;
         }
-        let n = means.len() as f64;
-        let mean = means.iter().sum::<f64>() / n;
-        let square: f64 = means.iter().map(|x| (x - mean) * (x - mean)).sum();
-        let error = (square / (n * (n - 1.0))).sqrt().max(f64::MIN_POSITIVE);
-        (mean.abs() / deviation, mean.abs() / error)
-    };
-    let found = EDGES.windows(2).map(of_pair);
-    // A mean counts as far as it is known.
-    found.max_by(|a, b| a.1.min(10.0 * a.0).total_cmp(&b.1.min(10.0 * b.0))).unwrap_or((0.0, 0.0))
+        let (steps, mut energy, mut means) = (clear.len() as f64, 0.0, 0.0);
+        for edges in EDGES.windows(2) {
+            // Each mean times the root of its samples, in standard deviations.
+            let of_window = |(onset, _, left): &&(Onset, f64, Vec<f64>)| {
+                let origin = onset.position - onset.start as f64;
+                let index = |edge: f64| ceil_to_index((origin + edge).max(0.0)).min(left.len());
+                let part = &left[index(edges[0])..index(edges[1])];
+                let sum = part.iter().sum::<f64>() * onset.size.signum();
+                (!part.is_empty()).then(|| sum / (part.len() as f64).sqrt() / deviation)
+            };
+            let found: Vec<f64> = clear.iter().filter_map(of_window).collect();
+            let n = found.len() as f64;
+            if found.len() < FEWEST {
+                continue;
+            }
+            let mean = found.iter().sum::<f64>() / n;
+            let square: f64 = found.iter().map(|x| (x - mean) * (x - mean)).sum();
+            // The square of a mean is larger by its variance.
+            energy += n / steps * (mean * mean - square / (n * (n - 1.0)));
+            means += 1.0;
+        }
+        Self { energy: energy.max(0.0), error: memory * f64::sqrt(2.0 * means) / steps }
+    }
 }
 
-/// How far the choice of the shape moves all onsets, samples: the standard deviation of typical delays
-/// about that of the chosen shape, each weighted as its criterion says.
-pub(super) fn choice(candidates: &[Candidate], temperature: f64) -> f64 {
-    let Some(chosen) = candidates.first() else { return 0.0 };
-    let weighted = candidates.iter().map(|it| {
-        let weight = (-(it.score - chosen.score) / temperature).exp();
-        (weight, weight * (it.typical - chosen.typical).powi(2))
-    });
-    let known = weighted.filter(|(_, square)| square.is_finite());
-    let (sum, squares) = known.fold((0.0, 0.0), |(a, b), (w, s)| (a + w, b + s));
-    if sum > 0.0 { (squares / sum).sqrt() } else { 0.0 }
+/// The shape that was chosen among some.
+#[derive(Clone, Debug)]
+pub(super) struct Choice {
+    pub(super) shape: Shape,
+    /// By how much the variance of all onsets grows because its parameters are not known.
+    variance: f64,
+    /// Criteria and typical delays of all of them, the best one first.
+    among: Vec<(f64, f64)>,
+    /// By how much another shape that may be the right one moves all onsets, samples.
+    apart: f64,
+}
+
+impl Choice {
+    /// Of the `candidates` of a search, the best one first.
+    pub(super) fn of(search: &Search, candidates: &[Candidate]) -> Option<Self> {
+        let chosen = candidates.first()?;
+        let among = candidates.iter().map(|it| (it.score, it.typical)).collect();
+        let (shape, variance) = (chosen.shape, search.shared_variance(chosen));
+        Some(Self { shape, variance, among, apart: 0.0 })
+    }
+
+    /// The same where another shape may be the right one.
+    pub(super) fn or_behind(mut self, other: Shape, search: &Search, chosen: &Candidate) -> Self {
+        let later = chosen.shape.mean() - other.mean();
+        let onsets = chosen.onsets.iter().map(|of_run| of_run.later(later)).collect();
+        let behind = search.evaluate(other, onsets, chosen.typical + later, 2);
+        self.apart = behind.typical - chosen.typical;
+        self
+    }
+
+    /// The standard deviation by which all onsets may be moved together, samples: by the parameters of
+    /// the shape, and by its choice, the others being weighted as their criteria say.
+    pub(super) fn deviation(&self, memory: f64) -> f64 {
+        let Some((best, chosen)) = self.among.first() else { return 0.0 };
+        let weighted = self.among.iter().map(|(score, typical)| {
+            let weight = (-(score - best) / memory).exp();
+            (weight, weight * (typical - chosen).powi(2))
+        });
+        let known = weighted.filter(|(_, square)| square.is_finite());
+        let (sum, squares) = known.fold((0.0, 0.0), |(a, b), (w, s)| (a + w, b + s));
+        let choice = if sum > 0.0 { squares / sum } else { 0.0 };
+        // Two standard deviations reach there.
+        (self.variance * memory + choice + (self.apart / 2.0).powi(2)).sqrt()
+    }
 }

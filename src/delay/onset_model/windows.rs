@@ -7,7 +7,8 @@
 use std::ops::Range;
 
 use super::dynamics::{Before, Fit, Jump, Response};
-use super::shape::Shape;
+use super::shape::{Shape, Shapes};
+use crate::delay::neutral::Transition;
 use crate::units::{ceil_to_index, floor_to_index};
 
 /// Samples at the ends of a window at which there is no onset: with one sample beyond it, any
@@ -26,6 +27,7 @@ const COARSE: usize = 100;
 /// A step of the input, and what bounds the reaction to it; positions are indices of its trial.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
+    pub(super) kind: Transition,
     /// The first sample with the new level; between samples where some are left out.
     pub(super) at: f64,
     pub(super) before: f64,
@@ -50,6 +52,8 @@ impl Step {
 pub(super) struct Run {
     pub(super) output: Vec<f64>,
     pub(super) steps: Vec<Step>,
+    /// Whether it is one window, all of which says something of its step.
+    pub(super) is_window: bool,
 }
 
 /// The onset of a step.
@@ -105,8 +109,9 @@ pub(super) fn all<'a>(
 
 /// A shape, and what its windows go by.
 pub(super) struct Pass {
-    pub(super) response: Box<dyn Response>,
-    pub(super) shape: Shape,
+    /// The responses to the kinds of steps, each shape once.
+    pub(super) responses: Vec<(Shape, Box<dyn Response>)>,
+    pub(super) shapes: Shapes,
     /// Samples to each side of an onset that are looked at.
     pub(super) reach: usize,
     /// The delay at which an onset that is not clear is taken to be.
@@ -119,7 +124,11 @@ pub(super) struct Pass {
 impl Onsets {
     /// All of them so many samples behind their steps.
     pub(super) fn behind(run: &Run, delay: f64) -> Self {
-        let positions: Vec<f64> = run.steps.iter().map(|step| step.at + delay).collect();
+        Self::at(run.steps.iter().map(|step| step.at + delay).collect())
+    }
+
+    /// Where they are taken to be.
+    pub(super) fn at(positions: Vec<f64>) -> Self {
         Self { found: vec![None; positions.len()], positions, windows: None }
     }
 
@@ -188,22 +197,34 @@ impl Onsets {
         }
     }
 
-    /// What is left over in windows: the negative logarithm of their likelihood.
+    /// What is left over in windows: the negative logarithm of their likelihood, for a sample.
     fn lack(&self, range: Range<usize>) -> f64 {
         let found = self.found[range].iter().flatten();
-        found
-            .map(|onset| onset.samples() as f64 * onset.mean_square().max(f64::MIN_POSITIVE).ln())
-            .sum()
+        let (sum, samples) = found.fold((0.0, 0.0), |(sum, samples), onset| {
+            let log = onset.mean_square().max(f64::MIN_POSITIVE).ln();
+            (sum + onset.samples() as f64 * log, samples + onset.samples() as f64)
+        });
+        sum / f64::max(samples, 1.0)
     }
 }
 
 impl Pass {
+    /// The response to a kind of step.
+    pub(super) fn response(&self, kind: Transition) -> &dyn Response {
+        let shape = self.shapes.of(kind);
+        let found = self.responses.iter().find(|(known, _)| *known == shape);
+        found.unwrap_or(&self.responses[0]).1.as_ref()
+    }
+
     /// The window of a step, given where the onsets are taken to be.
     pub(super) fn window(&self, run: &Run, positions: &[f64], index: usize) -> (usize, usize) {
         /// Samples of the first and the last window at least, where the record may hold a reaction to
         /// what came before it, or, of an output that leads its input, to what comes behind it.
         const FEWEST: f64 = 10.0;
         let n = run.output.len();
+        if run.is_window {
+            return (0, n);
+        }
         let (here, step) = (positions[index], &run.steps[index]);
         // What begins before a record with a few steps is most of it.
         let edge = if self.before == Before::Steady { 0.0 } else { self.typical };
@@ -228,12 +249,14 @@ impl Pass {
         (start, end): (usize, usize),
     ) -> Option<Box<dyn Fit + '_>> {
         let values = run.output.get(start..end)?;
-        let ends = self.shape.lasts(run.steps[index].change());
+        let step = &run.steps[index];
+        let shape = self.shapes.of(step.kind);
+        let ends = shape.lasts(step.change());
         // A level to which an output was on its way before is seen in the samples before its step.
-        let is_hidden = self.shape.family.may_be_curved() || run.steps[index].at < SEEN;
+        let is_hidden = shape.family.may_be_curved() || step.at < SEEN;
         let is_steady = self.before == Before::Steady && index == 0 && is_hidden;
         let before = if is_steady { Before::Steady } else { Before::Any };
-        self.response.window(values, ends, before)
+        self.response(step.kind).window(values, ends, before)
     }
 
     /// Finds the onset of the step `index` of a run in its window.
@@ -251,7 +274,8 @@ impl Pass {
             return None;
         }
         let (position, jump) = best(fit.as_ref(), first, last);
-        let freedom = (fit.samples() as f64 - self.response.parameters() as f64).max(1.0);
+        let parameters = self.response(run.steps[index].kind).parameters();
+        let freedom = (fit.samples() as f64 - parameters as f64).max(1.0);
         let noise = (jump.sse / freedom).max(0.25 * self.noise * self.noise);
         let inside = position > first + 0.5 && position < last - 0.5;
         Some(Onset {

@@ -171,6 +171,12 @@ fn onset_json(model: &OnsetModel) -> Value {
         "parameters": model.parameters().into_iter().collect::<BTreeMap<_, _>>(),
         "misfit": model.misfit(),
         "follows_input_r2": model.follows_input_r2(),
+        "by_transition": model.responses().into_iter().map(|one| json!({
+            "transition": one.transition,
+            "shape": one.shape,
+            "parameters": one.parameters.into_iter().collect::<BTreeMap<_, _>>(),
+            "fits": one.fits,
+        })).collect::<Vec<_>>(),
     })
 }
 
