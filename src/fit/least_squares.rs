@@ -96,16 +96,9 @@ fn fit_to(
     check_changes(record)?;
     let slopes = record.training_samples() * space.free.len();
     let _turn = turn::wait_for(slopes);
-    // On a long record descents go most of their way on a part of it, and each valley is followed
-    // in all of it once.
-    let (part, training) = (record.thinned(), record.for_training());
-    let short = record.shortened();
-    let enough = comparing(part.training_samples());
-    let searches = rough(&short, Some(&part), model, &space, range).into_iter();
-    let searches = searches.map(|s| s.across_flats().onto(&part).descended(enough));
-    let mut searches: Vec<_> = searches.collect();
-    searches.dedup_by(|one, other| is_as_deep(one.cost, other.cost));
-    let finished = searches.into_iter().map(|s| s.onto(&training).descended(limits));
+    let (training, short) = (record.for_training(), record.shortened());
+    let searches = rough(&short, Some(&training), model, &space, range).into_iter();
+    let finished = searches.map(|s| s.across_flats().onto(&training).descended(limits));
     let best = finished.min_by(|a, b| a.cost.total_cmp(&b.cost));
     // A value that does nothing may lie outside of the bounds.
     let given = plain(other);
@@ -117,15 +110,6 @@ fn fit_to(
         None => given.descended(limits),
     };
     Ok(best.into_fit(record))
-}
-
-/// Whether two descents that have converged ended in the same valley, as far as their sums of squares
-/// say.
-fn is_as_deep(one: f64, other: f64) -> bool {
-    /// Relative difference: above what a descent that has converged leaves, below what tells models
-    /// apart.
-    const SAME: f64 = 1e-3;
-    (one - other).abs() <= SAME * one.min(other)
 }
 
 /// A rough descent from each of the most promising starts: the best of these. Slopes are kept for
