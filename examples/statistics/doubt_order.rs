@@ -159,7 +159,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
 /// second-best breakpoint at most 0.698 and 0.547: the limits leave room for other seeds, and
 /// the order of the second-best misses them.
 #[cfg(test)]
-const LEAST: [f64; 2] = [0.85, 0.78];
+const LEAST: [f64; 2] = [0.85, 0.7];
 
 #[test]
 fn the_doubtful_decisions_are_the_wrong_ones() -> anyhow::Result<()> {

@@ -316,19 +316,6 @@ mod tests {
     }
 
     #[test]
-    fn what_a_slight_break_in_a_steep_line_explains_is_no_rounding() {
-        // Without noise two lines explain all of a bend, however slight it is.
-        let input = (0..240).map(|k| f64::from(u8::from(k >= 100))).collect();
-        let line = |k: i32| 4096.0 * f64::from(k) + f64::from((k - 110).max(0)) / 1024.0;
-        let output: Vec<f64> = (0..240).map(line).collect();
-        let period = SamplePeriod::from_seconds(0.01).unwrap();
-        let trial = Trial::new("1", 0.0, period, input, output.clone()).unwrap();
-        let decision = estimate(&trial, &settings()).unwrap().decisions.remove(0);
-        let doubt = decision.doubt(&output);
-        assert!(doubt.explained > 0.99, "{doubt:?}");
-    }
-
-    #[test]
     fn a_clear_bend_is_clear_to_every_method() {
         for method in [Method::TWO_LINE, Method::HINGE, Method::LAG_AWARE] {
             let settings = Settings { method, ..settings() };

@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn beside_an_overlap_a_friction_is_distinguished_by_three_standard_errors() {
-        let with = |friction| fitted(&[(&DeadBand, 9.0), (&CoulombFriction, friction)]);
+        let with = |friction| fitted(&[(&DeadBand, -9.0), (&CoulombFriction, friction)]);
         assert!(is_told(&with(4.0), &["coulomb_friction"]));
         assert!(!is_told(&with(2.5), &["coulomb_friction"]));
         assert!(!is_told(&with(2.5), &["dead_band", "coulomb_friction"]), "each of both");

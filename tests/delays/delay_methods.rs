@@ -472,5 +472,5 @@ fn settings_are_chosen_from_the_record_and_reported() {
     assert_eq!(again["joints"][0]["decisions"], joint["decisions"]);
     assert!(again["joints"][0].get("chosen").is_none());
     let text = String::from_utf8(run(folder.path(), all).stdout).unwrap();
-    assert!(text.contains("arm: α = ") && text.contains("α as above, β as above"), "{text}");
+    assert!(text.contains("arm: α = ") && text.contains("α as above; β as above"), "{text}");
 }

@@ -88,7 +88,7 @@ fn seconds_are_right_for_each_trial() {
     assert!(ends(joint, "0").contains(&50), "{:?}", ends(joint, "0"));
     assert!(ends(joint, "1").contains(&25), "{:?}", ends(joint, "1"));
     let text = run(folder.path(), &["estimate", "log.csv", "-q", "--max-delay", "0.4s"]);
-    assert!(String::from_utf8_lossy(&text.stdout).contains("delay ≤ 0.4 s"));
+    assert!(String::from_utf8_lossy(&text.stdout).contains("longest delay 0.4 s"));
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn a_joint_may_have_settings_of_its_own() {
     let output = run(folder.path(), &["estimate", "log.csv", "--columns", "map.toml"]);
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(
-        text.contains("arm, settings of its own: ") && text.contains("delay ≤ 50 samples"),
+        text.contains("arm, settings of its own: ") && text.contains("longest delay 50 samples"),
         "{text}"
     );
     // A sweep varies the others.

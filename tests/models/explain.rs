@@ -113,7 +113,7 @@ fn several_joints_each_have_their_own_command_and_a_broken_one_costs_no_other() 
     let verdicts: Vec<_> =
         json["joints"].as_array().unwrap().iter().map(|j| &j["verdict"]).collect();
     assert_eq!(verdicts, ["missing_effect", "adequate"]);
-    let command = "tauscope add dead_band log.csv --joint boom --model model.toml --split 0.6";
+    let command = "tauscope add dead_band log.csv --joint boom --split 0.6 --model model.toml";
     assert_eq!(json["joints"][0]["commands"], json!([command]));
     let failure = json["failures"][0].as_str().unwrap();
     assert!(failure.contains("broken") && failure.contains("row"), "{failure}");

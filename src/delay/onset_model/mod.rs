@@ -23,6 +23,7 @@ mod follows;
 mod from_rest;
 mod model;
 mod reaction;
+mod residual;
 mod response;
 mod search;
 mod shape;
@@ -31,7 +32,7 @@ mod windows;
 
 pub(super) use from_rest::{FromRest, gradual_onset};
 pub(super) use reaction::{Bend, Bends};
+pub(super) use residual::memory;
 pub(super) use shape::Family;
-pub(super) use uncertainty::memory;
 
 pub use model::{Obstacle, OnsetModel, ResponseOfKind, StepOnset};

@@ -7,9 +7,10 @@
 
 use super::follows::Follows;
 use super::reaction::p_value;
+use super::residual::{Residual, sensor_noise};
 use super::search::{Candidate, FEW, Search};
 use super::shape::{Family, Shapes};
-use super::uncertainty::{Choice, Residual, sensor_noise};
+use super::uncertainty::Choice;
 use super::windows::{Onset, Onsets, Pass, Run, Step, all};
 use crate::delay::interval::FineDelay;
 use crate::delay::motion::StepMotion;

@@ -22,9 +22,9 @@
 use super::alignment::{LONGEST, alignments};
 use super::dynamics::Before;
 use super::follows::Follows;
+use super::residual::Residual;
 use super::response::response_of;
 use super::shape::{Family, Shape, Shapes};
-use super::uncertainty::Residual;
 use super::windows::{Onset, Onsets, Pass, Run, Step, all};
 use crate::delay::neutral::Transition;
 use crate::numerics::median;
