@@ -72,7 +72,6 @@ pub fn improve(
         /// Effects that are added to a structure, at most: what it has is most of what there is.
         const MORE: usize = 3;
         let mut steps = structured(record, &begin, options, misfit, workers);
-        steps.truncate(options.max_effects);
         if let Some(start) = steps.pop() {
             let mut later = Vec::new();
             let mut keep = |step: &Step| {

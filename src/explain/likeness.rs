@@ -46,8 +46,13 @@ mod tests {
     /// A model with `effects`, the first parameter of each so many standard errors from where it does
     /// nothing.
     fn fitted(effects: &[(&'static dyn Effect, f64)]) -> AssessedModel {
-        let neutral = effects.iter().map(|(effect, _)| Component::neutral(*effect));
-        let model = neutral.fold(JointModel::integrator(1.0, 0.1), |model, one| model.with(one));
+        let component = |(effect, errors): &(&'static dyn Effect, f64)| {
+            let mut values = effect.spec().neutral();
+            values[0] += errors * 0.1;
+            Component::new(*effect, values.into_iter().map(Value::from).collect()).unwrap()
+        };
+        let integrator = JointModel::integrator(1.0, 0.1);
+        let model = effects.iter().map(component).fold(integrator, |model, one| model.with(one));
         let parameter = |(effect, errors): &(&'static dyn Effect, f64)| {
             let spec = effect.spec();
             Parameter {

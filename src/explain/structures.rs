@@ -50,7 +50,8 @@ pub(super) fn structured(
             options.effects.iter().any(|known| known.spec().id == id)
                 && could_be_missing(record, &first.fit.model, **effect)
         };
-        structure.iter().filter(is_allowed).copied().collect::<Vec<_>>()
+        let allowed = structure.iter().filter(is_allowed).copied();
+        allowed.take(options.max_effects).collect::<Vec<_>>()
     });
     let thinned = record.thinned();
     let surveyed = workers.map(&allowed, |effects| surveyed(&thinned, &first.fit.model, effects));

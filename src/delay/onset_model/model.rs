@@ -472,7 +472,7 @@ impl Left {
         self.kinds.iter().chain([&self.residual]).any(|it| it.pattern.is_plain(plain))
     }
 
-    /// The same with the shapes that kinds of steps have of their own, found in samples `factor` times as
+    /// These with the shapes that kinds of steps have of their own, found in samples `factor` times as
     /// long, where these fit; and the choice for each kind.
     fn with_own(
         self,
