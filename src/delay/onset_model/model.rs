@@ -375,7 +375,7 @@ impl OnsetModel {
     }
 
     fn is_unrelated(&self) -> bool {
-        !self.comes_to_rest && self.follows.is_unrelated()
+        if self.comes_to_rest { self.follows.is_chance() } else { self.follows.is_unrelated() }
     }
 
     /// The kind of most of the steps.

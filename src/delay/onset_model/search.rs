@@ -283,7 +283,7 @@ impl Search {
         self.select_near(&self.first())
     }
 
-    /// The same about the onsets of broken lines.
+    /// The shapes that it supports about the onsets of broken lines, the best one first.
     fn select_near(&self, bend: &Candidate) -> Vec<Candidate> {
         let mut all = vec![bend.clone()];
         let others = Family::ALL.into_iter().skip(1).filter(|it| self.may_be(*it));
