@@ -86,11 +86,13 @@ impl EstimatedJoint<'_> {
         let short = if model.has_own_shapes() {
             format!("no response shape fits all kinds of steps: {shapes}")
         } else {
+            // What steps have in common is no noise, however small it is.
+            let is_alike = responses.iter().any(|one| !one.fits);
             format!(
-                "no response shape fits: what the best, `{}`, leaves over ({} times the sensor noise) \
-                 is alike at all steps of a kind",
+                "no response shape fits: the best, `{}`, leaves {} times the sensor noise{}",
                 model.shape(),
-                number(model.misfit())
+                number(model.misfit()),
+                if is_alike { ", alike at the steps of a kind" } else { "" }
             )
         };
         let rest = ", so delays may be off by more than their intervals. `tauscope improve` looks for \
