@@ -20,10 +20,12 @@ use rerun::{
     AsComponents, ComponentDescriptor, EntityPath, Scalars, SerializedComponentBatch,
     SerializedComponentColumn, SeriesLines, StateChange, StoreId, TextDocument, TextLog,
 };
+use serde_json::Value;
 
 use super::error::RecordError;
 use super::palette::{Rgb, color};
 use crate::delay::FineDelay;
+use crate::report::Kind;
 use crate::wording::number;
 
 /// Where rows lie: on each timeline that is named here, one value per row.
@@ -412,6 +414,19 @@ pub(super) fn texts(
     values: impl IntoIterator<Item = Option<String>>,
 ) -> SerializedComponentColumn {
     column::<_, StringArray>(name, values)
+}
+
+/// A column of values of a `kind` named `name`; `None` and what is not of the kind is null.
+pub(super) fn values(
+    name: &'static str,
+    kind: Kind,
+    values: impl Iterator<Item = Option<Value>>,
+) -> SerializedComponentColumn {
+    match kind {
+        Kind::Text => texts(name, values.map(|value| Some(value?.as_str()?.to_owned()))),
+        Kind::Whole => integers(name, values.map(|value| value?.as_i64())),
+        Kind::Samples | Kind::Real | Kind::Plain => numbers(name, values.map(|it| it?.as_f64())),
+    }
 }
 
 fn column<T, A: Array + FromIterator<Option<T>> + 'static>(

@@ -2,15 +2,14 @@
 
 use rerun::SeriesLines;
 
-use super::chunk::{Chunks, Moment, fine_columns, integers, numbers, shown, texts};
+use super::chunk::{Chunks, Moment, integers, numbers, shown, values};
 use super::error::RecordError;
 use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::paths;
 use crate::delay::{Candidate, Decision};
-use crate::experiment::Joint;
+use crate::report::{DECISION, Doubted, Place, decision_text};
 use crate::units::signed;
-use crate::wording::{doubt_percent, number};
 
 /// Adds `/decision/sse` and `/decision/table`.
 pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
@@ -23,47 +22,11 @@ pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), R
 fn add_page(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     /// Rows that a person still reads.
     const MOST: usize = 1000;
-    let rows: Vec<_> = layout.segments().take(MOST).map(|(t, s)| page_row(t, s)).collect();
+    let rows = layout.segments().take(MOST).map(|(trial, segment)| trial.doubted(segment));
+    let table = decision_text(Place::Recording, Some(layout.joint), rows).markdown(plain);
     let all = layout.segments().count();
-    let more = if all > MOST { format!("\n\nThe first {MOST} of {all}.") } else { String::new() };
-    let page = format!("{}\n{}{more}", page_header(layout.joint), rows.join("\n"));
-    chunks.page(paths::DECISION_PAGE, page)
-}
-
-/// The head of the table, with the units of `joint`.
-fn page_header(joint: &Joint) -> String {
-    let unit = plain(joint.output_unit.as_deref().unwrap_or("unit"));
-    format!(
-        "| trial | i | verdict | doubt | δ, s | δ | p | q | SSE, {unit}² | slopes, {unit}/sample |\n\
-         |---|---|---|---|---|---|---|---|---|---|"
-    )
-}
-
-fn page_row(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
-    let decision = segment.decision;
-    let best = decision.shown_candidate();
-    let of = |value: Option<f64>| value.map_or_else(String::new, number);
-    let delay = decision.delay();
-    let period_s = trial.trial.period().seconds();
-    let mark = if segment.is_accepted() { "✓" } else { "✗" };
-    let cells = [
-        plain(trial.trial.label()),
-        decision.number.to_string(),
-        format!("{mark} {}", decision.verdict()),
-        doubt_percent(&segment.doubt),
-        of(delay.map(|delay| delay * period_s)),
-        of(delay),
-        decision.input_step.sample.to_string(),
-        segment.place().unwrap_or_default(),
-        of(best.map(|best| best.sse)),
-        best.map_or_else(String::new, slopes),
-    ];
-    format!("| {} |", cells.join(" | "))
-}
-
-/// The slopes of both lines: in one column, since two are wider than a small window.
-fn slopes(best: Candidate) -> String {
-    format!("{} → {}", number(best.before.slope), number(best.after.slope))
+    let more = if all > MOST { format!("\nThe first {MOST} of {all}.") } else { String::new() };
+    chunks.page(paths::DECISION_PAGE, table + &more)
 }
 
 /// SSE at each candidate's tick; empty at the first and last tick of a segment.
@@ -97,6 +60,10 @@ impl<'l, 'a> Row<'l, 'a> {
         let rank = candidate.map(|_| 1);
         let verdict = Self { trial, segment, j: None, candidate, rank };
         candidates.chain([(trial.verdict(segment), verdict)])
+    }
+
+    fn doubted(&self) -> Doubted<'a> {
+        self.trial.doubted(self.segment)
     }
 
     /// What the row of a verdict has alone.
@@ -134,17 +101,20 @@ fn ranks(errors: &[f64]) -> Vec<i64> {
     ranks.into_iter().map(|(_, rank)| rank).collect()
 }
 
-/// A row per candidate, and one per verdict: without `j`, but with `accepted` (1 or 0),
-/// `trial` and `verdict`, and the delay between samples where there is one.
+/// What is said of a decision that is the same for all its candidates.
+const OF_THE_STEP: [&str; 4] = ["i", "p", "r", "end"];
+
+/// What each candidate has of its own; and what the entity says.
+const OF_THE_CANDIDATE: [&str; 8] =
+    ["joint", "f_opt", "q", "delta", "delta_s", "sse", "slope_before", "slope_after"];
+
+/// A row per candidate, and one per verdict: without `j`, but with all that is said of the decision,
+/// and the delay between samples where there is one.
 fn add_table(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     type Whole = fn(&Row<'_, '_>) -> Option<i64>;
     type Real = fn(&Row<'_, '_>) -> Option<f64>;
     let (moments, rows): (Vec<_>, Vec<_>) = layout.segments().flat_map(Row::of).unzip();
-    let whole: [(&str, Whole); 11] = [
-        ("i", |row| Some(signed(row.segment.decision.number))),
-        ("p", |row| Some(signed(row.segment.decision.input_step.sample))),
-        ("r", |row| Some(signed(row.segment.decision.segment.first))),
-        ("end", |row| Some(signed(row.segment.decision.segment.last))),
+    let whole: [(&str, Whole); 7] = [
         ("f", |row| row.segment.decision.candidates.best().map(|best| signed(best.f))),
         ("j", |row| row.j.map(signed)),
         ("q", q),
@@ -153,10 +123,11 @@ fn add_table(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), Record
         ("error_rank", |row| row.rank),
         ("breakpoint", q),
     ];
-    let real: [(&str, Real); 3] = [
+    let real: [(&str, Real); 4] = [
         ("sse", |row| Some(row.candidate?.sse)),
         ("slope_before", |row| Some(row.candidate?.before.slope)),
         ("slope_after", |row| Some(row.candidate?.after.slope)),
+        ("fine_delta", |row| Some(row.verdict(|decision| decision.fine)??.delay)),
     ];
     // What a person reads. A viewer orders columns by their names: these are such that the most telling
     // ones come first.
@@ -165,13 +136,17 @@ fn add_table(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), Record
         ("error", |row| Some(row.candidate?.sse)),
         ("error_times_least", error_times_least),
     ];
-    let trials = rows.iter().map(|row| row.verdict(|_| row.trial.trial.label().to_owned()));
-    let verdicts = rows.iter().map(|row| row.verdict(|it| it.verdict().to_string()));
-    let fine: Vec<_> = rows.iter().map(|row| row.verdict(|it| it.fine).flatten()).collect();
-    let mut columns = vec![texts("trial", trials), texts("verdict", verdicts)];
+    let facts = DECISION.iter().filter(|fact| !OF_THE_CANDIDATE.contains(&fact.id));
+    let mut columns: Vec<_> = facts
+        .filter(|fact| fact.is_in_tables())
+        .map(|fact| {
+            let is_there = |row: &&Row<'_, '_>| row.j.is_none() || OF_THE_STEP.contains(&fact.id);
+            let value = |row| Some((fact.value)(&Some(row).filter(is_there)?.doubted()));
+            values(fact.id, fact.kind, rows.iter().map(value))
+        })
+        .collect();
     columns.extend(whole.map(|(name, value)| integers(name, rows.iter().map(value))));
     columns.extend(real.map(|(name, value)| numbers(name, rows.iter().map(value))));
     columns.extend(rounded.map(|(name, value)| shown(name, rows.iter().map(value))));
-    columns.extend(fine_columns(&fine));
     chunks.push(paths::DECISION_TABLE, moments.into_iter().collect(), columns)
 }

@@ -20,7 +20,7 @@ use super::chunk::{Index, Moment, Opening};
 use crate::delay::{Candidate, Decision, Doubt, TrialEstimate, Verdict, doubts};
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Trial};
-use crate::report::EstimatedJoint;
+use crate::report::{Doubted, EstimatedJoint};
 use crate::units::signed;
 use crate::wording::{doubt_in_short, doubt_sentence, number};
 
@@ -409,6 +409,13 @@ impl<'a> TrialLayout<'a> {
     pub(super) fn moment(&self, segment: &SegmentLayout<'_>, decision: i64, k: usize) -> Moment {
         let (sample, time_ns) = (self.sample(k), self.time_ns(k));
         Moment { decision, segment: segment.number, sample, time_ns }
+    }
+
+    /// The decision on `segment`, as it is said in tables and pages.
+    pub(super) fn doubted(&self, segment: &SegmentLayout<'a>) -> Doubted<'a> {
+        let smoothed = self.estimate.smoothed.as_deref();
+        let (decision, doubt) = (segment.decision, segment.doubt.clone());
+        Doubted { joint: self.estimated, trial: self.trial, smoothed, decision, doubt }
     }
 
     /// What speaks most against the decision on `segment`.

@@ -12,10 +12,10 @@ use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths;
 use crate::delay::Verdict;
-use crate::delay::{Check, Condition, Decision, FineDelay, OnsetModel, Outcome};
+use crate::delay::{Check, Condition, Decision, OnsetModel, Outcome};
 use crate::numerics::quantile;
-use crate::report::{EstimatedJoint, JointSummary, dead_time_sentences};
-use crate::wording::{counted, doubt_percent, number, remedy_text, rounded, samples_text};
+use crate::report::{DECISION, EstimatedJoint, JointSummary, Place, dead_time_sentences};
+use crate::wording::{doubt_percent, number, rounded};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(
@@ -217,21 +217,8 @@ impl Facts<'_, '_> {
         )
     }
 
-    fn seconds(&self, samples: f64) -> String {
-        format!("{:.3} s", samples * self.trial.trial.period().seconds())
-    }
-
     fn delay(&self, samples: f64) -> String {
         seconds(self.segment.decision, samples, self.trial.trial.period().seconds())
-    }
-
-    fn at(&self, sample: usize) -> String {
-        let in_trial = format!("sample {sample} = {:.3} s", self.trial.trial.time_s(sample));
-        if !self.trial.is_one_of_several() {
-            return in_trial;
-        }
-        let joined = self.trial.seconds(sample);
-        format!("{in_trial} of the trial; {} = {joined:.3} s in a row", self.trial.sample(sample))
     }
 
     /// How doubtful the decision is, and why.
@@ -313,92 +300,28 @@ impl Facts<'_, '_> {
         format!("**{}**: {value}, but needs {needed}", check.condition)
     }
 
+    /// All that is said of the decision, and of the joint what it is held against.
     fn quantities(&self) -> String {
-        let decision = self.segment.decision;
-        let (step, segment, hold) = (decision.input_step, decision.segment, decision.hold);
-        let input = |value| with_unit(value, self.trial.estimated.joint.input_unit.as_deref(), "");
-        let (before, after) = (input(step.before), input(step.after));
+        let (found, joint) = (self.trial.doubted(self.segment), self.trial.estimated.joint);
         let mut page = "| quantity | value |\n|---|---|".to_owned();
-        let mut row = |name: &str, value: String| page.extend(["\n| ", name, " | ", &value, " |"]);
-        row("input step p", self.at(step.sample));
-        row("input", format!("{before} → {after}"));
-        let held = self.seconds(hold as f64);
-        row("input keeps this level for", format!("{} = {held}", counted(hold, "sample")));
-        let (first, last, samples) = (segment.first, segment.last, segment.len());
-        row("segment r … end", format!("{first} … {last}: {samples} samples"));
-        if let Some(best) = decision.breakpoint() {
-            let candidate = best.candidate;
-            let output = |value, per| {
-                with_unit(value, self.trial.estimated.joint.output_unit.as_deref(), per)
-            };
-            let delay =
-                |samples: f64| format!("{} = {}", samples_text(samples), self.delay(samples));
-            if let Some(program) = decision.delay_before_review() {
-                let place = self.at(candidate.breakpoint);
-                row("the program's δ and q", format!("{}; {place}", delay(program)));
+        let mut row = |name: &str, value: &str| page.extend(["\n| ", name, " | ", value, " |"]);
+        for fact in DECISION.iter().filter(|fact| fact.is_shown(Place::Verdict)) {
+            let value = (fact.value)(&found);
+            if !value.is_null() {
+                row(&fact.label(), &plain(&fact.in_words(&value, joint, self.trial.trial)));
             }
-            let breakpoint = match decision.delay_before_review().and(self.segment.place()) {
-                Some(place) => format!("sample {place}, by a reviewer"),
-                None => self.breakpoint(candidate.breakpoint),
-            };
-            row("breakpoint q", breakpoint);
-            row("candidate f", format!("{} of {}", candidate.f, decision.candidates.len()));
-            let own = delay(decision.delay().unwrap_or(best.delay as f64));
-            row("**delay δ = q − p**", format!("**{own}**"));
-            row("SSE of both lines", output(candidate.sse, "²"));
-            row("slope before", output(candidate.before.slope, "/sample"));
-            row("slope after", output(candidate.after.slope, "/sample"));
-        }
-        if let Some(FineDelay { low, high, confidence, .. }) = decision.fine {
-            let samples = format!("{} … {} samples", number(low), number(high));
-            let seconds = format!("{} … {}", self.delay(low), self.delay(high));
-            let name = format!("{} % interval of δ", number(100.0 * confidence));
-            row(&name, format!("{samples} = {seconds}"));
-        }
-        if let (Some(_), Some(best)) = (&decision.onset, decision.breakpoint()) {
-            row("Algorithm 1's δ for comparison", self.delay(best.delay as f64));
         }
         if let Some(model) = self.trial.estimate.onset_model.as_deref() {
-            row("response behind the delay", response(model));
+            row("response behind the delay", &response(model));
         }
         if let Some(tracking) = &self.trial.estimate.tracking {
             let (offset, gain) = (number(tracking.offset()), number(tracking.gain()));
-            row("output tracks the input, at rest", format!("{offset} + {gain}·u"));
-        }
-        if let Some((name, near)) = self.how_near() {
-            row(name, near);
+            row("output tracks the input, at rest", &format!("{offset} + {gain}·u"));
         }
         if let Some(typical) = self.typical {
-            row("median delay of the joint", typical.to_owned());
+            row("median delay of the joint", typical);
         }
         page
-    }
-
-    /// The breakpoint as finely as it is known.
-    fn breakpoint(&self, sample: usize) -> String {
-        let decision = self.segment.decision;
-        let Some((fine, place)) = decision.fine.zip(self.segment.place()) else {
-            return self.at(sample);
-        };
-        let trial = self.trial.trial;
-        let before = trial.time_s(decision.input_step.sample);
-        let seconds = before + fine.delay * trial.period().seconds();
-        format!("sample {place} = {seconds:.5} s")
-    }
-
-    /// What would have accepted the step, or by how much the second-best breakpoint is worse.
-    fn how_near(&self) -> Option<(&'static str, String)> {
-        let decision = self.segment.decision;
-        if decision.verdict() == Verdict::Accepted {
-            let second = decision.runner_up().filter(|second| second.margin.is_finite())?;
-            let (percent, q) = (number(100.0 * second.margin), second.breakpoint);
-            let near = format!("q = {q}, with an SSE {percent} % above");
-            return Some(("second-best breakpoint", near));
-        }
-        let remedies =
-            decision.remedies(&self.trial.estimated.estimate.settings, self.trial.output());
-        let remedies: Vec<_> = remedies.into_iter().map(|it| remedy_text(it, "`")).collect();
-        Some(("would be accepted with", remedies.join(", ")))
     }
 
     fn conditions(&self) -> String {
@@ -487,9 +410,4 @@ fn response(model: &OnsetModel) -> String {
     let named = named.iter().map(|(name, value)| format!(", {name} {}", number(*value)));
     let (parameters, misfit) = (named.collect::<String>(), number(model.misfit()));
     format!("{}{parameters}; residual {misfit} times the noise", model.shape())
-}
-
-fn with_unit(value: f64, unit: Option<&str>, per: &str) -> String {
-    let value = number(value);
-    unit.map_or_else(|| value.clone(), |unit| format!("{value} {unit}{per}"))
 }

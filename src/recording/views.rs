@@ -226,7 +226,7 @@ impl Tab<'_> {
 
     /// The decisions by doubt, in their order, and by doubt with the reasons.
     fn lists(&self) -> Page {
-        let doubts = by_doubt(self.estimated);
+        let doubts = by_doubt(&[self.estimated]);
         let open = doubts.iter().filter(|found| found.decision.reviewer_verdict.is_none());
         let doubtful = open.filter(|found| found.doubt.is_doubtful()).count();
         let limit = number(Doubt::DOUBTFUL_PERCENT);

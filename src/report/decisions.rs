@@ -1,238 +1,200 @@
-//! The table of decisions: one row per input step.
+//! What is said of a decision: to add something to all outputs, add it to [`DECISION`].
 
-use serde::{Serialize, Serializer};
+use serde_json::{Map, Value};
 
-use super::{DataTable, EstimatedJoint, Kind};
-use crate::delay::{Check, Condition, Decision, Method, Settings, Verdict};
-use crate::experiment::Trial;
+use super::doubt::doubted;
+use super::facts::{self, Fact, Part, Place, UNSAID, Unit, fact, samples};
+use super::text_table::TextTable;
+use super::{DataTable, Doubted, EstimatedJoint, Kind};
+use crate::delay::{Candidate, Condition, Decision, Method, ReviewerVerdict, Settings};
+use crate::experiment::Joint;
 use crate::numerics::to_nanoseconds;
-use crate::wording::{number, remedy_text};
+use crate::wording::{doubt_percent, doubt_sentence, number, remedy_text, unit_suffix};
+use Kind::{Real, Samples, Text, Whole};
+use Part::{Json, Paper, People, Table};
+use Place::{Doubtful, Recording, Report, Terminal, Verdict};
 
-/// One row of `--decisions`; sample numbers count from 1 within the trial.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DecisionRow<'a> {
-    /// The joint.
-    pub joint: &'a str,
-    /// The trial.
-    pub trial: &'a str,
-    /// `i`: number of the input step in the trial.
-    pub i: usize,
-    /// `p`: sample of the input step.
-    pub p: usize,
-    /// `r`: first sample of the segment.
-    pub r: usize,
-    /// Last sample of the segment.
-    pub end: usize,
-    /// Candidate breakpoints in the segment.
-    pub candidates: usize,
-    /// `f`: the best candidate.
-    pub f_opt: Option<usize>,
-    /// `q`: its breakpoint; between samples where the method finds it so.
-    #[serde(serialize_with = "samples")]
-    pub q: Option<f64>,
-    /// `δ = q − p` in samples.
-    #[serde(serialize_with = "samples")]
-    pub delta: Option<f64>,
-    /// `δ` in seconds.
-    pub delta_s: Option<f64>,
-    /// Squared error of both lines, output units squared.
-    pub sse: Option<f64>,
-    /// Slope of the line before the breakpoint, output units per sample.
-    pub slope_before: Option<f64>,
-    /// Its value at sample 0, output units.
-    pub intercept_before: Option<f64>,
-    /// Slope of the line from the breakpoint on, output units per sample.
-    pub slope_after: Option<f64>,
-    /// Its value at sample 0, output units.
-    pub intercept_after: Option<f64>,
-    /// `accepted`, or the first condition that failed.
-    #[serde(serialize_with = "in_words")]
-    pub verdict: Verdict,
-    /// All conditions that failed, separated by spaces.
-    pub failed: String,
-}
+/// Something that is said of a decision.
+pub(crate) type DecisionFact = Fact<fn(&Doubted<'_>) -> Value>;
 
-/// Further details of a decision: the columns behind those of [`DecisionRow`] where a
-/// method other than the paper's was run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct DecisionDetail {
-    /// The method's name.
-    pub(crate) method: &'static str,
-    /// Lower end of the delay's interval, samples.
-    pub(crate) delta_low: Option<f64>,
-    /// Upper end of it.
-    pub(crate) delta_high: Option<f64>,
-    /// p-value of the reaction: how often noise alone looks as much like one; where tested.
-    pub(crate) p_value: Option<f64>,
-    /// The second-best breakpoint.
-    pub(crate) runner_up_q: Option<usize>,
-    /// By how much its squared error is larger, as a part of the best one's.
-    pub(crate) runner_up_margin: Option<f64>,
-    /// What would have accepted the step, all else being as it was; separated by `; `.
-    pub(crate) accepted_with: String,
-}
+const TABLES: &[Place] = &[Terminal, Report, Doubtful, Recording];
+const FIGURES: &[Place] = &[Report, Recording, Verdict];
+const ENDS: &[Place] = &[Report, Verdict];
+const SLOPES: &[Place] = &[Recording, Verdict];
+const SAID: &[Place] = &[Verdict];
 
-impl DecisionDetail {
-    fn new(decision: &Decision, settings: &Settings, output: &[f64]) -> Self {
-        let second = decision.runner_up();
-        let remedies = decision.remedies(settings, output);
-        let remedies: Vec<_> = remedies.into_iter().map(|remedy| remedy_text(remedy, "")).collect();
-        let tested = |check: &Check| check.condition == Condition::NothingHappened;
-        Self {
-            method: settings.method.id(),
-            delta_low: decision.fine.map(|fine| fine.low),
-            delta_high: decision.fine.map(|fine| fine.high),
-            p_value: decision.checks.into_iter().find(tested).and_then(|check| check.value),
-            runner_up_q: second.map(|second| second.breakpoint),
-            runner_up_margin: second.map(|second| second.margin).filter(|m| m.is_finite()),
-            accepted_with: remedies.join("; "),
-        }
-    }
-
-    /// The delay's interval as `11.2 … 12.9`, samples; `-` where there is none.
-    pub(super) fn interval_text(&self) -> String {
-        let ends = self.delta_low.zip(self.delta_high);
-        ends.map_or_else(
-            || "-".to_owned(),
-            |(low, high)| format!("{} … {}", number(low), number(high)),
-        )
-    }
-}
-
-impl<'a> DecisionRow<'a> {
-    fn new(joint: &'a str, trial: &'a Trial, decision: &Decision) -> Self {
-        let best = decision.breakpoint();
-        let candidate = best.map(|best| best.candidate);
-        let delta = decision.delay();
-        let failed: Vec<_> = decision.failed().map(Condition::id).collect();
-        Self {
-            joint,
-            trial: trial.label(),
-            i: decision.number,
-            p: decision.input_step.sample,
-            r: decision.segment.first,
-            end: decision.segment.last,
-            candidates: decision.candidates.len(),
-            f_opt: candidate.map(|candidate| candidate.f),
-            q: delta.map(|delta| decision.input_step.sample as f64 + delta),
-            delta,
-            delta_s: delta.map(|delta| to_nanoseconds(delta * trial.period().seconds())),
-            sse: candidate.map(|candidate| candidate.sse),
-            slope_before: candidate.map(|candidate| candidate.before.slope),
-            intercept_before: candidate.map(|candidate| candidate.before.intercept),
-            slope_after: candidate.map(|candidate| candidate.after.slope),
-            intercept_after: candidate.map(|candidate| candidate.after.intercept),
-            verdict: decision.verdict(),
-            failed: failed.join(" "),
-        }
-    }
-}
-
-/// The verdict as its [`Display`](std::fmt::Display) has it.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives it so")]
-fn in_words<S: Serializer>(verdict: &Verdict, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_str(verdict)
-}
-
-/// Whole numbers without a point.
-#[expect(clippy::ref_option, reason = "serde gives it so")]
-fn samples<S: Serializer>(value: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
-    /// Below it every whole number is one.
-    const EXACT: f64 = 9_007_199_254_740_992.0;
-    #[expect(clippy::cast_possible_truncation, reason = "it is whole and below 2^53")]
-    match value {
-        Some(value) if value.fract() == 0.0 && value.abs() < EXACT => {
-            serializer.serialize_some(&(*value as i64))
-        }
-        value => value.serialize(serializer),
-    }
-}
-
-/// The rows of one joint, trial by trial.
-pub fn decision_rows(
-    joint: EstimatedJoint<'_>,
-) -> impl Iterator<Item = (&Trial, DecisionRow<'_>)> + '_ {
-    let name = joint.joint.name.as_str();
-    joint.decisions().map(|(trial, _, decision)| (trial, DecisionRow::new(name, trial, decision)))
-}
-
-/// The rows of one joint with their details.
-pub(super) fn detailed_rows(
-    joint: EstimatedJoint<'_>,
-) -> impl Iterator<Item = DetailedRow<'_>> + '_ {
-    let settings = &joint.estimate.settings;
-    joint.decisions().map(move |(trial, found, decision)| {
-        let output = found.smoothed.as_deref().unwrap_or(trial.output());
-        DetailedRow {
-            row: DecisionRow::new(&joint.joint.name, trial, decision),
-            detail: DecisionDetail::new(decision, settings, output),
-        }
-    })
-}
-
-/// The columns of [`decision_table`] for decisions of the methods with these ids: of the paper's alone
-/// without those of the details.
-pub(crate) fn decision_columns<'a>(
-    mut methods: impl Iterator<Item = &'a str>,
-) -> impl Iterator<Item = (&'static str, Kind)> {
-    let is_of_paper = methods.all(|id| id == Method::TWO_LINE.id());
-    COLUMNS.into_iter().take(if is_of_paper { OF_THE_PAPER } else { COLUMNS.len() })
-}
-
-/// The decisions of all joints, those of one run of settings below those of another. With a method
-/// other than the paper's there are columns for its details.
-///
-/// # Errors
-/// Never: the rows have fields.
-pub(crate) fn decision_table(
-    runs: &[(&Settings, &[EstimatedJoint<'_>])],
-) -> serde_json::Result<DataTable> {
-    let methods = runs.iter().map(|(settings, _)| settings.method.id());
-    let mut table = DataTable::new(decision_columns(methods));
-    for row in runs.iter().flat_map(|(_, joints)| *joints).flat_map(|joint| detailed_rows(*joint)) {
-        table.push_fields(row)?;
-    }
-    Ok(table)
-}
-
-/// A decision with its details.
-#[derive(Debug, Serialize)]
-pub(super) struct DetailedRow<'a> {
-    #[serde(flatten)]
-    pub(super) row: DecisionRow<'a>,
-    #[serde(flatten)]
-    pub(super) detail: DecisionDetail,
-}
-
-/// Names of the columns, and what they hold: those of [`DecisionRow`], then those of
-/// [`DecisionDetail`].
-const COLUMNS: [(&str, Kind); 25] = [
-    ("joint", Kind::Text),
-    ("trial", Kind::Text),
-    ("i", Kind::Whole),
-    ("p", Kind::Whole),
-    ("r", Kind::Whole),
-    ("end", Kind::Whole),
-    ("candidates", Kind::Whole),
-    ("f_opt", Kind::Whole),
-    ("q", Kind::Samples),
-    ("delta", Kind::Samples),
-    ("delta_s", Kind::Real),
-    ("sse", Kind::Real),
-    ("slope_before", Kind::Real),
-    ("intercept_before", Kind::Real),
-    ("slope_after", Kind::Real),
-    ("intercept_after", Kind::Real),
-    ("verdict", Kind::Text),
-    ("failed", Kind::Text),
-    ("method", Kind::Text),
-    ("delta_low", Kind::Real),
-    ("delta_high", Kind::Real),
-    ("p_value", Kind::Real),
-    ("runner_up_q", Kind::Whole),
-    ("runner_up_margin", Kind::Real),
-    ("accepted_with", Kind::Text),
+/// All of it, in the order of the columns. Sample numbers count from 1 within the trial.
+#[rustfmt::skip]
+pub(crate) const DECISION: &[DecisionFact] = &[
+    fact("joint", Text, Paper, ("joint", "", Unit::None, &[Terminal]), |of| of.joint.joint.name.as_str().into()),
+    fact("trial", Text, Paper, ("trial", "", Unit::None, TABLES), |of| of.trial.label().into()),
+    fact("i", Whole, Paper, ("i", "step", Unit::None, TABLES), |of| of.decision.number.into()),
+    fact("time", Real, People, ("time", "", Unit::Seconds, &[Doubtful]), |of| of.time_s().into()),
+    fact("p", Whole, Paper, ("p", "input step", Unit::Sample, FIGURES), |of| of.p().into()),
+    fact("input", Text, People, ("input", "", Unit::None, SAID), |of| of.input().into()),
+    fact("hold", Whole, People, ("input keeps this level for", "", Unit::Samples, SAID), |of| of.decision.hold.into()),
+    fact("r", Whole, Paper, ("r", "first of the segment", Unit::Sample, ENDS), |of| of.decision.segment.first.into()),
+    fact("end", Whole, Paper, ("end", "its last", Unit::Sample, ENDS), |of| of.decision.segment.last.into()),
+    fact("candidates", Whole, Paper, ("candidates", "", Unit::None, SAID), |of| of.decision.candidates.len().into()),
+    fact("f_opt", Whole, Paper, ("f", "best candidate", Unit::None, SAID), |of| of.best(|best| best.f)),
+    fact("program_delta", Samples, People, ("program's δ", "", Unit::Samples, SAID), |of| samples(of.decision.delay_before_review())),
+    fact("q", Samples, Paper, ("q", "breakpoint", Unit::Sample, FIGURES), |of| samples(of.decision.delay().map(|delay| of.p() as f64 + delay))),
+    fact("delta", Samples, Paper, ("δ", "delay", Unit::Samples, &[Terminal, Report, Recording, Verdict]), |of| samples(of.decision.delay())),
+    fact("delta_s", Real, Paper, ("δ", "", Unit::Seconds, &[Report, Doubtful, Recording]), |of| of.delay_s(of.decision.delay()).into()),
+    fact("sse", Real, Paper, ("SSE", "squared error of both lines", Unit::Output("²"), FIGURES), |of| of.best(|best| best.sse)),
+    fact("slope_before", Real, Paper, ("slope before", "", Unit::Output("/sample"), SLOPES), |of| of.best(|best| best.before.slope)),
+    fact("intercept_before", Real, Paper, UNSAID, |of| of.best(|best| best.before.intercept)),
+    fact("slope_after", Real, Paper, ("slope after", "", Unit::Output("/sample"), SLOPES), |of| of.best(|best| best.after.slope)),
+    fact("intercept_after", Real, Paper, UNSAID, |of| of.best(|best| best.after.intercept)),
+    fact("interval", Text, People, ("interval", "", Unit::Samples, &[Terminal, Report, Verdict]), |of| of.interval().into()),
+    fact("verdict", Text, Paper, ("verdict", "", Unit::None, TABLES), |of| of.decision.verdict().to_string().into()),
+    fact("failed", Text, Paper, UNSAID, |of| of.decision.failed().map(Condition::id).collect::<Vec<_>>().join(" ").into()),
+    fact("method", Text, Table, UNSAID, |of| of.joint.estimate.settings.method.id().into()),
+    fact("delta_low", Real, Table, UNSAID, |of| of.decision.fine.map(|fine| fine.low).into()),
+    fact("delta_high", Real, Table, UNSAID, |of| of.decision.fine.map(|fine| fine.high).into()),
+    fact("algorithm_1", Samples, People, ("Algorithm 1's δ", "", Unit::Samples, SAID), |of| of.of_algorithm_1().into()),
+    fact("p_value", Real, Table, UNSAID, |of| of.p_value().into()),
+    fact("runner_up_q", Whole, Table, UNSAID, |of| of.decision.runner_up().map(|second| second.breakpoint).into()),
+    fact("runner_up_margin", Real, Table, UNSAID, |of| of.margin().into()),
+    fact("accepted_with", Text, Table, ("accepted with", "", Unit::None, &[Report]), |of| of.remedies().into()),
+    fact("near", Text, People, ("how near", "", Unit::None, &[Terminal, Verdict]), |of| of.how_near().into()),
+    fact("doubt", Real, Json, UNSAID, |of| of.doubt.value().into()),
+    fact("doubt_percent", Text, People, ("doubt", "", Unit::None, &[Doubtful, Recording]), |of| doubt_percent(&of.doubt).into()),
+    fact("why", Text, People, ("what speaks against it", "", Unit::None, &[Doubtful]), |of| of.why().into()),
+    fact("flags", Text, Json, UNSAID, |of| of.doubt.flags.iter().map(|flag| flag.id()).collect()),
 ];
 
-/// How many of them there are where all decisions are the paper's.
-const OF_THE_PAPER: usize = 18;
+/// The facts of `found` up to `part`, by their ids.
+fn object(found: &Doubted<'_>, part: Part) -> Map<String, Value> {
+    facts::object(DECISION, part, |value| value(found))
+}
+
+/// What is said of a decision in JSON.
+pub(crate) fn decision_json(found: &Doubted<'_>) -> Map<String, Value> {
+    object(found, Json)
+}
+
+/// The columns of `--decisions` that the paper defines, by their names, for each decision of a
+/// joint, trial by trial; sample numbers count from 1 within the trial.
+pub fn decision_rows(
+    joint: EstimatedJoint<'_>,
+) -> impl Iterator<Item = (&Decision, Map<String, Value>)> + '_ {
+    doubted(joint).map(|found| (found.decision, object(&found, Paper)))
+}
+
+/// The columns of [`decision_table`] for decisions of the methods with these ids.
+pub(crate) fn decision_columns<'a>(
+    methods: impl Iterator<Item = &'a str>,
+) -> impl Iterator<Item = (&'static str, Kind)> {
+    facts::columns(DECISION, part_of(methods))
+}
+
+/// The paper defines all of the table where its method alone was run.
+fn part_of<'a>(mut methods: impl Iterator<Item = &'a str>) -> Part {
+    if methods.all(|id| id == Method::TWO_LINE.id()) { Paper } else { Table }
+}
+
+/// The decisions of all joints, those of one run of settings below those of another.
+pub(crate) fn decision_table(runs: &[(&Settings, &[EstimatedJoint<'_>])]) -> DataTable {
+    let part = part_of(runs.iter().map(|(settings, _)| settings.method.id()));
+    let rows = runs.iter().flat_map(|(_, joints)| *joints).flat_map(|joint| doubted(*joint));
+    facts::data_table(DECISION, part, (rows, |value, found| value(found)))
+}
+
+/// The decisions `rows` as a person reads them at `place`, with the units of `joint`.
+pub(crate) fn decision_text<'a>(
+    place: Place,
+    joint: Option<&Joint>,
+    rows: impl Iterator<Item = Doubted<'a>>,
+) -> TextTable {
+    facts::text_table(DECISION, place, joint, (rows, |value, found| value(found)))
+}
+
+/// What the names in the table at `place` mean: `p: input step; q: breakpoint`.
+pub(crate) fn decision_names(place: Place) -> String {
+    let shown = DECISION.iter().filter(|fact| fact.is_shown(place) && !fact.meaning.is_empty());
+    shown.map(Fact::explained).collect::<Vec<_>>().join("; ")
+}
+
+impl Doubted<'_> {
+    /// What a person said of it.
+    pub(super) fn said(&self) -> Option<&ReviewerVerdict> {
+        self.decision.reviewer_verdict.as_deref()
+    }
+
+    /// The sample of the input step.
+    fn p(&self) -> usize {
+        self.decision.input_step.sample
+    }
+
+    /// The time of the input step, seconds.
+    fn time_s(&self) -> f64 {
+        self.trial.time_s(self.p())
+    }
+
+    /// The delay of Algorithm 1, where the answer is another one.
+    fn of_algorithm_1(&self) -> Option<i64> {
+        self.decision.breakpoint().filter(|_| self.decision.onset.is_some()).map(|best| best.delay)
+    }
+
+    /// What its conditions were checked with.
+    fn output(&self) -> &[f64] {
+        self.smoothed.unwrap_or(self.trial.output())
+    }
+
+    /// The levels of the input.
+    fn input(&self) -> String {
+        let (before, after) = (self.decision.input_step.before, self.decision.input_step.after);
+        let unit = unit_suffix(self.joint.joint.input_unit.as_deref());
+        format!("{}{unit} → {}{unit}", number(before), number(after))
+    }
+
+    /// Something of the best candidate.
+    fn best<T: Into<Value>>(&self, of: impl Fn(Candidate) -> T) -> Value {
+        self.decision.candidates.best().map(of).into()
+    }
+
+    /// A number of samples in seconds.
+    pub(crate) fn delay_s(&self, samples: Option<f64>) -> Option<f64> {
+        Some(to_nanoseconds(samples? * self.trial.period().seconds()))
+    }
+
+    /// The delay's interval: `11.2 … 12.9`, samples.
+    fn interval(&self) -> Option<String> {
+        self.decision.fine.map(|fine| format!("{} … {}", number(fine.low), number(fine.high)))
+    }
+
+    /// How often noise alone looks as much like a reaction; where tested.
+    fn p_value(&self) -> Option<f64> {
+        let mut checks = self.decision.checks.into_iter();
+        checks.find(|check| check.condition == Condition::NothingHappened)?.value
+    }
+
+    /// By how much the squared error of the second-best breakpoint is larger, as a part of the best
+    /// one's.
+    fn margin(&self) -> Option<f64> {
+        self.decision.runner_up().map(|second| second.margin).filter(|margin| margin.is_finite())
+    }
+
+    /// What would have accepted the step, all else being as it was.
+    fn remedies(&self) -> String {
+        let remedies = self.decision.remedies(&self.joint.estimate.settings, self.output());
+        let remedies = remedies.into_iter().map(|remedy| remedy_text(remedy, ""));
+        remedies.collect::<Vec<_>>().join("; ")
+    }
+
+    /// What would have accepted the step, or by how much the second-best breakpoint is worse.
+    fn how_near(&self) -> Option<String> {
+        if self.decision.verdict() != crate::delay::Verdict::Accepted {
+            return Some(self.remedies());
+        }
+        let (margin, second) = self.margin().zip(self.decision.runner_up())?;
+        Some(format!("SSE {} % above at q = {}", number(100.0 * margin), second.breakpoint))
+    }
+
+    /// What speaks against the decision.
+    pub(super) fn why(&self) -> String {
+        let verdict = self.decision.program_verdict();
+        doubt_sentence(&self.doubt, verdict, self.trial.period().seconds())
+    }
+}

@@ -1,73 +1,61 @@
 //! What persons said of the decisions: the sheet they fill in, and the count of their verdicts.
 
-use std::io::Write;
-
 use serde::Serialize;
+use serde_json::{Map, Value};
 
-use super::doubt::all_by_doubt;
-use super::{Doubted, EstimatedJoint};
+use super::decisions::{DECISION, DecisionFact};
+use super::doubt::by_doubt;
+use super::facts::{self, Part::Paper, Place, UNSAID, Unit, fact};
+use super::text_table::TextTable;
+use super::{
+    DataTable, Doubted, EstimatedJoint,
+    Kind::{Real, Text, Whole},
+};
 use crate::delay::Verdict;
-use crate::numerics::{to_decimals, to_nanoseconds};
-use crate::wording::{counted, doubt_sentence};
+use crate::numerics::to_decimals;
+use crate::wording::counted;
 
-/// A row of a review sheet: what to fill in, and what the program says.
-#[derive(Debug, Serialize)]
-pub(crate) struct SheetRow<'a> {
-    joint: &'a str,
-    trial: &'a str,
-    i: usize,
-    /// `accepted` or `rejected`; empty as long as nobody said anything.
-    verdict: &'static str,
-    delay_s: Option<f64>,
-    note: &'a str,
-    reviewer: &'a str,
-    p: usize,
-    program_verdict: String,
-    program_delay_s: Option<f64>,
-    /// From 0 to 1, to three digits.
-    doubt: f64,
-    why: String,
+/// Where those are read that persons spoke of.
+const SHOWN: &[Place] = &[Place::Report];
+
+/// What stands on a review sheet: what to fill in, and what the program says.
+#[rustfmt::skip]
+const REVIEW: &[DecisionFact] = &[
+    DECISION[0],
+    DECISION[1],
+    DECISION[2],
+    fact("verdict", Text, Paper, ("verdict", "", Unit::None, SHOWN), |of| of.said().map_or("", |said| word(said.accepted)).into()),
+    fact("delay_s", Real, Paper, ("δ", "", Unit::Seconds, SHOWN), |of| of.delay_s(of.said().and_then(|said| said.delay)).into()),
+    fact("note", Text, Paper, ("note", "", Unit::None, SHOWN), |of| of.said().map_or("", |said| &said.note).into()),
+    fact("reviewer", Text, Paper, ("by", "", Unit::None, SHOWN), |of| of.said().map_or("", |said| &said.reviewer).into()),
+    fact("p", Whole, Paper, UNSAID, |of| of.decision.input_step.sample.into()),
+    fact("program_verdict", Text, Paper, ("the program's verdict", "", Unit::None, SHOWN), |of| of.decision.program_verdict().to_string().into()),
+    fact("program_delay_s", Real, Paper, ("its δ", "", Unit::Seconds, SHOWN), |of| of.delay_s(of.decision.program_delay()).into()),
+    fact("doubt", Real, Paper, UNSAID, |of| to_decimals(of.doubt.value(), 3).into()),
+    fact("why", Text, Paper, UNSAID, |of| of.why().into()),
+];
+
+fn word(accepted: bool) -> &'static str {
+    if accepted { "accepted" } else { "rejected" }
 }
 
-impl<'a> SheetRow<'a> {
-    pub(crate) fn of(joint: &'a str, doubted: &Doubted<'a>) -> Self {
-        let Doubted { trial, decision, doubt, .. } = doubted;
-        let period_s = trial.period().seconds();
-        let seconds = |delay: Option<f64>| delay.map(|delay| to_nanoseconds(delay * period_s));
-        let program = decision.program_verdict();
-        let said = decision.reviewer_verdict.as_ref();
-        let verdict = |accepted| if accepted { "accepted" } else { "rejected" };
-        Self {
-            joint,
-            trial: trial.label(),
-            i: decision.number,
-            verdict: said.map_or("", |said| verdict(said.accepted)),
-            delay_s: seconds(said.and_then(|said| said.delay)),
-            note: said.map_or("", |said| &said.note),
-            reviewer: said.map_or("", |said| &said.reviewer),
-            p: decision.input_step.sample,
-            program_verdict: program.to_string(),
-            program_delay_s: seconds(decision.program_delay()),
-            doubt: to_decimals(doubt.value(), 3),
-            why: doubt_sentence(doubt, program, period_s),
-        }
-    }
+/// A row of the sheet by the names of its columns.
+pub(super) fn review_json(found: &Doubted<'_>) -> Map<String, Value> {
+    facts::object(REVIEW, Paper, |value| value(found))
 }
 
-/// Writes a review sheet of all decisions: a table for `--review` to fill in, the most doubtful
+/// The decisions that persons spoke of.
+pub(super) fn reviewed_table(joint: EstimatedJoint<'_>) -> TextTable {
+    let rows = by_doubt(&[joint]).into_iter();
+    let rows = rows.filter(|found| found.decision.reviewer_verdict.is_some());
+    facts::text_table(REVIEW, Place::Report, None, (rows, |value, found| value(found)))
+}
+
+/// A review sheet of all decisions: a table for `--review` to fill in, the most doubtful
 /// decision first. Verdicts that were given already are in it.
-///
-/// # Errors
-/// When `out` cannot be written.
-pub(crate) fn write_review_sheet(
-    joints: &[EstimatedJoint<'_>],
-    out: impl Write,
-) -> csv::Result<()> {
-    let mut writer = csv::Writer::from_writer(out);
-    for (joint, doubted) in all_by_doubt(joints) {
-        writer.serialize(SheetRow::of(&joint.joint.name, &doubted))?;
-    }
-    Ok(writer.flush()?)
+pub(crate) fn review_sheet(joints: &[EstimatedJoint<'_>]) -> DataTable {
+    let rows = by_doubt(joints).into_iter();
+    facts::data_table(REVIEW, Paper, (rows, |value, found| value(found)))
 }
 
 /// How many steps of a joint persons spoke of.

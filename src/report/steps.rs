@@ -1,8 +1,9 @@
 //! Every step in a row, for the terminal.
 
 use super::EstimatedJoint;
-use super::decisions::{DetailedRow, detailed_rows};
-use super::text_table::TextTable;
+use super::decisions::decision_text;
+use super::doubt::doubted;
+use super::facts::Place;
 use crate::delay::{Decision, InputStep, Verdict};
 use crate::experiment::{Joint, Trial};
 use crate::wording::{number, samples_text, unit_suffix};
@@ -29,28 +30,10 @@ pub(crate) fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> St
     format!("{step}: rejected, {}", condition.id())
 }
 
-/// A row per step: its delay with the interval, the verdict, and what would have accepted
-/// it, or by how much the second-best breakpoint is worse.
+/// A row per step.
 pub(crate) fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
-    let header = ["joint", "trial", "step", "delay", "interval", "verdict", "how near"];
-    let mut table = TextTable::new(header, &[2, 3]);
-    for joint in joints {
-        for DetailedRow { row, detail } in detailed_rows(*joint) {
-            let delay = row.delta.map_or_else(|| "-".to_owned(), number);
-            let interval = detail.interval_text();
-            let near = match (row.verdict, detail.runner_up_margin, detail.runner_up_q) {
-                (Verdict::Accepted, Some(margin), Some(q)) => {
-                    format!("SSE {} % above at q = {q}", number(100.0 * margin))
-                }
-                (Verdict::Accepted, ..) => "-".to_owned(),
-                _ => detail.accepted_with,
-            };
-            let (joint, trial) = (row.joint.to_owned(), row.trial.to_owned());
-            let verdict = row.verdict.to_string();
-            table.row([joint, trial, row.i.to_string(), delay, interval, verdict, near]);
-        }
-    }
-    format!("{table}\ndelays in samples\n")
+    let rows = joints.iter().flat_map(|joint| doubted(*joint));
+    format!("{}\n", decision_text(Place::Terminal, None, rows))
 }
 
 #[cfg(test)]

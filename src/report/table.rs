@@ -2,7 +2,6 @@
 
 use std::io::Write;
 
-use serde::Serialize;
 use serde_json::{Map, Value};
 
 /// What a column holds.
@@ -62,17 +61,6 @@ impl DataTable {
     /// Adds a row, cell by cell.
     pub(super) fn push_cells(&mut self, cells: impl IntoIterator<Item = Value>) {
         self.rows.push(cells.into_iter().collect());
-    }
-
-    /// Adds what has the columns for its fields.
-    ///
-    /// # Errors
-    /// When it has no fields.
-    pub(crate) fn push_fields(&mut self, row: impl Serialize) -> serde_json::Result<()> {
-        if let Value::Object(row) = serde_json::to_value(row)? {
-            self.push(&row);
-        }
-        Ok(())
     }
 
     /// Writes the table as CSV, missing numbers as empty cells.
@@ -191,8 +179,12 @@ mod tests {
         let kinds =
             [("a", Kind::Samples), ("b", Kind::Real), ("c", Kind::Whole), ("d", Kind::Text)];
         let mut table = DataTable::new(kinds);
-        table.push_fields(serde_json::json!({"a": 12.0, "b": 12.0, "c": 3, "d": "x,y"})).unwrap();
-        table.push_fields(serde_json::json!({"a": 12.25, "b": 1e-7, "c": null})).unwrap();
+        for row in [
+            serde_json::json!({"a": 12.0, "b": 12.0, "c": 3, "d": "x,y"}),
+            serde_json::json!({"a": 12.25, "b": 1e-7, "c": null}),
+        ] {
+            table.push(row.as_object().unwrap());
+        }
         let mut bytes = Vec::new();
         table.write_csv(&mut bytes).unwrap();
         let text = String::from_utf8(bytes).unwrap();

@@ -6,7 +6,7 @@ use comfy_table::{CellAlignment, presets};
 
 /// Rows of texts below a header; columns of numbers are aligned to the right.
 #[derive(Clone, Debug, Default)]
-pub(super) struct TextTable {
+pub(crate) struct TextTable {
     pub(super) header: Vec<String>,
     pub(super) rows: Vec<Vec<String>>,
     /// Columns of numbers.
@@ -36,6 +36,19 @@ impl TextTable {
     /// Whether a column holds numbers.
     pub(super) fn is_number(&self, column: usize) -> bool {
         self.numbers.contains(&column)
+    }
+}
+
+impl TextTable {
+    /// As Markdown, whose cells are `escaped`.
+    pub(crate) fn markdown(&self, escaped: impl Fn(&str) -> String) -> String {
+        let row = |cells: &Vec<String>| {
+            let cells = cells.iter().map(|cell| escaped(cell));
+            format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
+        };
+        let rules = (0..self.header.len()).map(|c| if self.is_number(c) { "--:" } else { "---" });
+        let rules = format!("|{}|\n", rules.collect::<Vec<_>>().join("|"));
+        row(&self.header) + &rules + &self.rows.iter().map(row).collect::<String>()
     }
 }
 

@@ -17,7 +17,7 @@ use tauscope::delay::{
 };
 use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::recording::{Detail, RecordError, Recording, write_recording};
-use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows};
+use tauscope::report::{EstimatedJoint, decision_rows};
 use tauscope::study::{JointEstimate, OtherResult, estimate_joints};
 use tauscope::wording::number;
 
@@ -54,7 +54,7 @@ fn the_table_holds_every_decision_and_every_candidate() {
     let back = recorded.read_back(Detail::Full);
     for joint in recorded.joints() {
         let entity = format!("/{}/decision/table", joint.joint.name);
-        let rows: Vec<DecisionRow<'_>> = decision_rows(joint).map(|(_, row)| row).collect();
+        let rows: Vec<_> = decision_rows(joint).map(|(_, row)| row).collect();
         let verdict_ticks: Vec<i64> =
             back.integers(&entity, "accepted").iter().map(|(times, _)| times["decision"]).collect();
         assert_eq!(verdict_ticks.len(), rows.len());
@@ -63,27 +63,19 @@ fn the_table_holds_every_decision_and_every_candidate() {
                 |times: &BTreeMap<String, i64>| verdict_ticks.contains(&times["decision"]);
             all.into_iter().filter(|(times, _)| on_verdict(times)).map(|(_, value)| value).collect()
         };
-        for (name, expected) in [
-            ("i", rows.iter().map(|row| whole(row.i)).collect::<Vec<_>>()),
-            ("p", rows.iter().map(|row| whole(row.p)).collect()),
-            ("r", rows.iter().map(|row| whole(row.r)).collect()),
-            ("end", rows.iter().map(|row| whole(row.end)).collect()),
-            ("f", rows.iter().filter_map(|row| row.f_opt).map(whole).collect()),
-            ("q", rows.iter().filter_map(|row| row.q).map(samples).collect()),
-            ("delta", rows.iter().filter_map(|row| row.delta).map(samples).collect()),
-        ] {
+        let same = ["i", "p", "r", "end", "q", "delta", "candidates"].map(|name| (name, name));
+        for (name, column) in same.into_iter().chain([("f", "f_opt")]) {
+            let expected: Vec<i64> = rows.iter().filter_map(|row| row[column].as_i64()).collect();
             assert_eq!(of_verdicts(back.integers(&entity, name)), expected, "{name}");
         }
-        for (name, expected) in [
-            ("sse", rows.iter().map(|row| row.sse.unwrap()).collect::<Vec<_>>()),
-            ("slope_before", rows.iter().map(|row| row.slope_before.unwrap()).collect()),
-            ("slope_after", rows.iter().map(|row| row.slope_after.unwrap()).collect()),
-        ] {
+        for name in ["sse", "slope_before", "intercept_before", "slope_after", "intercept_after"] {
             let numbers = back.numbers(&entity, name).into_iter();
             let numbers = numbers.filter(|(times, _)| verdict_ticks.contains(&times["decision"]));
+            let expected = rows.iter().map(|row| row[name].as_f64().unwrap());
             assert!(numbers.map(|(_, value)| value).eq(expected), "{name}");
         }
-        let candidates: usize = rows.iter().map(|row| row.candidates).sum();
+        let candidates: u64 = rows.iter().filter_map(|row| row["candidates"].as_u64()).sum();
+        let candidates = usize::try_from(candidates).unwrap();
         assert_eq!(back.integers(&entity, "j").len(), candidates);
     }
 }
@@ -224,17 +216,15 @@ fn each_verdict_says_why() {
     let back = recorded.read_back(Detail::Full);
     for joint in recorded.joints() {
         let texts = back.texts(&format!("/{}/verdict", joint.joint.name), "TextDocument:text");
-        let rows: Vec<_> = decision_rows(joint).map(|(_, row)| row).collect();
-        assert_eq!(texts.len(), rows.len());
-        assert!(
-            rows.iter().any(|row| row.verdict == Verdict::Rejected(Condition::SlopeChange)),
-            "the limit rejects some"
-        );
-        for (row, (times, text)) in rows.iter().zip(&texts) {
-            assert_eq!(times["segment"], whole(row.i));
+        let decisions: Vec<_> = decision_rows(joint).map(|(decision, _)| decision).collect();
+        assert_eq!(texts.len(), decisions.len());
+        let by_slope = |it: &&Decision| it.verdict() == Verdict::Rejected(Condition::SlopeChange);
+        assert!(decisions.iter().any(by_slope), "the limit rejects some");
+        for (decision, (times, text)) in decisions.iter().zip(&texts) {
+            assert_eq!(times["segment"], whole(decision.number));
             assert!(text.contains("What the conditions ask"), "{text}");
             assert!(text.contains(Condition::BeforeInput.asks()), "{text}");
-            match row.verdict {
+            match decision.verdict() {
                 Verdict::Accepted => assert!(text.contains("✓ accepted"), "{text}"),
                 failed @ Verdict::Rejected(_) => {
                     assert!(text.contains(&format!("**{failed}**")), "{text}");
@@ -332,17 +322,18 @@ fn lean_keeps_rejected_and_doubtful_segments_whole_and_says_so() {
         let trial = joint.estimate.estimated().next().unwrap();
         let output = trial.smoothed.as_deref().unwrap();
         let doubtful = |i: usize| trial.decisions[i - 1].doubt(output).is_doubtful();
-        for row in decision_rows(joint).map(|(_, row)| row) {
-            let ticks: Vec<_> = numbers.iter().filter(|(_, i)| *i == whole(row.i)).collect();
-            let kept = ticks.len() - 1;
-            if row.verdict == Verdict::Accepted && !doubtful(row.i) {
-                assert!(kept <= 25 && kept < row.candidates);
+        for decision in decision_rows(joint).map(|(decision, _)| decision) {
+            let (i, all) = (decision.number, decision.candidates.len());
+            let kept = numbers.iter().filter(|(_, of)| *of == whole(i)).count() - 1;
+            if decision.verdict() == Verdict::Accepted && !doubtful(i) {
+                assert!(kept <= 25 && kept < all);
             } else {
-                assert_eq!(kept, row.candidates);
+                assert_eq!(kept, all);
             }
-            let best = candidates.iter().any(|(times, j)| {
-                Some(*j) == row.f_opt.map(whole) && times["segment"] == whole(row.i)
-            });
+            let best_f = decision.candidates.best().map(|best| whole(best.f));
+            let best = candidates
+                .iter()
+                .any(|(times, j)| Some(*j) == best_f && times["segment"] == whole(i));
             assert!(best, "the best candidate is always there");
         }
     }

@@ -24,10 +24,10 @@ fn the_state_at_each_accepted_step_is_that_of_the_report() {
         assert!(column("dwell_s").eq(steps.iter().filter_map(|step| step.dwell_s)));
         assert!(column("angle").eq(steps.iter().map(|step| step.angle)));
         assert!(column("time_s").eq(steps.iter().map(|step| step.time_s)));
-        let rows = decision_rows(joint).map(|(_, row)| row);
-        let accepted = rows.filter(|row| row.verdict == Verdict::Accepted);
-        let expected =
-            accepted.map(|row| (whole(row.i), whole(row.p), samples(row.delta.unwrap())));
+        let expected = decision_rows(joint).filter_map(|(decision, _)| {
+            let delta = samples(decision.accepted_delay()?);
+            Some((whole(decision.number), whole(decision.input_step.sample), delta))
+        });
         let deltas = back.integers(&entity, "delta").into_iter();
         let deltas = deltas.map(|(times, delta)| (times["segment"], times["sample"], delta));
         assert!(deltas.eq(expected));
@@ -100,11 +100,11 @@ fn the_step_under_the_cursor_is_marked_in_every_plot() {
             assert_eq!(of_step.count(), places.len());
         }
         let words = back.texts(&page("step"), "Points2D:labels");
-        for ((times, words), (_, row)) in words.iter().zip(decision_rows(joint)) {
-            assert_eq!(times["segment"], whole(row.i));
-            match row.verdict {
+        for ((times, words), (decision, _)) in words.iter().zip(decision_rows(joint)) {
+            assert_eq!(times["segment"], whole(decision.number));
+            match decision.verdict() {
                 Verdict::Accepted => {
-                    let delay = format!("delay {} samples", row.delta.unwrap());
+                    let delay = format!("delay {} samples", decision.delay().unwrap());
                     assert!(words.contains(&delay), "{words}");
                 }
                 Verdict::Rejected(_) => assert!(words.contains("rejected"), "{words}"),

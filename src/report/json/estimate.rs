@@ -14,11 +14,11 @@ use crate::delay::{
 };
 use crate::experiment::{Experiment, Joint, Source};
 use crate::report::dead_time_sentences;
-use crate::report::decisions::{DetailedRow, detailed_rows};
+use crate::report::decisions::decision_json;
 use crate::report::delay_table;
 use crate::report::doubt::doubted;
 use crate::report::settings::own_settings;
-use crate::report::{Against, Doubted, EstimatedJoint, JointSummary};
+use crate::report::{Against, EstimatedJoint, JointSummary};
 
 /// The document of `estimate --format json`.
 #[derive(Debug, Serialize)]
@@ -56,22 +56,8 @@ struct DecisionsJson<'a>(EstimatedJoint<'a>);
 
 impl Serialize for DecisionsJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let rows = detailed_rows(self.0).zip(doubted(self.0));
-        serializer.collect_seq(rows.map(|(row, Doubted { doubt, .. })| DecisionJson {
-            row,
-            doubt: doubt.value(),
-            flags: doubt.flags.iter().map(|flag| flag.id()).collect(),
-        }))
+        serializer.collect_seq(doubted(self.0).map(|found| decision_json(&found)))
     }
-}
-
-/// A decision with its details, its doubt from 0 to 1, and what is odd about it.
-#[derive(Debug, Serialize)]
-struct DecisionJson<'a> {
-    #[serde(flatten)]
-    row: DetailedRow<'a>,
-    doubt: f64,
-    flags: Vec<&'static str>,
 }
 
 impl<'a> EstimateJson<'a> {

@@ -2,11 +2,12 @@
 
 use super::document::{Figure, HALF, WIDTH, slug};
 use super::timeline::Timeline;
-use crate::delay::{AgainstOfKind, AgainstState, DelayProfile, DelayTable, Transition, Verdict};
+use crate::delay::{AgainstOfKind, AgainstState, DelayProfile, DelayTable, Transition};
 use crate::figure::delay_levels::{self, Series};
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, thinned_places};
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;
+use crate::report::doubt::doubted;
 use crate::wording::{bracketed, capitalized, p_cell};
 
 /// Steps between which the delay is drawn.
@@ -249,9 +250,8 @@ struct Spread {
 
 impl Spread {
     fn of(estimated: EstimatedJoint<'_>) -> Option<Self> {
-        let mut delays: Vec<f64> = crate::report::decision_rows(estimated)
-            .filter(|(_, row)| row.verdict == Verdict::Accepted)
-            .filter_map(|(_, row)| row.delta_s)
+        let mut delays: Vec<f64> = doubted(estimated)
+            .filter_map(|found| found.delay_s(found.decision.accepted_delay()))
             .collect();
         delays.sort_by(f64::total_cmp);
         let at = |share: f64| crate::numerics::quantile(&delays, share);

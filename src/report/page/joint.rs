@@ -3,15 +3,18 @@
 use super::document::Block;
 use super::report::Report;
 use super::{dead_time, delays, model, record, segment};
-use crate::delay::{AgainstState, Condition, DelayTable, MethodSpec};
+use crate::delay::{AgainstState, Condition, DelayTable};
 use crate::report::against::{AGAINST_HEADER, CORRECTED, against_rows, confounded_sentences};
-use crate::report::decisions::{DetailedRow, detailed_rows};
+use crate::report::decisions::{decision_names, decision_text};
 use crate::report::delay_table::{level_table_text, neutral_sentence};
 use crate::report::difference::difference_table;
+use crate::report::doubt::doubted;
+use crate::report::facts::Place;
+use crate::report::review::reviewed_table;
 use crate::report::text::{onset_line, tracking_line};
 use crate::report::text_table::TextTable;
-use crate::report::{Doubted, EstimatedJoint, JointSummary, ReviewCount, by_doubt, delay_answer};
-use crate::wording::{capitalized, difference_sentences, doubt_percent, doubt_sentence, number};
+use crate::report::{EstimatedJoint, JointSummary, ReviewCount, by_doubt, delay_answer};
+use crate::wording::{capitalized, difference_sentences};
 
 /// Rows of a table that a reader may still want to scroll through.
 const MOST_ROWS: usize = 2000;
@@ -28,7 +31,7 @@ pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>, file: &
     }
     blocks.extend(differing(report, estimated));
     blocks.extend(doubtful(estimated));
-    blocks.extend(reviewed(estimated));
+    blocks.extend(part_with_table("Reviewed by a person", reviewed_table(estimated)));
     let found = estimated.delay_table();
     blocks.extend(delay_blocks(estimated, file));
     if !found.rows.is_empty() {
@@ -36,7 +39,7 @@ pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>, file: &
     }
     blocks.extend(rejections(estimated));
     if estimated.estimate.dead_time.is_none() {
-        blocks.push(decisions(report, estimated));
+        blocks.push(decisions(estimated));
     }
     if let Some(improved) = report.model_of(estimated.joint) {
         blocks.extend(model::blocks(report, improved, file));
@@ -105,28 +108,10 @@ fn against(joint: &str, found: &AgainstState) -> TextTable {
 fn doubtful(estimated: EstimatedJoint<'_>) -> Vec<Block> {
     /// Decisions in the table.
     const MOST: usize = 10;
-    let ranked = by_doubt(estimated);
-    let doubted = ranked.iter().filter(|found| found.doubt.value() > 0.0).take(MOST);
-    let header = ["doubt", "trial", "i", "time [s]", "δ [s]", "verdict", "what speaks against it"];
-    let row = |found: &Doubted<'_>| {
-        let Doubted { trial, decision, doubt, .. } = found;
-        let period_s = trial.period().seconds();
-        let delay = decision.delay().map(|delay| number(delay * period_s));
-        let by = if decision.reviewer_verdict.is_some() { " by a person" } else { "" };
-        [
-            doubt_percent(doubt),
-            trial.label().to_owned(),
-            decision.number.to_string(),
-            number(trial.time_s(decision.input_step.sample)),
-            delay.unwrap_or_else(|| "-".to_owned()),
-            format!("{}{by}", decision.verdict()),
-            doubt_sentence(doubt, decision.program_verdict(), period_s),
-        ]
-    };
-    part_with_table(
-        "Most doubtful decisions",
-        TextTable::of(header, &[0, 2, 3, 4], doubted.map(row)),
-    )
+    let ranked = by_doubt(&[estimated]).into_iter();
+    let doubted = ranked.filter(|found| found.doubt.value() > 0.0).take(MOST);
+    let table = decision_text(Place::Doubtful, Some(estimated.joint), doubted);
+    part_with_table("Most doubtful decisions", table)
 }
 
 /// Where the decisions differ from those of other results.
@@ -147,31 +132,6 @@ fn differing(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Vec<Block> {
         }
     }
     blocks
-}
-
-/// What persons said, and what the program says of the same steps.
-fn reviewed(estimated: EstimatedJoint<'_>) -> Vec<Block> {
-    let header =
-        ["trial", "i", "verdict", "δ [s]", "by", "note", "the program's verdict", "its δ [s]"];
-    let row = |Doubted { trial, decision, .. }: Doubted<'_>| {
-        let said = decision.reviewer_verdict.as_ref()?;
-        let period_s = trial.period().seconds();
-        let seconds = |delay: Option<f64>| {
-            delay.map_or_else(|| "-".to_owned(), |delay| number(delay * period_s))
-        };
-        Some([
-            trial.label().to_owned(),
-            decision.number.to_string(),
-            if said.accepted { "accepted" } else { "rejected" }.to_owned(),
-            seconds(decision.accepted_delay()),
-            said.reviewer.clone(),
-            said.note.clone(),
-            decision.program_verdict().to_string(),
-            seconds(decision.program_delay()),
-        ])
-    };
-    let rows = by_doubt(estimated).into_iter().filter_map(row);
-    part_with_table("Reviewed by a person", TextTable::of(header, &[1, 3, 7], rows))
 }
 
 /// A table under a heading; nothing where it has no rows.
@@ -200,48 +160,18 @@ fn rejections(estimated: EstimatedJoint<'_>) -> Vec<Block> {
 }
 
 /// All decisions, numbers to five digits.
-fn decisions(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Block {
-    let all = detailed_rows(estimated).count();
-    let mut blocks = vec![Block::text(
-        "Sample numbers count from 1 within the trial: at the step sample the input changes, r and \
-         end are the first and the last sample of the segment, q is the breakpoint, δ, from the step \
-         sample to q, the delay, SSE the squared error of both lines.",
-    )];
+fn decisions(estimated: EstimatedJoint<'_>) -> Block {
+    let all = estimated.decisions().count();
+    let names = decision_names(Place::Report);
+    let mut blocks =
+        vec![Block::text(format!("Sample numbers count from 1 within the trial. {names}."))];
     if all > MOST_ROWS {
         blocks.push(Block::text(format!(
             "These are the first {MOST_ROWS} of {all}; `tauscope estimate --decisions FILE.csv` \
              writes them all."
         )));
     }
-    blocks.push(Block::Table(decision_table(report, estimated)));
+    let rows = doubted(estimated).take(MOST_ROWS);
+    blocks.push(Block::Table(decision_text(Place::Report, Some(estimated.joint), rows)));
     Block::details(format!("All {all} decisions"), blocks)
-}
-
-/// A row per decision; intervals only of a method that has them.
-fn decision_table(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> TextTable {
-    let unit = estimated.joint.output_unit.as_ref();
-    let sse = unit.map_or_else(|| "SSE".to_owned(), |unit| format!("SSE [{unit}²]"));
-    let before = ["trial", "i", "step sample", "r", "end", "q", "δ [samples]", "δ [s]"];
-    let method = report.settings.method.spec();
-    let interval = method.has_intervals.then(|| "interval [samples]".to_owned());
-    let header = before.map(str::to_owned).into_iter().chain(interval).chain([sse]);
-    let behind = ["verdict", "accepted with"].map(str::to_owned);
-    let rows = detailed_rows(estimated).take(MOST_ROWS);
-    TextTable {
-        numbers: (1..before.len() + 1 + usize::from(method.has_intervals)).collect(),
-        header: header.chain(behind).collect(),
-        rows: rows.map(|row| decision_row(row, method)).collect(),
-    }
-}
-
-fn decision_row(DetailedRow { row, detail }: DetailedRow<'_>, method: &MethodSpec) -> Vec<String> {
-    let dash = || "-".to_owned();
-    let optional = |value: Option<f64>| value.map_or_else(dash, number);
-    let interval = || detail.interval_text();
-    let samples = [row.i, row.p, row.r, row.end].map(|number| number.to_string());
-    let delay = [row.q, row.delta, row.delta_s].map(optional);
-    let before = [row.trial.to_owned()].into_iter().chain(samples).chain(delay);
-    let interval = method.has_intervals.then(interval);
-    let behind = [optional(row.sse), row.verdict.to_string(), detail.accepted_with];
-    before.chain(interval).chain(behind).collect()
 }

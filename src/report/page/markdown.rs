@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use super::document::{Block, Document, Entry, Figure};
 use super::palette::figure_style;
 use super::plot::{PlotError, draw};
-use crate::report::text_table::TextTable;
 use crate::wording::legible;
 
 /// A report as Markdown.
@@ -71,7 +70,7 @@ impl Markdown {
             Block::Figures(figures) => {
                 figures.iter().try_for_each(|one| self.figure(one, folder))?;
             }
-            Block::Table(rows) => self.line(&table(rows)),
+            Block::Table(table) => self.line(&table.markdown(escaped)),
             Block::Details { summary, blocks } => {
                 self.line(&format!("<details><summary>{}</summary>", escaped(summary)));
                 for block in blocks {
@@ -103,17 +102,6 @@ fn with_style(svg: &str) -> String {
     let style = figure_style();
     let ground = "svg{background:#fff}@media (prefers-color-scheme:dark){svg{background:#16181b}}";
     svg.replacen("</title>", &format!("</title><style>{style}{ground}</style>"), 1)
-}
-
-fn table(table: &TextTable) -> String {
-    let row = |cells: &[String]| {
-        let cells = cells.iter().map(|cell| escaped(cell));
-        format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
-    };
-    let rules = (0..table.header.len()).map(|c| if table.is_number(c) { "--:" } else { "---" });
-    let rules = format!("|{}|\n", rules.collect::<Vec<_>>().join("|"));
-    let rows: String = table.rows.iter().map(|cells| row(cells)).collect();
-    format!("{}{rules}{rows}", row(&table.header))
 }
 
 /// `text` without marks that Markdown or HTML would take for their own, in one line.

@@ -3,19 +3,18 @@
 use serde_json::{Value, json};
 
 use crate::delay::{Check, Decision, Outcome};
-use crate::experiment::Joint;
 use crate::figure::segment::SegmentFigure;
 use crate::numerics::as_written;
-use crate::report::doubt::all_by_doubt;
+use crate::report::doubt::by_doubt;
 use crate::report::json::joined;
-use crate::report::review::SheetRow;
+use crate::report::review::review_json;
 use crate::report::{Doubted, EstimatedJoint};
 
 /// All that the page is made from: the log's name, how many decisions there are, and the `most` most
 /// doubtful ones on `joints`.
 pub(super) fn page_json(name: &str, joints: &[EstimatedJoint<'_>], most: usize) -> Value {
-    let all = all_by_doubt(joints);
-    let steps = all.iter().take(most).map(|(joint, doubted)| step(joint.joint, doubted));
+    let all = by_doubt(joints);
+    let steps = all.iter().take(most).map(step);
     json!({ "name": name, "decisions": all.len(), "steps": steps.collect::<Value>() })
 }
 
@@ -23,8 +22,8 @@ pub(super) fn page_json(name: &str, joints: &[EstimatedJoint<'_>], most: usize) 
 /// input; the segment, and the last sample that the lines are fitted to, since of rows of β samples an
 /// incomplete one is left out; the signals from the sample `first` on, `smoothed` empty where the lines
 /// were fitted to the measured output; breakpoint and squared error of every candidate.
-fn step(joint: &Joint, doubted: &Doubted<'_>) -> Value {
-    let Doubted { trial, decision, doubt, .. } = doubted;
+fn step(doubted: &Doubted<'_>) -> Value {
+    let Doubted { joint, trial, decision, doubt, .. } = doubted;
     let drawn = SegmentFigure::new(trial, decision);
     let part = |values: &[f64]| {
         drawn.visible(values).iter().map(|value| six_digits(*value)).collect::<Vec<_>>()
@@ -32,8 +31,8 @@ fn step(joint: &Joint, doubted: &Doubted<'_>) -> Value {
     let (first, last) = (decision.segment.first, decision.segment.last);
     let errors = decision.candidates.iter().map(|c| (c.breakpoint, six_digits(c.sse)));
     let facts = json!({
-        "input_unit": joint.input_unit,
-        "output_unit": joint.output_unit,
+        "input_unit": joint.joint.input_unit,
+        "output_unit": joint.joint.output_unit,
         "period_s": trial.period().seconds(),
         "input": [decision.input_step.before, decision.input_step.after],
         "segment": [first, last],
@@ -46,7 +45,7 @@ fn step(joint: &Joint, doubted: &Doubted<'_>) -> Value {
         "conditions": decision.checks.iter().copied().map(condition).collect::<Value>(),
         "flags": doubt.flags.iter().map(|flag| flag.meaning()).collect::<Vec<_>>(),
     });
-    joined([json!(SheetRow::of(&joint.name, doubted)), facts])
+    joined([review_json(doubted).into(), facts])
 }
 
 /// A condition; `met` is `null` where it was not checked.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 
 use crate::report::{Language, Lookup};
-use crate::report::{decision_table, delay_table, level_table, write_delays, write_review_sheet};
+use crate::report::{decision_table, delay_table, level_table, review_sheet, write_delays};
 
 use super::args::OutputArgs;
 use crate::cli::console::Verbosity;
@@ -83,12 +83,10 @@ impl<'a> Files<'a> {
         verbosity: Verbosity,
     ) -> anyhow::Result<()> {
         if let Some(path) = &self.args.decisions {
-            write_table(&decision_table(result.runs)?, path, self.text)?;
+            write_table(&decision_table(result.runs), path, self.text)?;
         }
         if let Some(path) = &self.args.review_sheet {
-            write_file(path, |file| {
-                write_csv(file, self.text, |out| Ok(write_review_sheet(result.joints, out)?))
-            })?;
+            write_table(&review_sheet(result.joints), path, self.text)?;
         }
         if let Some(path) = &self.args.delays {
             write_file(path, |file| match FileKind::of(path) {

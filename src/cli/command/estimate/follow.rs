@@ -9,10 +9,11 @@ use std::time::{Duration, Instant};
 use crate::batch::Threads;
 use crate::delay::{Automatic, InputKind, Settings, Verdict, check_growing, final_part};
 use crate::experiment::{Experiment, Joint, ReadOptions, line_end_of};
-use crate::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
+use crate::report::{EstimatedJoint, decision_rows, step_line};
 use crate::study::{JointEstimate, estimate_each};
 use anyhow::{Context as _, bail};
 use serde::Serialize;
+use serde_json::{Map, Value};
 
 use super::args::{Args, FollowArgs};
 use crate::cli::args::{Format, OwnSettings};
@@ -190,7 +191,7 @@ pub(crate) struct Reported {
 struct StepJson<'a> {
     schema: &'static str,
     #[serde(flatten)]
-    row: &'a DecisionRow<'a>,
+    row: &'a Map<String, Value>,
 }
 
 impl Reported {
@@ -229,16 +230,15 @@ impl Reported {
         format: Format,
         estimated: EstimatedJoint<'_>,
     ) -> anyhow::Result<()> {
-        let EstimatedJoint { joint, estimate } = estimated;
-        let trials = joint.trials.iter().zip(estimate.estimated());
-        let decisions = trials.flat_map(|(t, found)| found.decisions.iter().map(move |d| (t, d)));
-        for ((trial, decision), (_, row)) in decisions.zip(decision_rows(estimated)) {
+        let joint = estimated.joint;
+        let decisions = estimated.decisions().zip(decision_rows(estimated));
+        for ((trial, _, decision), (_, row)) in decisions {
             let key = (joint.name.clone(), trial.label().to_owned());
             let steps = self.steps.entry(key).or_default();
             if decision.number <= steps.len() {
                 continue;
             }
-            steps.push((row.delta, row.verdict));
+            steps.push((decision.delay(), decision.verdict()));
             match format {
                 Format::Text => {
                     console::print(&(step_line(joint, trial, decision) + "\n"))?;
@@ -265,12 +265,14 @@ impl Reported {
 
     /// Says which decisions the whole log changes.
     pub(crate) fn say_changes(&self, joints: &[EstimatedJoint<'_>]) {
-        for (_, row) in joints.iter().flat_map(|joint| decision_rows(*joint)) {
-            let key = (row.joint.to_owned(), row.trial.to_owned());
-            let before = self.steps.get(&key).and_then(|steps| steps.get(row.i.checked_sub(1)?));
-            let Some((delta, verdict)) = before else { continue };
-            if (*delta, *verdict) != (row.delta, row.verdict) {
-                let (name, step, now) = (row.joint, row.i, &row.verdict);
+        let all = joints.iter().flat_map(|of| of.decisions().map(|found| (&of.joint.name, found)));
+        for (name, (trial, _, decision)) in all {
+            let key = (name.clone(), trial.label().to_owned());
+            let step = decision.number;
+            let before = self.steps.get(&key).and_then(|steps| steps.get(step.checked_sub(1)?));
+            let Some(before) = before else { continue };
+            let now = decision.verdict();
+            if *before != (decision.delay(), now) {
                 message("note", &format!("{name}, step {step}: the whole log changes it to {now}"));
             }
         }
