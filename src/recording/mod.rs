@@ -10,7 +10,7 @@
 //! - `paths` says where everything lies, `layout` where samples, trials and decisions lie on
 //!   the timelines; `chunk` makes columns of rows with reproducible ids, `layers` and `sheet`
 //!   drawings of them on a `canvas`.
-//! - `recorded`, `preview`, `sweep` and `index` are four kinds of recording. One part of the content
+//! - `recorded`, `sweep` and `index` are three kinds of recording. One part of the content
 //!   each are `signals`, `decisions`, `verdict`, `segment_view`, `beside`, `place`, `doubt`, `difference`, `overview`,
 //!   `delay_state`, `model`, `revision` and `about`, which `assembly` puts together.
 //! - `views` says which view shows what: a tree that `blueprint` writes. What lies below the root of
@@ -48,7 +48,6 @@ mod palette;
 mod parameter_table;
 mod paths;
 mod place;
-mod preview;
 mod recorded;
 mod revision;
 mod scatter;
@@ -65,10 +64,9 @@ pub use error::RecordError;
 pub(crate) use index::{IndexRecording, Volume};
 pub use layout::Detail;
 pub(crate) use live::Live;
-pub(crate) use preview::PreviewRecording;
 pub use recorded::Recording;
 pub use sweep::SweepRecording;
 pub use write::log_recording;
+pub(crate) use write::write_index;
 pub use write::write_recording;
 pub use write::write_sweep;
-pub(crate) use write::{write_index, write_preview};

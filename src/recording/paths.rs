@@ -104,23 +104,11 @@ pub(crate) const REVISION_SHARE: &str = "revision/share";
 pub(crate) const REVISION_WORDS: &str = "revision/words";
 pub(crate) const REVISION_PARAMETERS: &str = "revision/parameters";
 
-/// A drawing of the input that is to be played, or of the delays over all settings; the output around
-/// one step of these.
+/// A drawing of the delays over all settings, and of the output around one step.
 pub(crate) const SHEET: &str = "sheet";
 pub(crate) const ONE: &str = "one";
 /// What is under the cursor, in words.
 pub(crate) const HERE: &str = "here";
-
-/// Expected outputs, one below it each, with the ends of their margin, and the range of the output.
-pub(crate) const EXPECTED: &str = "expected";
-pub(crate) const OUTPUT: &str = "output";
-pub(crate) const LOW: &str = "low";
-pub(crate) const HIGH: &str = "high";
-pub(crate) const RANGE: &str = "range";
-/// The difference of two expected outputs; what the input says of them; its holds.
-pub(crate) const APART: &str = "apart";
-pub(crate) const SAYS: &str = "says";
-pub(crate) const HOLDS: &str = "holds";
 
 /// What was found over all settings, and the steps that are sensitive to one.
 pub(crate) const FOUND: &str = "found";

@@ -14,7 +14,6 @@ use super::content::{
 use super::end::EndHeld;
 use super::error::RecordError;
 use super::index::IndexRecording;
-use super::preview::PreviewRecording;
 use super::recorded::Recording;
 use super::sweep::SweepRecording;
 
@@ -35,17 +34,6 @@ pub fn write_recording(recording: &Recording<'_>, out: impl Write) -> Result<(),
 /// As [`write_recording`].
 pub fn write_sweep(sweep: &SweepRecording<'_>, out: impl Write) -> Result<(), RecordError> {
     write(sweep, out)
-}
-
-/// Writes what is to be played, before it is, to `out` as a whole `.rrd` file.
-///
-/// # Errors
-/// As [`write_recording`].
-pub(crate) fn write_preview(
-    preview: &PreviewRecording<'_>,
-    out: impl Write,
-) -> Result<(), RecordError> {
-    write(preview, out)
 }
 
 /// Writes the recording that stands before those of many joints to `out` as a whole `.rrd` file.

@@ -30,7 +30,7 @@ fn joint_text(joint: &DesignedJoint) -> String {
 
 /// What is played, in the first sentence; what it distinguishes, where the joint will be, and what
 /// whoever plays it should know.
-pub(crate) fn design_sentences(joint: &DesignedJoint) -> Vec<String> {
+pub(super) fn design_sentences(joint: &DesignedJoint) -> Vec<String> {
     let mut sentences = vec![headline(joint)];
     sentences.extend(joint.discrimination.iter().flat_map(|found| explanation(joint, found)));
     match (&joint.prediction, &joint.basis) {
@@ -89,11 +89,10 @@ fn hold_text(schedule: &Schedule) -> String {
 }
 
 /// Header of [`side_rows`].
-pub(crate) const SIDE_HEADER: [&str; 5] =
-    ["if it is", "expected power", "rehearsed", "other", "neither"];
+const SIDE_HEADER: [&str; 5] = ["if it is", "expected power", "rehearsed", "other", "neither"];
 
 /// A row for each suspect: how surely it is identified where it is present.
-pub(crate) fn side_rows(found: &Discrimination) -> [[String; 5]; 2] {
+fn side_rows(found: &Discrimination) -> [[String; 5]; 2] {
     let [one, other] = &found.design.sides;
     let [first, second] = found.ids;
     [(first, one), (second, other)].map(|(id, side)| {
@@ -110,7 +109,7 @@ pub(crate) fn side_rows(found: &Discrimination) -> [[String; 5]; 2] {
     })
 }
 
-fn side_table(found: &Discrimination) -> TextTable {
+pub(super) fn side_table(found: &Discrimination) -> TextTable {
     TextTable::of(SIDE_HEADER, &[1, 2, 3, 4], side_rows(found))
 }
 

@@ -66,8 +66,7 @@ pub(crate) use delays::delay_table;
 pub use delays::write_delays;
 pub(crate) use design::{Basis, DesignedJoint, Discrimination, input_table, preview_table};
 pub(crate) use design_words::{
-    SIDE_HEADER, design_sentences, design_text, hold_note, left_out_note, no_range_note,
-    shortened_note, side_rows, trials_note,
+    design_text, hold_note, left_out_note, no_range_note, shortened_note, trials_note,
 };
 pub(crate) use difference::{Against, against_text};
 pub(crate) use doubt::{Doubted, by_doubt, doubtful_lines};
@@ -87,7 +86,7 @@ pub(crate) use json::{
 pub use ladder::History;
 pub(crate) use ladder::{change_in_words, errors_of};
 pub(crate) use lookup::{Language, Lookup};
-pub(crate) use page::{Document, Heading, RecordingFile, Report, report_text};
+pub(crate) use page::{Document, Heading, RecordingFile, Report, design_document, report_text};
 pub(crate) use parameters::{delay_of_steps, telling_parameters};
 pub(crate) use review::{ReviewCount, review_sheet};
 pub(crate) use review_page::review_page;

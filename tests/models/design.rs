@@ -495,12 +495,11 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
     }
 }
 
-#[cfg(not(feature = "rrd"))]
 #[test]
-fn a_recording_that_cannot_be_made_is_refused_before_the_work() {
+fn a_preview_that_is_no_table_and_no_page_is_refused_before_the_work() {
     let desk = desk();
     let said = desk.refusal("design log.csv --preview next.rrd -o none.csv");
-    assert!(said.contains("built without recordings") && said.lines().count() == 1, "{said}");
+    assert!(said.contains("call it FILE.csv") && said.lines().count() == 1, "{said}");
     assert!(!desk.has("next.rrd") && !desk.has("none.csv"));
 }
 

@@ -14,7 +14,6 @@ mod importer;
 mod live;
 mod models;
 mod pictures;
-mod preview;
 #[cfg(feature = "rrd")]
 #[path = "../support/read_back.rs"]
 mod read_back;

@@ -99,6 +99,24 @@ fn assert_is_row_of(row: &[String], decision: &Value) {
 }
 
 #[test]
+fn a_design_is_shown_on_a_page_with_what_is_expected() {
+    let desk = Desk::with(vec![banded("boom")]);
+    let options = "design log.csv --separate dead_band,flow_curve --rehearsals 4 --power 0.9";
+    let json = desk.json(&format!("{options} --preview next.html -q"), 0);
+    let page = parsed(&desk.read("next.html"));
+    assert_stands_alone(&page);
+    let drawn: Vec<String> = page.select(&select("svg desc")).map(words).collect();
+    let [drawn] = drawn.as_slice() else { panic!("{drawn:?}") };
+    for part in ["Plot 1 of 3: Input", "dead_band, flow_curve and range", "Difference [noise]"] {
+        assert!(drawn.contains(part), "no `{part}` in {drawn}");
+    }
+    let rows = page.select(&select("details tbody tr")).count();
+    assert_eq!(rows, json["joints"][0]["holds"].as_array().unwrap().len());
+    let text = words(page.root_element());
+    assert!(["rehearsed", "λ", "explain"].iter().all(|part| text.contains(part)), "{text}");
+}
+
+#[test]
 fn a_model_is_reported_with_its_ladder() {
     let desk = Desk::with(vec![banded("boom")]);
     let run = "report log.csv --improve --effects dead_band,actuator_lag -o report.html";

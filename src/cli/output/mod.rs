@@ -11,7 +11,5 @@ pub(crate) use limit::meet_file_limits;
 pub(crate) use outputs::{OutputKind, Outputs};
 #[cfg(not(feature = "rrd"))]
 pub(crate) use recording::left_out;
-pub(crate) use recording::{
-    Contents, Detail, PreviewContents, Recorded, SweepContents, check_recordings,
-};
+pub(crate) use recording::{Contents, Detail, Recorded, SweepContents};
 pub(crate) use table::{CsvText, FileKind, write_csv, write_parquet, write_table};

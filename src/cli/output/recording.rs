@@ -10,7 +10,7 @@ use anyhow::bail;
 use crate::delay::Settings;
 use crate::delay::sweep::Grid;
 use crate::experiment::{Experiment, ReadOptions, Source};
-use crate::report::{ComparedJoint, DesignedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep};
+use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep};
 
 use crate::study::OtherResult;
 
@@ -212,23 +212,12 @@ impl SweepContents<'_> {
     }
 }
 
-/// What is to be played, to be recorded before it is.
-#[derive(Clone, Copy)]
-#[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
-pub(crate) struct PreviewContents<'a> {
-    pub(crate) joints: &'a [DesignedJoint],
-    pub(crate) sources: &'a [Source],
-    pub(crate) reading: &'a ReadOptions,
-    pub(crate) model: Option<&'a Path>,
-}
-
 /// What goes into one file.
 #[derive(Clone, Copy)]
 #[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
 pub(crate) enum Recorded<'a> {
     Decisions(&'a Contents<'a>),
     Sweep(&'a SweepContents<'a>),
-    Preview(PreviewContents<'a>),
 }
 
 impl Recorded<'_> {
@@ -245,16 +234,13 @@ impl Recorded<'_> {
 
     #[cfg(feature = "rrd")]
     fn write(self, file: &mut OutputFile) -> anyhow::Result<()> {
-        use crate::recording::{PreviewRecording, write_preview, write_recording, write_sweep};
+        use crate::recording::{write_recording, write_sweep};
 
         match self {
             Self::Decisions(contents) => {
                 contents.with_recording(|recording| write_recording(recording, file))?;
             }
             Self::Sweep(contents) => write_sweep(&contents.recording(), file)?,
-            Self::Preview(PreviewContents { joints, sources, reading, model }) => {
-                write_preview(&PreviewRecording { joints, sources, reading, model }, file)?;
-            }
         }
         Ok(())
     }
@@ -264,18 +250,6 @@ impl Recorded<'_> {
     fn write(self, _: &mut OutputFile) -> anyhow::Result<()> {
         Err(left_out())
     }
-}
-
-/// Says before the work is done whether its recording can be written.
-#[cfg(feature = "rrd")]
-#[expect(clippy::unnecessary_wraps, reason = "without recordings it fails")]
-pub(crate) fn check_recordings() -> anyhow::Result<()> {
-    Ok(())
-}
-
-#[cfg(not(feature = "rrd"))]
-pub(crate) fn check_recordings() -> anyhow::Result<()> {
-    Err(left_out())
 }
 
 #[cfg(not(feature = "rrd"))]

@@ -6,6 +6,7 @@
 mod compose;
 mod dead_time;
 mod delays;
+mod design;
 mod document;
 mod html;
 mod joint;
@@ -22,5 +23,6 @@ mod simulated;
 mod timeline;
 
 pub(crate) use compose::report_text;
+pub(crate) use design::design_document;
 pub(crate) use document::Document;
 pub(crate) use report::{Heading, RecordingFile, Report};

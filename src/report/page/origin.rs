@@ -14,7 +14,7 @@ pub(super) fn blocks(report: &Report<'_>) -> Vec<Block> {
         env!("CARGO_PKG_VERSION")
     )));
     blocks.push(Block::Code(report.command.to_owned()));
-    blocks.push(Block::Table(files(report)));
+    blocks.push(Block::Table(files(&report.experiment.sources)));
     if !report.notes.is_empty() {
         blocks.push(Block::List(report.notes.to_vec()));
     }
@@ -36,13 +36,12 @@ pub(super) fn blocks(report: &Report<'_>) -> Vec<Block> {
 }
 
 /// The files that were read.
-fn files(report: &Report<'_>) -> TextTable {
+pub(super) fn files(sources: &[Source]) -> TextTable {
     let row = |source: &Source| {
         let path = source.path.display().to_string();
         [path, source.bytes.to_string(), source.sha256.clone()]
     };
-    let rows = report.experiment.sources.iter().map(row);
-    TextTable::of(["file", "bytes", "SHA-256"], &[1], rows)
+    TextTable::of(["file", "bytes", "SHA-256"], &[1], sources.iter().map(row))
 }
 
 /// How to look at the recording.

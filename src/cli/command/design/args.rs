@@ -136,9 +136,9 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "INPUT.csv")]
     pub(super) output: Option<PathBuf>,
 
-    /// Where the input goes with what is expected of it: a table (.csv), or a recording for the
-    /// Rerun viewer (.rrd)
-    #[arg(long, value_name = "FILE.csv|FILE.rrd")]
+    /// Where the input goes with what is expected of it: a table (.csv), or a page with figures
+    /// (.html)
+    #[arg(long, value_name = "FILE.csv|FILE.html")]
     pub(super) preview: Option<PathBuf>,
 
     #[command(flatten)]

@@ -9,44 +9,24 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-use crate::experiment::ReadOptions;
-use crate::report::{DesignedJoint, design_json, design_text, input_table, preview_table};
+use crate::report::{
+    DesignedJoint, design_document, design_json, design_text, input_table, preview_table,
+};
 
 use crate::cli::console::{Bar, warn};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, read_failures, said};
-use crate::cli::output::{
-    OutputKind, Outputs, PreviewContents, Recorded, check_recordings, write_file,
-};
+use crate::cli::output::{OutputKind, Outputs, write_bytes, write_file};
 
 use known::Known;
 
 pub(crate) use args::Args;
 
-impl Args {
-    /// Writes the preview recording to `path`.
-    fn record(&self, known: &Known, joints: &[DesignedJoint], path: &Path) -> anyhow::Result<()> {
-        let usual = ReadOptions::default();
-        let read = known.experiment.as_ref();
-        let contents = PreviewContents {
-            joints,
-            sources: read.map_or(&[][..], |experiment| &experiment.sources),
-            reading: read.map_or(&usual, |experiment| &experiment.options),
-            model: self.model.as_deref(),
-        };
-        Recorded::Preview(contents).record(path, self.run.verbosity())
-    }
-}
-
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let inputs: Vec<PathBuf> = args.data.iter().chain(&args.model).cloned().collect();
     let preview = args.preview.as_deref();
-    let kind =
-        if preview.is_some_and(is_recording) { OutputKind::Recording } else { OutputKind::Log };
+    let kind = if preview.is_some_and(is_page) { OutputKind::Other } else { OutputKind::Log };
     Outputs::default().with(OutputKind::Log, &args.output).with(kind, preview).check(&inputs)?;
-    if kind == OutputKind::Recording {
-        check_recordings()?;
-    }
     let (known, joints, failures) = args.run.in_threads(|| {
         let known = Known::new(args)?;
         for note in known.experiment.iter().flat_map(|experiment| &experiment.notes) {
@@ -60,13 +40,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         write_file(path, |file| Ok(input_table(&joints).write_csv(file)?))?;
         args.run.verbosity().say("input", path.display().to_string());
     }
-    match preview {
-        Some(path) if is_recording(path) => args.record(&known, &joints, path)?,
-        Some(path) => {
+    if let Some(path) = preview {
+        if is_page(path) {
+            let sources = known.experiment.as_ref().map_or(&[][..], |read| &read.sources);
+            write_bytes(path, design_document(&joints, sources).html()?)?;
+        } else {
             write_file(path, |file| Ok(preview_table(&joints).write_csv(file)?))?;
-            args.run.verbosity().say("preview", path.display().to_string());
         }
-        None => {}
+        args.run.verbosity().say("preview", path.display().to_string());
     }
     warn(&failures);
     let json = || design_json(args.seed, &joints, &failures);
@@ -74,9 +55,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     Ok(Completion::without(&failures))
 }
 
-/// Whether a preview of this name is a recording.
-fn is_recording(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("rrd"))
+/// Whether a preview of this name is a page.
+fn is_page(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"))
 }
 
 /// The inputs of all joints, and messages on those that have none.
