@@ -104,9 +104,8 @@ pub(crate) const REVISION_SHARE: &str = "revision/share";
 pub(crate) const REVISION_WORDS: &str = "revision/words";
 pub(crate) const REVISION_PARAMETERS: &str = "revision/parameters";
 
-/// A drawing of the delays over all settings, and of the output around one step.
+/// A drawing of the delays over all settings.
 pub(crate) const SHEET: &str = "sheet";
-pub(crate) const ONE: &str = "one";
 /// What is under the cursor, in words.
 pub(crate) const HERE: &str = "here";
 

@@ -205,24 +205,6 @@ fn the_cursor_goes_through_settings_and_through_steps() {
     assert!(list.iter().all(|(times, _)| times["setting"] == 1), "all of them are always there");
 }
 
-/// On the timeline of settings one step is drawn: what came last at its first tick.
-#[test]
-fn the_step_that_hangs_most_is_drawn_first() {
-    let swept = Swept::made();
-    let back = ReadBack::of(&swept.bytes());
-    for (joint, name) in ["arm", "boom"].into_iter().enumerate() {
-        let titles = back.rows(&format!("/{name}/one/texts"), "Points2D:labels", |cell| {
-            let texts = cell.as_string::<i32>().iter().flatten().map(str::to_owned);
-            texts.filter(|text| text.starts_with("step ")).collect::<Vec<_>>()
-        });
-        assert_eq!(titles.len(), swept.steps(joint).len());
-        let Some(worst) = swept.joints[joint].sweep.sensitive().first().copied() else { continue };
-        let (times, title) = titles.last().unwrap();
-        assert_eq!((times["setting"], times["segment"]), (1, whole(worst.number)));
-        assert!(title[0].starts_with(&format!("step {} at", worst.number)), "{title:?}");
-    }
-}
-
 #[test]
 fn words_are_those_of_the_text_and_tell_what_it_was_made_from() {
     let swept = Swept::made();

@@ -2,13 +2,11 @@
 //!
 //! A page per joint shows all its steps at all settings and stays as it is; a cursor on the
 //! timeline `setting` (a tick per run) and one on `segment` (a tick per step) go through it.
-//! A second page has the output around one step with what each setting makes of it.
 
 mod data;
 mod map;
 mod recording;
 mod sheet;
-mod step;
 mod swept;
 mod words;
 

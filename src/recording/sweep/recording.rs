@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use rerun::external::re_sdk_types::blueprint::components::PlayState;
 
 use super::swept::Swept;
-use super::{data, sheet, step, words};
+use super::{data, sheet, words};
 use crate::delay::sweep::{Factor, Grid};
 use crate::experiment::{ReadOptions, Source};
 use crate::recording::blueprint::{Blueprint, Page};
@@ -68,24 +68,22 @@ impl Content for SweepRecording<'_> {
 fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
     data::add(chunks, swept)?;
     sheet::add(chunks, swept)?;
-    step::add(chunks, swept)?;
     words::add(chunks, swept)
 }
 
-/// All steps and one step; beside them what is found, what is under the cursor, and the
+/// All steps; beside them what is found, what is under the cursor, and the
 /// steps to look at.
 fn tab(joint: &str) -> Page {
     let root = joint_root(joint);
     let path = |path: &str| at(&root, path);
     let all = Page::drawing("All steps", &path(paths::SHEET), sheet::SIZE);
-    let one = Page::drawing("One step", &path(paths::ONE), step::SIZE);
     let list = "Steps sensitive to a setting: click a number on the left";
     let words = [
         (5.0, Page::text("What is found", path(paths::FOUND))),
         (2.6, Page::text("Under the cursor", path(paths::HERE))),
         (2.4, Page::list(list, path(paths::SENSITIVE_LOG), "segment")),
     ];
-    let columns = [(7.1, Page::tabs("Drawings", [all, one])), (2.9, Page::stacked("Words", words))];
+    let columns = [(7.1, all), (2.9, Page::stacked("Words", words))];
     Page::beside(joint, columns)
 }
 

@@ -63,7 +63,7 @@ const HOW_TO_READ: &str = "\
 *Each column of the lowest picture is a step, each row a combination of settings, by method, \
 low-pass, α and β from top to bottom. A row with much orange or blue is a setting that differs; \
 such a column is a delay that is sensitive to a setting. Right and left arrow go from setting to setting; \
-on the timeline `segment` from step to step, and the page* One step *has its output.*";
+on the timeline `segment` from step to step.*";
 
 /// A run in numbers.
 fn setting(swept: &Swept<'_>, run: usize) -> Written {
