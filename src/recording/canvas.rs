@@ -9,6 +9,7 @@ use rerun::Color;
 use rerun::datatypes::Vec2D;
 
 use super::palette::{Rgb, color};
+pub(super) use crate::figure::error_share::short;
 pub(super) use crate::figure::{Place, Span, thinned_to};
 use crate::wording::number;
 
@@ -217,17 +218,6 @@ impl Labels {
         self.colors.push(color(rgb));
     }
 
-    /// Leaves out each text, one below another so far, that would lie on the one above it.
-    pub(super) fn keep_apart(&mut self, height: f32) {
-        let mut all: Vec<_> = self.places.drain(..).zip(self.texts.drain(..)).collect();
-        all.sort_by(|(a, _), (b, _)| a.y().total_cmp(&b.y()));
-        for (place, text) in all {
-            if self.places.last().is_none_or(|above| place.y() - above.y() >= height) {
-                self.put(place, text);
-            }
-        }
-    }
-
     /// Puts a text there, or as near as it can be without being cut at a side of the sheet.
     pub(super) fn put_whole(&mut self, place: Vec2D, text: impl Into<String>) {
         self.put_within(SHEET.0, place, text);
@@ -297,16 +287,6 @@ mod tests {
         labels.put_whole(Vec2D::new(SHEET.0 - 15.0, 4.0), "end = 12000");
         labels.put_whole(Vec2D::new(800.0, 4.0), "end = 12000");
         assert_eq!(labels.places, [Vec2D::new(SHEET.0 - 91.0, 4.0), Vec2D::new(800.0, 4.0)]);
-    }
-
-    #[test]
-    fn a_text_on_another_is_left_out() {
-        let mut labels = Labels::default();
-        for (y, text) in [(40.0, "0"), (10.0, "10"), (52.0, "-10"), (80.0, "-20")] {
-            labels.put(Vec2D::new(65.0, y), text);
-        }
-        labels.keep_apart(30.0);
-        assert_eq!(labels.texts, ["10", "0", "-20"]);
     }
 
     #[test]

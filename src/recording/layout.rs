@@ -20,7 +20,7 @@ use super::chunk::{Index, Moment, Opening};
 use crate::delay::{Candidate, Decision, Doubt, TrialEstimate, Verdict, doubts};
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Trial};
-use crate::report::{Doubted, EstimatedJoint};
+use crate::report::{Doubted, EstimatedJoint, Timeline};
 use crate::units::signed;
 use crate::wording::{doubt_in_short, doubt_sentence, number};
 
@@ -246,6 +246,16 @@ impl<'a> JointLayout<'a> {
             .last()
             .map(|(trial, segment)| trial.moment(segment, segment.verdict(), trial.trial.len()));
         last.into_iter().cycle().take(rows).collect()
+    }
+
+    /// The record as the viewer's timeline `time` has it.
+    pub(super) fn timeline(&self) -> Timeline<'a> {
+        let shift = |index: usize| {
+            let trial = self.trial(index)?;
+            Some(trial.seconds(1) - trial.trial.time_s(1))
+        };
+        let shifts = (0..self.joint.trials.len()).map(|index| shift(index).unwrap_or_default());
+        Timeline::shifted(self.joint, shifts.collect())
     }
 
     /// The first sample of all.

@@ -45,6 +45,7 @@ mod model_lanes;
 mod origin;
 mod overview;
 mod palette;
+mod panels;
 mod parameter_table;
 mod paths;
 mod place;

@@ -34,10 +34,8 @@ pub(super) const UP: Rgb = (95, 160, 255);
 pub(super) const DOWN: Rgb = (240, 150, 195);
 /// Half of what was found lies there.
 pub(super) const BAND: Rgb = (40, 50, 58);
-/// Behind what a model was not fitted to.
-pub(super) const UNSEEN_GROUND: Rgb = (34, 38, 44);
-/// Behind where a model fails.
-pub(super) const FAILS_GROUND: Rgb = (74, 30, 26);
+/// The viewer's own ground.
+pub(super) const GROUND: Rgb = (13, 16, 17);
 /// Grid lines.
 pub(super) const GRID: Rgb = (60, 62, 66);
 

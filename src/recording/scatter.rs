@@ -1,14 +1,12 @@
 //! The residual against what it may depend on: input, angle, speed, time since the step.
 
-use rerun::datatypes::Vec2D;
-
-use super::canvas::{Plot, SHEET, Span};
+use super::canvas::SHEET;
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layers::Layers;
-use super::palette;
-use super::paths::{self, of_model};
-use super::sheet::Sheet;
+use super::panels::{self, Placed};
+use super::paths;
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span};
 use crate::numerics::quantile;
 use crate::report::ComparedJoint;
 use crate::wording::bracketed;
@@ -29,48 +27,43 @@ struct Pairs {
     residual: Vec<f64>,
 }
 
-/// Draws the residuals of `models` against four quantities below `root`; the points are
-/// those of the one that is `judged`, the curves those of all.
+/// Draws the residuals of `models` against four quantities; the points are those of the one that is
+/// `judged`, the curves those of all.
 pub(super) fn add(
     chunks: &mut Chunks,
     models: &[&ComparedJoint<'_>],
     judged: &ComparedJoint<'_>,
 ) -> Result<(), RecordError> {
-    let (mut sheet, mut points) = (Sheet::default(), Vec::new());
-    let mut curves: Vec<Vec<Vec<Vec2D>>> = vec![Vec::new(); models.len()];
-    let others: Vec<Vec<Pairs>> = models.iter().map(|model| quantities(model)).collect();
-    for (place, pairs) in quantities(judged).iter().enumerate() {
-        let plot = plot(place, pairs);
-        sheet.draw(&plot, 4.0, &pairs.name);
-        let every = pairs.x.len().div_ceil(POINTS).max(1);
-        let places = pairs.x.iter().zip(&pairs.residual).step_by(every);
-        let inside = places.filter(|(x, _)| is_drawn(&plot, **x));
-        points.extend(inside.map(|(x, r)| plot.at(*x, *r)));
-        for (curves, all) in curves.iter_mut().zip(&others) {
-            curves.extend(all.get(place).map(|pairs| curve(&plot, pairs)));
-        }
-    }
-    let mut layers = Layers::fixed(chunks, paths::SCATTER);
-    layers.sheets([sheet])?;
-    layers.points("points", palette::RAW, 1.2, [points])?;
-    for ((curves, rgb), number) in curves.into_iter().zip(palette::models()).zip(0..) {
-        layers.strips(&of_model("curve", number), rgb, 2.4, [curves])?;
-    }
-    Ok(())
+    let all: Vec<Vec<Pairs>> = models.iter().map(|model| quantities(model)).collect();
+    let unit = judged.joint.output_unit.as_deref();
+    let place = |(place, pairs): (usize, Pairs)| {
+        let of_each = all.iter().map(|all| all.get(place));
+        let left = 400.0 * place as f32;
+        Placed::new(panel(&pairs, of_each, unit), (left + 105.0, left + 385.0), 48.0..=226.0)
+    };
+    let placed = quantities(judged).into_iter().enumerate().map(place).collect();
+    panels::add(&mut Layers::fixed(chunks, paths::SCATTER), &[placed])
 }
 
-/// One of four places on the sheet.
-fn plot(place: usize, pairs: &Pairs) -> Plot {
-    let left = 400.0 * place as f32;
-    let (rows, columns) = (48.0..=226.0, (left + 105.0, left + 385.0));
+/// The points of `pairs`, and a curve through those of each model; what is off the plot upwards or
+/// downwards is drawn on its edge.
+fn panel<'p>(
+    pairs: &Pairs,
+    of_each: impl Iterator<Item = Option<&'p Pairs>>,
+    unit: Option<&str>,
+) -> Panel {
     let x = Span::around(most_of(&pairs.x), 0.03);
     let y = Span::around(most_of(&pairs.residual), 0.05);
-    Plot::within(columns, rows, x, y)
-}
-
-/// Whether the plot reaches so far; what is off it upwards or downwards is drawn on its edge.
-fn is_drawn(plot: &Plot, x: f64) -> bool {
-    (0.0..=1.0).contains(&plot.x_span().part(x))
+    let is_drawn = |place: &Place| (0.0..=1.0).contains(&x.part(place.0));
+    let every = pairs.x.len().div_ceil(POINTS).max(1);
+    let places = pairs.x.iter().copied().zip(pairs.residual.iter().copied()).step_by(every);
+    let mut marks = vec![Mark::new(Role::Measured, Shape::Dots(places.filter(is_drawn).collect()))];
+    marks.extend(of_each.enumerate().map(|(number, own)| {
+        let curve = own.map_or_else(Vec::new, curve).into_iter().filter(is_drawn).collect();
+        Mark::new(Role::of_revision(number), Shape::Lines(vec![curve], 2.4))
+    }));
+    let y = Axis::new(y, bracketed("residual", unit), 3.0);
+    Panel { x: Axis::new(x, pairs.name.clone(), 4.0), y, height: 190, marks }
 }
 
 /// Two values between which all but the outermost of `values` lie: one spike would press the
@@ -118,17 +111,16 @@ pub(super) fn since_step(acting: &[f64], period_s: f64) -> Vec<f64> {
 }
 
 /// The mean residual in each of [`BINS`] bins with as many samples each.
-fn curve(plot: &Plot, pairs: &Pairs) -> Vec<Vec2D> {
-    let mut sorted: Vec<(f64, f64)> =
+fn curve(pairs: &Pairs) -> Vec<Place> {
+    let mut sorted: Vec<Place> =
         pairs.x.iter().copied().zip(pairs.residual.iter().copied()).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let size = sorted.len().div_ceil(BINS).max(1);
-    let mean = |bin: &[(f64, f64)]| {
+    let mean = |bin: &[Place]| {
         let n = bin.len() as f64;
         bin.iter().fold((0.0, 0.0), |(x, r), pair| (x + pair.0 / n, r + pair.1 / n))
     };
-    let means = sorted.chunks(size).map(mean).filter(|(x, _)| is_drawn(plot, *x));
-    plot.places(means)
+    sorted.chunks(size).map(mean).collect()
 }
 
 #[cfg(test)]

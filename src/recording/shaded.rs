@@ -3,11 +3,6 @@
 
 use std::ops::Range;
 
-use rerun::datatypes::Vec2D;
-
-use super::canvas::{Plot, Strips};
-use super::error_share::hatched;
-use super::layout::JointLayout;
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::FailsWhere;
 use crate::fit::Part;
@@ -51,34 +46,6 @@ fn joined(spans: impl Iterator<Item = (usize, Range<usize>)>) -> Spans {
         }
     }
     all
-}
-
-/// Areas of `plot` over its whole height, each filled by a line to and fro.
-pub(super) fn areas(layout: &JointLayout<'_>, plot: &Plot, from: f32, spans: &Spans) -> Strips {
-    /// Areas that are as near as this on the sheet are one.
-    const NEAR: f32 = 1.0;
-    let ends = spans.iter().filter_map(|(index, span)| {
-        let trial = layout.trial(*index)?;
-        let x = |k: usize| plot.x(trial.seconds(k));
-        Some((x(span.start + 1), x(span.end)))
-    });
-    let mut areas: Vec<(f32, f32)> = Vec::new();
-    for (left, right) in ends {
-        match areas.last_mut() {
-            Some((_, last)) if left - *last <= NEAR => *last = right,
-            _ => areas.push((left, right)),
-        }
-    }
-    let bottom = plot.bottom;
-    let top = plot.top + from * (bottom - plot.top);
-    let area = |(left, right): (f32, f32)| {
-        let column = |(number, x): (usize, f32)| {
-            let (from, to) = if number % 2 == 0 { (top, bottom) } else { (bottom, top) };
-            [Vec2D::new(x, from), Vec2D::new(x, to)]
-        };
-        hatched(left, right).enumerate().flat_map(column).collect()
-    };
-    areas.into_iter().map(area).collect()
 }
 
 #[cfg(test)]

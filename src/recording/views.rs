@@ -439,19 +439,19 @@ impl Tab<'_> {
             drawing(
                 "Residual against four quantities: points, and their mean",
                 paths::SCATTER,
-                &["curve"],
+                &["lines"],
                 scatter::SIZE,
             ),
             drawing(
                 "Share of the error: bars; of the time: white",
                 paths::ERROR_SHARE,
-                &["bars"],
+                &["squared_error"],
                 error_share::SIZE,
             ),
             drawing(
                 "Correlation: that of noise stays between the lines (99 %)",
                 paths::CORRELATION,
-                &["band", "curve"],
+                &["band", "lines"],
                 correlogram::SIZE,
             ),
         ];

@@ -33,8 +33,8 @@ pub(crate) const DECISION: &[DecisionFact] = &[
     fact("p", Whole, Paper, ("p", "input step", Unit::Sample, FIGURES), |of| of.p().into()),
     fact("input", Text, People, ("input", "", Unit::None, SAID), |of| of.input().into()),
     fact("hold", Whole, People, ("input keeps this level for", "", Unit::Samples, SAID), |of| of.decision.hold.into()),
-    fact("r", Whole, Paper, ("r", "first of the segment", Unit::Sample, ENDS), |of| of.decision.segment.first.into()),
-    fact("end", Whole, Paper, ("end", "its last", Unit::Sample, ENDS), |of| of.decision.segment.last.into()),
+    fact("r", Whole, Paper, ("r", "segment's first", Unit::Sample, ENDS), |of| of.decision.segment.first.into()),
+    fact("end", Whole, Paper, ("end", "segment's last", Unit::Sample, ENDS), |of| of.decision.segment.last.into()),
     fact("candidates", Whole, Paper, ("candidates", "", Unit::None, SAID), |of| of.decision.candidates.len().into()),
     fact("f_opt", Whole, Paper, ("f", "best candidate", Unit::None, SAID), |of| of.best(|best| best.f)),
     fact("program_delta", Samples, People, ("program's δ", "", Unit::Samples, SAID), |of| samples(of.decision.delay_before_review())),
@@ -46,7 +46,8 @@ pub(crate) const DECISION: &[DecisionFact] = &[
     fact("intercept_before", Real, Paper, UNSAID, |of| of.best(|best| best.before.intercept)),
     fact("slope_after", Real, Paper, ("slope after", "", Unit::Output("/sample"), SLOPES), |of| of.best(|best| best.after.slope)),
     fact("intercept_after", Real, Paper, UNSAID, |of| of.best(|best| best.after.intercept)),
-    fact("interval", Text, People, ("interval", "", Unit::Samples, &[Terminal, Report, Verdict]), |of| of.interval().into()),
+    fact("interval", Text, People, ("interval", "", Unit::Samples, &[Terminal, Report]), |of| of.interval().into()),
+    fact("bounds", Text, People, ("interval of δ", "", Unit::None, SAID), |of| of.bounds().into()),
     fact("verdict", Text, Paper, ("verdict", "", Unit::None, TABLES), |of| of.decision.verdict().to_string().into()),
     fact("failed", Text, Paper, UNSAID, |of| of.decision.failed().map(Condition::id).collect::<Vec<_>>().join(" ").into()),
     fact("method", Text, Table, UNSAID, |of| of.joint.estimate.settings.method.id().into()),
@@ -162,6 +163,15 @@ impl Doubted<'_> {
     /// The delay's interval: `11.2 … 12.9`, samples.
     fn interval(&self) -> Option<String> {
         self.decision.fine.map(|fine| format!("{} … {}", number(fine.low), number(fine.high)))
+    }
+
+    /// The same in words.
+    fn bounds(&self) -> Option<String> {
+        let (fine, period_s) = (self.decision.fine?, self.trial.period().seconds());
+        let [low, high] = [fine.low, fine.high].map(|end| end * period_s);
+        let percent = number(100.0 * fine.confidence);
+        let samples = self.interval()?;
+        Some(format!("{samples} samples = {low:.5} … {high:.5} s, at {percent} %"))
     }
 
     /// How often noise alone looks as much like a reaction; where tested.

@@ -86,7 +86,10 @@ pub(crate) use json::{
 pub use ladder::History;
 pub(crate) use ladder::{change_in_words, errors_of};
 pub(crate) use lookup::{Language, Lookup};
-pub(crate) use page::{Document, Heading, RecordingFile, Report, design_document, report_text};
+pub(crate) use page::{
+    Document, Heading, Marked, RecordingFile, Report, Timeline, dead_time_panel, delay_panel,
+    design_document, record_panels, report_text, simulated_panels, worst_panel,
+};
 pub(crate) use parameters::{delay_of_steps, telling_parameters};
 pub(crate) use review::{ReviewCount, review_sheet};
 pub(crate) use review_page::review_page;

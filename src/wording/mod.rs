@@ -32,10 +32,8 @@ pub(crate) use number::{
 pub(crate) use parameter::{known_value, parameter_units, parameter_value, remark};
 pub(crate) use probability::{p_cell, p_text, percent};
 pub(crate) use prose::{Margins, capitalized, counted, hanging, lines, listed, wrapped};
-#[cfg(feature = "rrd")]
-pub(crate) use region::feature_with_unit;
 pub(crate) use region::{
-    fails_or_errs, failure_sentences, feature_with_level, misfit_units, region_text,
-    worst_segment_text,
+    fails_or_errs, failure_sentences, feature_with_level, feature_with_unit, misfit_units,
+    region_text, worst_segment_text,
 };
 pub(crate) use remedy::remedy_text;

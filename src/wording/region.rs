@@ -29,7 +29,6 @@ pub(crate) fn feature_with_level(joint: &Joint, region: &Region) -> String {
 }
 
 /// What a feature is and its unit, as the title of an axis: `input, as it acts [V]`.
-#[cfg(feature = "rrd")]
 pub(crate) fn feature_with_unit(feature: Feature, joint: &Joint) -> String {
     let name = match feature {
         Feature::Direction => "direction of the input",

@@ -49,13 +49,13 @@ fn figures_of_a_model_are_those_of_its_comparison() {
             |part: &str| back.cell(&format!("/{}/{part}", joint.name), "LineStrips2D:strips").len();
         assert_eq!(drawn("error_share/time"), count);
         // The record is drawn on every timeline that the page may be opened on.
-        let map = format!("/{}/model_map/residual", joint.name);
+        let map = format!("/{}/model_map/residual/0", joint.name);
         let rows = back.rows(&map, "LineStrips2D:strips", |strips| strips.len());
         let timelines = ["decision", "doubt", "sample", "segment", "time"];
         assert!(matches!(rows.as_slice(), [(_, 1)]), "{rows:?}");
         assert!(timelines.iter().all(|timeline| rows[0].0.contains_key(*timeline)), "{rows:?}");
-        assert!(drawn("error_share/bars/0") > count);
-        assert_eq!((drawn("correlation/curve/0"), drawn("correlation/band/0")), (3, 6));
+        assert!(drawn("error_share/squared_error/0") == count);
+        assert_eq!((drawn("correlation/lines/0"), drawn("correlation/band/0")), (3, 6));
     }
 }
 
@@ -136,7 +136,7 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
     for (part, component) in [
         ("record/simulated", strips),
         ("record/residual", strips),
-        ("share/bars", strips),
+        ("share/squared_error", strips),
         ("sheet/ladder", "LineStrips2D:colors"),
     ] {
         let rows = back.rows(&format!("/boom/revision/{part}"), component, |cell| cell.to_data());

@@ -2,8 +2,8 @@
 
 use rerun::datatypes::Vec2D;
 
+use crate::recording::canvas::short;
 use crate::recording::canvas::{HALF_LETTER, Labels, Plot, Span, Strips};
-use crate::recording::error_share::short;
 use crate::recording::sheet::Sheet;
 
 /// Left, right and lower end of the plot on the sheet.

@@ -6,11 +6,12 @@ use rerun::datatypes::Vec2D;
 
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::explain::{Candidate, Change, Revision, Verdict};
+use crate::recording::canvas::short;
 use crate::recording::canvas::{Labels, Plot, Span, Strips};
 use crate::recording::error::RecordError;
-use crate::recording::error_share::{HATCH, hatched, short};
 use crate::recording::layers::Layers;
 use crate::recording::palette::{self, Rgb, color};
+use crate::recording::panels::{HATCH, hatched};
 use crate::report::{ImprovedJoint, change_in_words};
 
 /// Where on the sheet the names and the bars lie, from left to right.

@@ -6,14 +6,15 @@ use super::figure::Held;
 use super::{evidence, ladder, record, words};
 use crate::diagnosis::Comparison;
 use crate::explain::{Change, Revision};
+use crate::figure::Role;
 use crate::recording::canvas::Labels;
 use crate::recording::chunk::{Chunks, Index, Moment, lists};
 use crate::recording::error::RecordError;
-use crate::recording::error_share;
 use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
 use crate::recording::palette;
 use crate::recording::paths;
+use crate::recording::{error_share, panels};
 use crate::report::{ComparedJoint, ImprovedJoint};
 
 /// Width and height of the sheet with ladder, evidence and ranking.
@@ -50,16 +51,20 @@ pub(in crate::recording) fn add(
     let mut steps = Steps { chunks, numbers, index, opens_on_last };
     steps.figures(improved)?;
     steps.words(layout, improved)?;
-    let models: Vec<_> = improved.revisions.iter().map(|revision| &revision.comparison).collect();
-    let joint = improved.finding.compared.joint;
-    record::add(&mut steps.layers(paths::REVISION_RECORD), layout, joint, &models)?;
+    let models = improved.numbered().map(|(revision, step)| ComparedJoint {
+        revision,
+        comparison: &step.comparison,
+        ..improved.finding.compared
+    });
+    let models: Vec<ComparedJoint<'_>> = models.collect();
+    record::add(&mut steps.layers(paths::REVISION_RECORD), layout, &models)?;
     let evidence = evidence::evidence(improved);
     steps.evidence(&evidence)?;
     let mut rows = steps.layers(paths::REVISION_SHEET);
     ladder::add(&mut rows, improved)?;
     evidence::add(&mut rows, &evidence)?;
     around(&mut rows, improved, &evidence)?;
-    steps.shares(improved)
+    steps.shares(&models)
 }
 
 /// The grid, the noise and the texts of the sheet.
@@ -154,30 +159,12 @@ impl Steps<'_> {
     }
 
     /// Where the error of each revision is.
-    fn shares(&mut self, improved: &ImprovedJoint<'_>) -> Result<(), RecordError> {
-        let compared = |revision: u32, comparison| ComparedJoint {
-            revision,
-            comparison,
-            ..improved.finding.compared
-        };
-        let of_each = improved.numbered().zip(0..).map(|((number, revision), place)| {
-            let shares = error_share::Drawing::of(&[&compared(number, &revision.comparison)]);
-            (shares, palette::model(place))
+    fn shares(&mut self, models: &[ComparedJoint<'_>]) -> Result<(), RecordError> {
+        let of_each = models.iter().enumerate().map(|(place, compared)| {
+            let model = (Role::of_revision(place), compared.comparison);
+            error_share::placed(compared.joint, &[model])
         });
-        let (mut grids, mut texts) = (Vec::new(), Vec::new());
-        let (mut bars, mut marks) = (Vec::new(), Vec::new());
-        for (drawing, rgb) in of_each {
-            bars.push(drawing.filling(rgb));
-            let (grid, labels) = drawing.sheet.into_parts();
-            grids.push(grid);
-            texts.push(labels);
-            marks.push(drawing.marks);
-        }
-        let mut layers = self.layers(paths::REVISION_SHARE);
-        layers.strips("grid", palette::GRID, 0.7, grids)?;
-        layers.colored("bars", error_share::HATCH, bars)?;
-        layers.strips("time", palette::BORDER, 1.6, marks)?;
-        layers.texts("texts", palette::BORDER, texts)
+        panels::add(&mut self.layers(paths::REVISION_SHARE), &of_each.collect::<Vec<_>>())
     }
 }
 

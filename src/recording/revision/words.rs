@@ -9,7 +9,7 @@ use crate::diagnosis::failure::WorstSegment;
 use crate::explain::{Change, Revision};
 use crate::fit::Termination;
 use crate::model::Component;
-use crate::recording::error_share::short;
+use crate::recording::canvas::short;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;

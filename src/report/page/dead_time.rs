@@ -23,7 +23,15 @@ pub(super) fn blocks(estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
 
 /// The dead time of each window, with its interval.
 fn over_time(estimated: EstimatedJoint<'_>, found: &DeadTime, file: String) -> Option<Figure> {
-    let timeline = Timeline::of(estimated.joint);
+    let panels = vec![panel(found, &Timeline::of(estimated.joint))?];
+    let name = format!("Dead time of {} over time", estimated.joint.name);
+    let caption = "The dead time in windows of the record, with intervals; where the input moves \
+                   the output too little there is none."
+        .to_owned();
+    Some(Figure { file, name, width: WIDTH, panels, caption })
+}
+
+pub(crate) fn panel(found: &DeadTime, timeline: &Timeline<'_>) -> Option<Panel> {
     let known = found.windows.iter().filter_map(|window| {
         let at = |sample: usize| timeline.at(window.trial, sample as f64);
         Some((at(window.first), at(window.last), window.estimate?))
@@ -48,12 +56,7 @@ fn over_time(estimated: EstimatedJoint<'_>, found: &DeadTime, file: String) -> O
     marks.push(Mark::new(Role::Faint, Shape::Lines(intervals, 1.4)).named("interval"));
     marks.push(Mark::new(Role::Accepted, Shape::Dots(dots)).named("dead time"));
     let axis = Axis::new(y, "dead time [s]", 5.0);
-    let panel = Panel { x: timeline.axis(), y: axis, height: 150, marks };
-    let name = format!("Dead time of {} over time", estimated.joint.name);
-    let caption = "The dead time in windows of the record, with intervals; where the input moves \
-                   the output too little there is none."
-        .to_owned();
-    Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
+    Some(Panel { x: timeline.axis(), y: axis, height: 150, marks })
 }
 
 /// The prediction error of each dead time.

@@ -24,8 +24,16 @@ struct Delays {
 
 /// The delay of each step over time; none where none was accepted.
 pub(super) fn over_time(estimated: EstimatedJoint<'_>, file: String) -> Option<Figure> {
-    let timeline = Timeline::of(estimated.joint);
-    let Delays { accepted, intervals, rejected, held } = delays(estimated, &timeline);
+    let panels = vec![panel(estimated, &Timeline::of(estimated.joint))?];
+    let name = format!("Delay of {} over time", estimated.joint.name);
+    let caption = "The delay of each step, at the time of the step; rejected steps stand at \
+                   the bottom."
+        .to_owned();
+    Some(Figure { file, name, width: WIDTH, panels, caption })
+}
+
+pub(crate) fn panel(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> Option<Panel> {
+    let Delays { accepted, intervals, rejected, held } = delays(estimated, timeline);
     if accepted.is_empty() {
         return None;
     }
@@ -47,12 +55,7 @@ pub(super) fn over_time(estimated: EstimatedJoint<'_>, file: String) -> Option<F
     if !rejected.is_empty() {
         marks.push(Mark::new(Role::Rejected, Shape::Crosses(rejected)).named("rejected step"));
     }
-    let panel = Panel { x: timeline.axis(), y: Axis::new(y, "delay [s]", 5.0), height: 150, marks };
-    let name = format!("Delay of {} over time", estimated.joint.name);
-    let caption = "The delay of each step, at the time of the step; rejected steps stand at \
-                   the bottom."
-        .to_owned();
-    Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
+    Some(Panel { x: timeline.axis(), y: Axis::new(y, "delay [s]", 5.0), height: 150, marks })
 }
 
 fn delays(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> Delays {

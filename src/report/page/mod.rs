@@ -23,6 +23,11 @@ mod simulated;
 mod timeline;
 
 pub(crate) use compose::report_text;
+pub(crate) use dead_time::panel as dead_time_panel;
+pub(crate) use delays::panel as delay_panel;
 pub(crate) use design::design_document;
 pub(crate) use document::Document;
+pub(crate) use record::panels as record_panels;
 pub(crate) use report::{Heading, RecordingFile, Report};
+pub(crate) use simulated::{Marked, panels as simulated_panels, worst_panel};
+pub(crate) use timeline::Timeline;

@@ -2,15 +2,14 @@
 //! with most, and the measured curves beside the model's.
 
 use super::document::{Figure, HALF, WIDTH};
-use crate::diagnosis::failure::{Feature, Region, Units};
 use crate::diagnosis::{Curve, CurveOf, sensor_noise};
 use crate::experiment::Joint;
-use crate::figure::error_share::{FeatureShares, Share, is_level};
+use crate::figure::error_share::FeatureShares;
 use crate::figure::{Axis, Mark, Panel, Role, Shape, Span};
 use crate::report::ladder::LadderRow;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::units::floor_to_index;
-use crate::wording::{bracketed, number, rounded};
+use crate::wording::{bracketed, feature_with_unit, number};
 
 /// A bar for the error of each revision, and the noise as a line.
 pub(super) fn ladder(improved: &ImprovedJoint<'_>, file: String) -> Figure {
@@ -62,47 +61,15 @@ pub(super) fn share(compared: &ComparedJoint<'_>, file: String) -> Option<Figure
     let found = features.max_by(|a, b| a.unevenness().total_cmp(&b.unevenness()));
     let (shares, feature) = found.and_then(|found| Some((found, found.feature()?)))?;
     let joint = compared.joint;
-    let units = Units { input: joint.input_unit.clone(), output: joint.output_unit.clone() };
-    let by = bracketed(feature.name(), feature.unit(&units).as_deref());
+    let by = feature_with_unit(feature, joint);
     let name = format!("Share of the error of {}", joint.name);
     let caption = format!(
         "Where the error arises, by {by}: the squared error of the speed, {}. A bar beyond its mark is \
          a part with too much of it.",
         compared.comparison.arising
     );
-    Some(Figure { file, name, width: HALF, panels: vec![share_panel(shares)], caption })
-}
-
-fn share_panel(shares: FeatureShares<'_>) -> Panel {
-    let names: Vec<String> = shares.regions.iter().map(label).collect();
-    let row = |index: usize| -(index as f64);
-    let bar =
-        |(index, share): (usize, Share)| ((0.0, row(index) - 0.3), (share.error, row(index) + 0.3));
-    let mark = |(index, share): (usize, Share)| {
-        vec![(share.time, row(index) - 0.42), (share.time, row(index) + 0.42)]
-    };
-    let x = Span::new(0.0, 1.04 * shares.largest().max(1.0));
-    let rows = || shares.shares().enumerate();
-    Panel {
-        x: Axis::new(x, "share [%]", 5.0),
-        y: Axis::of_names(&names, ""),
-        height: 20 * u32::try_from(names.len()).unwrap_or(1) + 10,
-        marks: vec![
-            Mark::new(Role::Error, Shape::Bars(rows().map(bar).collect()))
-                .named("of the squared error"),
-            Mark::new(Role::Ink, Shape::Lines(rows().map(mark).collect(), 2.0))
-                .named("of the time"),
-        ],
-    }
-}
-
-/// `2 to 3`; a level, a sign, or a trial as it is.
-fn label(region: &Region) -> String {
-    match region.feature {
-        Feature::Direction | Feature::Trial => region.label.clone(),
-        _ if is_level(region) => rounded(region.from),
-        _ => format!("{} to {}", rounded(region.from), rounded(region.to)),
-    }
+    let panel = shares.panel(joint, &[(Role::Error, compared.comparison)])?;
+    Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
 }
 
 /// A figure for the input, one for the angle and one for the time, as far as the record shows them.

@@ -11,8 +11,17 @@ use crate::wording::bracketed;
 /// Input and output over time.
 pub(super) fn figure(estimated: EstimatedJoint<'_>, file: String) -> Figure {
     let joint = estimated.joint;
-    let timeline = Timeline::of(joint);
-    let (accepted, rejected) = breakpoints(estimated, &timeline);
+    let name = format!("Input and output of {} over time", joint.name);
+    let caption =
+        "What was measured, and where the output of each step of the input breaks.".to_owned();
+    let panels = panels(estimated, &Timeline::of(joint)).into();
+    Figure { file, name, width: WIDTH, panels, caption }
+}
+
+/// The output with the breakpoints above, the input below.
+pub(crate) fn panels(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> [Panel; 2] {
+    let joint = estimated.joint;
+    let (accepted, rejected) = breakpoints(estimated, timeline);
     let span = |values: fn(&Trial) -> &[f64]| Span::around(values_of(joint, values), 0.06);
     let output = Panel {
         x: timeline.axis().bare(),
@@ -35,10 +44,7 @@ pub(super) fn figure(estimated: EstimatedJoint<'_>, file: String) -> Figure {
             Mark::new(Role::Input, Shape::Lines(timeline.held(|_, t| t.input()), 1.4)),
         ],
     };
-    let name = format!("Input and output of {} over time", joint.name);
-    let caption =
-        "What was measured, and where the output of each step of the input breaks.".to_owned();
-    Figure { file, name, width: WIDTH, panels: vec![output, input], caption }
+    [output, input]
 }
 
 /// Where each breakpoint is: of accepted decisions, and of rejected ones.

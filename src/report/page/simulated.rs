@@ -13,18 +13,43 @@ use crate::wording::{bracketed, measure, percent, worst_segment_text};
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
 
+/// Parts of the record that are marked, on its timeline: what was not fitted, and where the model
+/// fails, with the condition.
+#[derive(Default)]
+pub(crate) struct Marked {
+    pub(crate) unfitted: Vec<(f64, f64)>,
+    pub(crate) fails: Option<(String, Vec<(f64, f64)>)>,
+}
+
 /// Measured and simulated output over time, and the residual.
 pub(super) fn figure(improved: &ImprovedJoint<'_>, split: Split, file: String) -> Figure {
     let compared = &improved.finding.compared;
     let role = Role::of_revision(improved.revisions.len().saturating_sub(1));
-    let joint = compared.joint;
-    let timeline = Timeline::of(joint);
-    let unfitted = Mark::new(Role::Faint, Shape::Spans(unfitted(joint, split, &timeline), 0.13));
+    let timeline = Timeline::of(compared.joint);
+    let unfitted = unfitted(compared.joint, split, &timeline);
+    let panels = panels(compared, role, &timeline, Marked { unfitted, fails: None });
+    let name = format!("Measured and simulated output of {}", compared.joint.name);
+    let mut caption = "The measured output beside the simulated one, and the residual.".to_owned();
+    if !worst_parts(compared, &timeline).is_empty() {
+        caption += " Worst segments are those with the largest sums of squares, and the one with the \
+                    largest residual.";
+    }
+    Figure { file, name, width: WIDTH, panels: panels.into(), caption }
+}
+
+/// The output above, the residual below.
+pub(crate) fn panels(
+    compared: &ComparedJoint<'_>,
+    role: Role,
+    timeline: &Timeline<'_>,
+    marked: Marked,
+) -> [Panel; 2] {
+    let unit = compared.joint.output_unit.as_deref();
+    let unfitted = Mark::new(Role::Faint, Shape::Spans(marked.unfitted, 0.13));
     let borders = timeline.borders();
-    let worst = worst_parts(compared, &timeline);
     let output = Panel {
         x: timeline.axis().bare(),
-        y: Axis::new(outputs(compared), bracketed("output", joint.output_unit.as_deref()), 5.0),
+        y: Axis::new(outputs(compared), bracketed("output", unit), 5.0),
         height: 170,
         marks: vec![
             unfitted.clone().named("not fitted"),
@@ -39,24 +64,19 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, split: Split, file: String) -
         ],
     };
     let mut marks = vec![unfitted, borders];
-    let has_worst = !worst.is_empty();
-    if has_worst {
+    marks.extend(marked.fails.map(|(condition, places)| {
+        Mark::new(Role::Rejected, Shape::Spans(places, 0.2)).named(condition)
+    }));
+    let worst = worst_parts(compared, timeline);
+    if !worst.is_empty() {
         marks.push(Mark::new(Role::Attention, Shape::Spans(worst, 0.3)).named("worst segments"));
     }
     marks.extend(noise(compared).map(|mark| mark.named("95 % of the noise")));
     let left = timeline.lines(|index, _| residual(compared, index));
-    marks.push(Mark::new(role, Shape::Lines(left, 1.0)).named("measured − simulated"));
+    marks.push(Mark::new(role, Shape::Lines(left, 1.0)).named("residual"));
     marks.extend(noise_edges(compared, timeline.ends()));
-    let y =
-        Axis::new(residuals(compared), bracketed("residual", joint.output_unit.as_deref()), 6.0);
-    let left = Panel { x: timeline.axis(), y, height: 110, marks };
-    let name = format!("Measured and simulated output of {}", joint.name);
-    let mut caption = "The measured output beside the simulated one, and the residual.".to_owned();
-    if has_worst {
-        caption += " Worst segments are those with the largest sums of squares, and the one with the \
-                    largest residual.";
-    }
-    Figure { file, name, width: WIDTH, panels: vec![output, left], caption }
+    let y = Axis::new(residuals(compared), bracketed("residual", unit), 6.0);
+    [output, Panel { x: timeline.axis(), y, height: 110, marks }]
 }
 
 /// What each revision before the last one left, over time, each at its own scale; none where there
@@ -101,23 +121,8 @@ pub(super) fn worst(compared: &ComparedJoint<'_>, place: usize, file: String) ->
     let joint = compared.joint;
     let segments = &compared.comparison.failure.as_ref()?.worst_segments;
     let worst = segments.first()?;
-    let mut trials = joint.trials.iter().enumerate();
-    let (index, trial) = trials.find(|(_, trial)| trial.label() == worst.trial)?;
-    let cut = |values: &[f64]| around(values, trial, worst);
-    let (measured, simulated) = (cut(trial.output()), cut(simulated(compared, index)));
-    let x = Span::around(measured.iter().map(|place| place.0), 0.0);
-    let y = Span::around(measured.iter().chain(&simulated).map(|place| place.1), 0.08);
-    let panel = Panel {
-        x: Axis::new(x, "time [s]", 6.0),
-        y: Axis::new(y, bracketed("output", joint.output_unit.as_deref()), 5.0),
-        height: 190,
-        marks: vec![
-            Mark::new(Role::Attention, Shape::Spans(vec![(worst.start_s, worst.end_s)], 0.22)),
-            Mark::new(Role::Measured, Shape::Lines(vec![measured], 3.0)).named("measured"),
-            Mark::new(Role::of_revision(place), Shape::Lines(vec![simulated], 1.4))
-                .named("simulated"),
-        ],
-    };
+    let timeline = Timeline::shifted(joint, vec![0.0; joint.trials.len()]);
+    let panel = worst_panel(compared, Role::of_revision(place), &timeline)?;
     let name = format!("The worst segment of {}", joint.name);
     let share = percent(worst.share_of_squared_error);
     let unit = joint.output_unit.as_deref();
@@ -138,6 +143,37 @@ pub(super) fn worst(compared: &ComparedJoint<'_>, place: usize, file: String) ->
         "The worst segment: it holds {share} of the squared error, more than any other.{spike}"
     );
     Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
+}
+
+/// The segment with the largest share of the squared error, and a part of the record around it.
+pub(crate) fn worst_panel(
+    compared: &ComparedJoint<'_>,
+    role: Role,
+    timeline: &Timeline<'_>,
+) -> Option<Panel> {
+    let worst = compared.comparison.failure.as_ref()?.worst_segments.first()?;
+    let mut trials = compared.joint.trials.iter().enumerate();
+    let (index, trial) = trials.find(|(_, trial)| trial.label() == worst.trial)?;
+    let cut = |values: &[f64]| around(values, trial, worst);
+    let on_timeline = |places: Vec<Place>| -> Vec<Place> {
+        places.into_iter().map(|(x, y)| (timeline.of_log(index, x), y)).collect()
+    };
+    let [measured, simulated] =
+        [cut(trial.output()), cut(simulated(compared, index))].map(on_timeline);
+    let ends = [worst.start_s, worst.end_s].map(|end| timeline.of_log(index, end));
+    let x = Span::around(measured.iter().map(|place| place.0), 0.0);
+    let y = Span::around(measured.iter().chain(&simulated).map(|place| place.1), 0.08);
+    let unit = compared.joint.output_unit.as_deref();
+    Some(Panel {
+        x: Axis::new(x, "time [s]", 6.0),
+        y: Axis::new(y, bracketed("output", unit), 5.0),
+        height: 190,
+        marks: vec![
+            Mark::new(Role::Attention, Shape::Spans(vec![ends.into()], 0.22)),
+            Mark::new(Role::Measured, Shape::Lines(vec![measured], 3.0)).named("measured"),
+            Mark::new(role, Shape::Lines(vec![simulated], 1.4)).named("simulated"),
+        ],
+    })
 }
 
 /// The samples of a segment, with a part of it before and behind.

@@ -8,7 +8,7 @@ const POINTS: f64 = 1500.0;
 
 /// When each trial of a joint is: as in the log where trials follow one another there, else
 /// each behind the one before it.
-pub(super) struct Timeline<'a> {
+pub(crate) struct Timeline<'a> {
     trials: &'a [Trial],
     /// What is added to the times of each trial, seconds.
     shifts_s: Vec<f64>,
@@ -16,6 +16,11 @@ pub(super) struct Timeline<'a> {
 }
 
 impl<'a> Timeline<'a> {
+    /// Each trial by its own clock, and so many seconds later.
+    pub(crate) fn shifted(joint: &'a Joint, shifts_s: Vec<f64>) -> Self {
+        Self { trials: &joint.trials, shifts_s, name: "time [s]" }
+    }
+
     pub(super) fn of(joint: &'a Joint) -> Self {
         let trials = &*joint.trials;
         let follows = |pair: &[Trial]| match pair {
@@ -36,7 +41,7 @@ impl<'a> Timeline<'a> {
     }
 
     /// The place of a sample, counted from 1, of a trial.
-    pub(super) fn at(&self, trial: usize, sample: f64) -> f64 {
+    pub(crate) fn at(&self, trial: usize, sample: f64) -> f64 {
         let shift = self.shifts_s.get(trial).copied().unwrap_or_default();
         self.trials
             .get(trial)
