@@ -8,8 +8,8 @@ use super::origin::made_from;
 use super::recorded::Recording;
 use super::revision::judged;
 use crate::report::{
-    EstimatedJoint, JointSummary, LEVEL_HEADER, ReviewCount, SUMMARY_HEADER, change_in_words,
-    chosen_line, dead_time_sentences, doubtful_lines, level_cells, settings_rows, summary_cells,
+    EstimatedJoint, JointSummary, LEVEL_HEADER, ReviewCount, TextTable, change_in_words,
+    chosen_line, dead_time_sentences, doubtful_lines, level_cells, settings_table, summary_table,
 };
 use crate::wording::{DOUBT_MEANS, counted, doubtful_sentence, measure};
 
@@ -30,13 +30,9 @@ fn written(
         writeln!(page, "{}. {DOUBT_MEANS}\n", doubtful_sentence(doubts()))?;
         doubtful(&mut page, recording.joints)?;
     }
-    writeln!(page, "| {} |", SUMMARY_HEADER.join(" | "))?;
-    writeln!(page, "|---|---|---|---|---|---|---|")?;
+    writeln!(page, "{}", summary_table(recording.joints).markdown(plain))?;
     let summary = |joint: &EstimatedJoint<'_>| JointSummary::of(*joint);
     let summaries: Vec<JointSummary> = recording.joints.iter().map(summary).collect();
-    for (joint, summary) in recording.joints.iter().zip(&summaries) {
-        writeln!(page, "| {} |", summary_cells(&plain(&joint.joint.name), summary).join(" | "))?;
-    }
     for (joint, summary) in recording.joints.iter().zip(&summaries) {
         let name = plain(&joint.joint.name);
         let sentences = joint.kind_sentences(summary.headline.kinds()).into_iter();
@@ -46,26 +42,23 @@ fn written(
         }
     }
     delay_levels(&mut page, recording.joints)?;
-    writeln!(page, "\n## Settings\n\n| setting | value |\n|---|---|")?;
-    for (name, value) in settings_rows(recording.settings) {
-        writeln!(page, "| {name} | {value} |")?;
-    }
+    let settings = settings_table(recording.settings).markdown(plain);
+    writeln!(page, "\n## Settings\n\n{settings}")?;
     for line in recording.joints.iter().filter_map(chosen_line) {
         writeln!(page, "\nChosen from the record of {}", plain(line.trim_end()))?;
     }
     writeln!(page, "\n{}", detail(recording, layouts))?;
-    writeln!(page, "\n## Signals\n\n| joint | input | output | trials | sample period |")?;
-    writeln!(page, "|---|---|---|---|---|")?;
-    for joint in recording.joints.iter().map(|joint| joint.joint) {
-        let unit = |unit: &Option<String>| unit.as_deref().map_or("no unit".to_owned(), plain);
-        let (name, input, output) =
-            (plain(&joint.name), unit(&joint.input_unit), unit(&joint.output_unit));
+    let row = |EstimatedJoint { joint, .. }: &EstimatedJoint<'_>| {
+        let unit = |unit: &Option<String>| unit.clone().unwrap_or_else(|| "no unit".to_owned());
         let mut periods: Vec<_> =
             joint.trials.iter().map(|trial| trial.period().to_string()).collect();
         periods.dedup();
-        let (trials, periods) = (joint.trials.len(), periods.join(", "));
-        writeln!(page, "| {name} | {input} | {output} | {trials} | {periods} |")?;
-    }
+        let (input, output) = (unit(&joint.input_unit), unit(&joint.output_unit));
+        [joint.name.clone(), input, output, joint.trials.len().to_string(), periods.join(", ")]
+    };
+    let header = ["joint", "input", "output", "trials", "sample period"];
+    let signals = TextTable::of(header, &[3], recording.joints.iter().map(row)).markdown(plain);
+    writeln!(page, "\n## Signals\n\n{signals}")?;
     made_from(&mut page, recording.sources, recording.reading)?;
     writeln!(page, "{HOW_TO_READ}")?;
     Ok(page)

@@ -5,7 +5,7 @@ use super::error::RecordError;
 use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::paths;
-use super::verdict::in_short;
+use crate::report::{Place, decision_text};
 use crate::wording::{DOUBT_MEANS, doubt_percent, doubtful_sentence};
 
 /// Adds `/doubt` and `/doubt/log`.
@@ -26,7 +26,7 @@ pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), R
     };
     let lines = ranked.iter().map(|(trial, segment)| (Some(level(segment)), line(trial, segment)));
     chunks.lines(paths::DOUBT_LOG, index, lines)?;
-    chunks.page(paths::DOUBT, page(&layout.joint.name, &ranked))
+    chunks.page(paths::DOUBT, page(layout, &ranked))
 }
 
 /// Doubt from which on a line is red; what is doubtful below it is yellow. Chosen: on synthetic
@@ -42,23 +42,14 @@ fn line(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     format!("{doubt:>5} {mark} {step}: {why}{not}")
 }
 
-fn page(joint: &str, ranked: &[Placed<'_, '_>]) -> String {
+fn page(layout: &JointLayout<'_>, ranked: &[Placed<'_, '_>]) -> String {
     /// Decisions that a person reads.
     const MOST: usize = 25;
-    let row = |(trial, segment): &Placed<'_, '_>| {
-        let (doubt, reason) = (doubt_percent(&segment.doubt), trial.reason(segment));
-        let is = if segment.doubt.is_doubtful() { "**doubtful**" } else { "" };
-        let step = plain(&in_short(trial, segment));
-        format!("| {} | {doubt} | {is} | {step} | {reason} |", segment.rank)
-    };
-    let rows: Vec<_> = ranked.iter().take(MOST).map(row).collect();
-    let (name, shown) = (plain(joint), rows.len());
+    let rows = ranked.iter().take(MOST).map(|(trial, segment)| trial.doubted(segment));
+    let table = decision_text(Place::Doubtful, Some(layout.joint), rows).markdown(plain);
+    let (name, shown) = (plain(&layout.joint.name), ranked.len().min(MOST));
     let count = doubtful_sentence(ranked.iter().map(|(_, segment)| &segment.doubt));
-    format!(
-        "## {name}: {count}\n\n{DOUBT_MEANS} The first {shown}:\n\n\
-         | `doubt` | doubt | | step | what speaks against it |\n|---|---|---|---|---|\n{}\n\n{HOW}",
-        rows.join("\n")
-    )
+    format!("## {name}: {count}\n\n{DOUBT_MEANS} The first {shown}:\n\n{table}\n{HOW}")
 }
 
 const HOW: &str = "\

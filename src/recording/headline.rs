@@ -6,10 +6,9 @@ use super::error::RecordError;
 use super::layout::JointLayout;
 use super::markdown::plain;
 use super::paths;
-use crate::delay::KindDelay;
 use crate::experiment::Source;
 use crate::explain::Verdict;
-use crate::report::{EstimatedJoint, Headline, ImprovedJoint, JointSummary, delay_answer};
+use crate::report::{ImprovedJoint, delay_answer};
 use crate::wording::capitalized;
 
 /// Adds `/headline`.
@@ -29,7 +28,7 @@ fn text(
 ) -> String {
     let estimated = layout.estimated;
     let name = plain(&estimated.joint.name);
-    let answer = format!("**{name}: {}**", plain(&delays(estimated)));
+    let answer = format!("**{name}: {}**", plain(&delay_answer(estimated)));
     // What to do about a warning is in the report and on the terminal.
     let warnings = estimated.warnings().into_iter();
     let mut sentences: Vec<String> =
@@ -53,19 +52,6 @@ fn text(
         count => format!("{count} decisions are doubtful. {}", review(&data)),
     });
     format!("{answer}  \n{}", sentences.join(" "))
-}
-
-/// The delays in a sentence that fits into the strip.
-fn delays(estimated: EstimatedJoint<'_>) -> String {
-    let summary = JointSummary::of(estimated);
-    let Headline::Kinds(kinds) = &summary.headline else { return delay_answer(estimated) };
-    let median = |kind: &KindDelay| {
-        let typical = kind.typical.as_ref()?;
-        Some(format!("{} {:.3} s", kind.transition, typical.median_s))
-    };
-    let medians: Vec<String> = kinds.iter().filter_map(median).collect();
-    let (accepted, steps) = (summary.accepted, summary.steps);
-    format!("Delay (median) {}; {accepted} of {steps} steps accepted.", medians.join(", "))
 }
 
 /// What follows where no decision is doubtful.

@@ -1,8 +1,6 @@
 //! The recording that stands before many: a table of all joints with the file that each is in,
 //! and the most doubtful decisions of all of them. It is small, and there at once.
 
-use std::fmt::Write as _;
-
 use rerun::EntityPath;
 use rerun::external::re_sdk_types::blueprint::components::PlayState;
 
@@ -18,7 +16,7 @@ use super::paths::{self, at};
 use super::recorded::Recording;
 use super::segment_view::{self, Drawing};
 use super::verdict;
-use crate::report::{JointSummary, SUMMARY_HEADER, summary_cells};
+use crate::report::{EstimatedJoint, JointSummary, SUMMARY_HEADER, TextTable, summary_cells};
 use crate::wording::doubt_percent;
 
 /// What lies below it: the drawing and the verdict of a decision, and the list of all.
@@ -83,7 +81,7 @@ impl Content for IndexRecording<'_> {
     fn tabs(&self, _: Growth) -> Vec<Tab<'_>> {
         let add = |chunks: &mut Chunks| {
             let layouts = self.layouts();
-            chunks.page(JOINTS, page(self, &layouts).unwrap_or_default())?;
+            chunks.page(JOINTS, page(self, &layouts))?;
             add_doubtful(chunks, self, &layouts)
         };
         vec![Tab { joint: None, add: Box::new(add) }]
@@ -110,27 +108,23 @@ impl Content for IndexRecording<'_> {
 }
 
 /// All joints with their files.
-fn page(
-    recording: &IndexRecording<'_>,
-    layouts: &[JointLayout<'_>],
-) -> Result<String, std::fmt::Error> {
-    let mut page = String::new();
+fn page(recording: &IndexRecording<'_>, layouts: &[JointLayout<'_>]) -> String {
     let joints = recording.all.joints;
+    let row = |(number, (joint, layout)): (usize, (&EstimatedJoint<'_>, &JointLayout<'_>))| {
+        let cells = summary_cells(&joint.joint.name, &JointSummary::of(*joint));
+        let [name, steps, accepted, rejected, min, median, max] = cells.map(|cell| plain(&cell));
+        let doubts = layout.segments().map(|(_, segment)| &segment.doubt);
+        let doubt = doubts.max_by(|a, b| a.value().total_cmp(&b.value())).map(doubt_percent);
+        let (file, doubt) =
+            (link(recording.file_of(number)), doubt.unwrap_or_else(|| "-".to_owned()));
+        [name, file, doubt, steps, accepted, rejected, min, median, max]
+    };
+    let [name, steps, accepted, rejected, min, median, max] = SUMMARY_HEADER;
+    let header = [name, "file", "highest doubt", steps, accepted, rejected, min, median, max];
+    let rows = joints.iter().zip(layouts).enumerate().map(row);
+    let table = TextTable::of(header, &[], rows).markdown(str::to_owned);
     let (count, files) = (joints.len(), recording.volumes.len());
-    writeln!(page, "**{count} joints in {files} files.** {HOW}\n")?;
-    let header = SUMMARY_HEADER.get(1..).unwrap_or_default().join(" | ");
-    writeln!(page, "| joint | file | highest doubt | {header} |")?;
-    writeln!(page, "|---|---|---|{}", "---|".repeat(SUMMARY_HEADER.len() - 1))?;
-    for (number, (joint, layout)) in joints.iter().zip(layouts).enumerate() {
-        let summary = summary_cells(&plain(&joint.joint.name), &JointSummary::of(*joint));
-        let [name, cells @ ..] = summary;
-        let doubts = layout.segments().map(|(_, segment)| segment.doubt.value());
-        let doubt = doubts.max_by(f64::total_cmp);
-        let doubt = doubt.map_or_else(|| "-".to_owned(), |doubt| format!("{:.0} %", 100.0 * doubt));
-        let file = link(recording.file_of(number));
-        writeln!(page, "| {name} | {file} | {doubt} | {} |", cells.join(" | "))?;
-    }
-    Ok(page)
+    format!("**{count} joints in {files} files.** {HOW}\n\n{table}")
 }
 
 const HOW: &str = "A click on one opens it, in a viewer that was started in their folder.";

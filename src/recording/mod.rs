@@ -46,7 +46,6 @@ mod origin;
 mod overview;
 mod palette;
 mod panels;
-mod parameter_table;
 mod paths;
 mod place;
 mod recorded;

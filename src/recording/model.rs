@@ -1,7 +1,5 @@
 //! Models beside the measurement: what they simulate, and the residual.
 
-use std::fmt::Write as _;
-
 use rerun::EntityPath;
 
 use super::chunk::{Chunks, Index, line, list, words};
@@ -11,16 +9,16 @@ use super::layout::JointLayout;
 use super::markdown::plain;
 use super::model_lanes::samples_of;
 use super::palette;
-use super::parameter_table::parameter_table;
 use super::paths::{self, at, child};
 use super::signals::known;
 use super::{correlogram, error_share, model_lanes, revision, scatter};
-use crate::diagnosis::failure::{Region, WorstSegment};
-use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
-use crate::experiment::Joint;
-use crate::report::{ComparedJoint, model_differences};
+use crate::diagnosis::failure::Region;
+use crate::diagnosis::{Comparison, SIGNIFICANCE, sensor_noise};
+use crate::report::{
+    ComparedJoint, TextTable, errors_note, model_differences, model_table, parameter_table,
+};
 use crate::wording::{
-    capitalized, correlation_sentences, fails_or_errs, measure, misfit_units, number, rounded,
+    capitalized, correlation_sentences, fails_or_errs, failure_sentences, measure, number, percent,
 };
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
@@ -47,13 +45,16 @@ pub(super) fn add(
     }
     band(chunks, layout, sensor_noise(&judged.joint.trials))?;
     // Each on a page of its own: below one another the last is off a small window.
-    for (path, page) in [
-        (paths::MODEL_PAGE, page(models, judged)),
-        (paths::MODEL_WORST, worst_segments(layout, judged)),
-        (paths::MODEL_PARAMETERS, parameters(judged.joint, &reported(models, judged))),
-    ] {
-        chunks.page(path, page.unwrap_or_default())?;
-    }
+    chunks.page(paths::MODEL_PAGE, page(models, judged))?;
+    chunks.page(paths::MODEL_WORST, worst_segments(layout, judged))?;
+    let of_each = reported(models, judged).into_iter().map(|one| {
+        format!(
+            "**{}**\n\n{}\n",
+            plain(one.model),
+            parameter_table(one.joint, &one.comparison.fit).markdown(plain)
+        )
+    });
+    chunks.page(paths::MODEL_PARAMETERS, of_each.collect())?;
     scatter::add(chunks, models, judged)?;
     error_share::add(chunks, models)?;
     correlogram::add(chunks, models)?;
@@ -174,179 +175,91 @@ fn reported<'m, 'c>(
 }
 
 /// All figures of all models of the joint.
-fn page(
-    models: &[&ComparedJoint<'_>],
-    judged: &ComparedJoint<'_>,
-) -> Result<String, std::fmt::Error> {
-    let mut page = String::new();
+fn page(models: &[&ComparedJoint<'_>], judged: &ComparedJoint<'_>) -> String {
     let joint = judged.joint;
-    let unit = joint.output_unit.as_deref().unwrap_or("");
     let of = if models.len() > 1 { format!(", {}", plain(judged.model)) } else { String::new() };
-    writeln!(page, "### {}{of}: {}\n", plain(&joint.name), headline(judged))?;
-    errors(&mut page, unit, models)?;
-    let horizon = judged.comparison.fit.evaluation.horizon;
-    writeln!(
-        page,
-        "\nErrors are root mean squares of simulations, {horizon}, each run of which starts where its \
-         error is least; *raw*: from the smoothed measured output, nothing removed; *free run*: from \
-         the start of each trial; *fit* is the part of the motion that is followed, 100 % less the validation \
-         error over the standard deviation of the output."
-    )?;
-    if let Some(noise) = sensor_noise(&joint.trials) {
-        let noise = measure(noise, joint.output_unit.as_deref());
-        writeln!(page, "Noise of the sensor: {noise}.")?;
-    }
+    let compared: Vec<ComparedJoint<'_>> = models.iter().map(|model| **model).collect();
+    let horizon = judged.comparison.fit.evaluation.horizon.to_string();
+    let mut lines = vec![
+        format!("### {}{of}: {}\n", plain(&joint.name), headline(judged)),
+        model_table(&compared).markdown(plain),
+        format!("{}.\n", capitalized(&errors_note(&horizon))),
+    ];
+    let noise = sensor_noise(&joint.trials);
+    let noise = noise.map(|noise| measure(noise, joint.output_unit.as_deref()));
+    lines.extend(noise.map(|noise| format!("Noise of the sensor: {noise}.\n")));
     if is_first(models, judged) {
-        against(&mut page, models)?;
+        for one in model_differences(&compared) {
+            let (model, other) = (plain(one.model), plain(one.other));
+            let said: Vec<_> = one.sentences().iter().map(|sentence| plain(sentence)).collect();
+            lines.push(format!("**{model} against {other}**\n\n- {}\n", said.join("\n- ")));
+        }
     }
     let reported = reported(models, judged);
-    for compared in &reported {
-        let units = misfit_units(compared.joint);
-        let found = compared.comparison.failure.iter().flat_map(|failure| &failure.fails_where);
-        for found in found {
-            let (when, weight) = (plain(&found.condition(&units)), found.weight());
-            let errs = capitalized(fails_or_errs(compared.comparison));
-            writeln!(page, "\n**{errs} when {when}** ({}): {weight}", compared.model)?;
-        }
-    }
-    for compared in &reported {
-        let residual = correlation_sentences(compared.comparison).join("; ");
+    for one in &reported {
+        let (model, errs) = (plain(one.model), capitalized(fails_or_errs(one.comparison)));
+        let failures = failure_sentences(joint, one.comparison).into_iter();
+        lines.extend(failures.map(|when| format!("**{errs}** ({model}) {}\n", plain(&when))));
+        let residual = correlation_sentences(one.comparison).join("; ");
         if !residual.is_empty() {
-            writeln!(page, "\n**Residual** ({}): {}", compared.model, plain(&residual))?;
+            lines.push(format!("**Residual** ({model}): {}\n", plain(&residual)));
         }
     }
-    reconciled(&mut page, &reported)?;
-    Ok(page)
+    lines.extend(reconciled(&reported));
+    lines.join("\n")
 }
 
 /// Why a model may be adequate though its residual is not white.
-fn reconciled(page: &mut String, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
+fn reconciled(models: &[&ComparedJoint<'_>]) -> Option<String> {
     let is_odd = |compared: &&&ComparedJoint<'_>| {
         let Comparison { lack_of_fit, whiteness, .. } = compared.comparison;
         let white = whiteness.as_ref().is_none_or(|found| found.p_value >= SIGNIFICANCE);
         lack_of_fit.is_some_and(|test| test.adequate) && !white
     };
     let odd: Vec<String> = models.iter().filter(is_odd).map(|it| plain(it.model)).collect();
-    if odd.is_empty() {
-        return Ok(());
-    }
-    writeln!(
-        page,
-        "\n{}: adequate and yet not white, since whiteness asks whether any memory is left in the \
-         residual, as noise may have it and the smallest misfit makes it in a long record; the lack \
-         of fit asks whether motion of a size that matters is left.",
-        odd.join(", ")
-    )
+    (!odd.is_empty()).then(|| {
+        format!(
+            "{}: adequate and yet not white, since whiteness asks whether any memory is left in the \
+             residual, as noise may have it and the smallest misfit makes it in a long record; the lack \
+             of fit asks whether motion of a size that matters is left.\n",
+            odd.join(", ")
+        )
+    })
 }
 
-/// The error figures of each model, and whether a lack of fit is shown.
-fn errors(page: &mut String, unit: &str, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
-    writeln!(
-        page,
-        "| model | training | validation | raw | free run | fit | lack of fit |\n|---|---|---|---|---|---|---|"
-    )?;
-    for compared in models {
-        let Comparison { training, validation, raw, free, lack_of_fit, .. } = compared.comparison;
-        let shown = |error: Option<f64>| {
-            error.map_or_else(|| "–".to_owned(), |error| format!("{} {unit}", number(error)))
-        };
-        let rmse = |error: &Option<ErrorFigures>| shown(error.map(|error| error.rmse));
-        let percent = validation.and_then(|e| e.fit_text()).unwrap_or_else(|| "–".to_owned());
-        let is = lack_of_fit.map_or("unknown", |t| if t.adequate { "not shown" } else { "shown" });
-        let (train, valid) = (rmse(training), rmse(validation));
-        let (raw, free) = (shown(raw.judged()), shown(free.judged()));
-        writeln!(
-            page,
-            "| {} | {train} | {valid} | {raw} | {free} | {percent} | {is} |",
-            compared.model
-        )?;
-    }
-    Ok(())
-}
-
-/// Where the judged model is worst.
-fn worst_segments(
-    layout: &JointLayout<'_>,
-    judged: &ComparedJoint<'_>,
-) -> Result<String, std::fmt::Error> {
-    let mut page = String::new();
+/// Where the judged model is worst, a row per segment; where it begins on the timeline `sample`, too.
+fn worst_segments(layout: &JointLayout<'_>, judged: &ComparedJoint<'_>) -> String {
     let Some(failure) = &judged.comparison.failure else {
-        return Ok("No segment stands out.".to_owned());
+        return "No segment stands out.".to_owned();
     };
+    let unit = judged.joint.output_unit.as_deref();
+    let mut rank = 0;
+    let rows = failure.worst_segments.iter().map(|worst| {
+        rank += 1;
+        let trial = layout.trial_of(&worst.trial);
+        let sample = trial.map(|trial| trial.sample(*samples_of(worst, trial).start()));
+        [
+            rank.to_string(),
+            format!("{}, {} s", worst.trial, number(worst.start_s)),
+            percent(worst.share_of_squared_error),
+            measure(worst.largest_residual, unit),
+            sample.map_or_else(String::new, |sample| sample.to_string()),
+        ]
+    });
+    let header = ["rank", "trial, from", "squares", "largest", "sample"];
+    let table = TextTable::of(header, &[], rows).markdown(plain);
     let horizon = judged.comparison.fit.evaluation.horizon;
-    writeln!(
-        page,
+    format!(
         "Where the output of {} is farthest off, {horizon}: the segments with the largest sums of \
-         squares, and the one with the largest residual of all (bold). The output keeps each error \
-         of the speed until the next restart, so that this need not be where it arises:",
-        judged.model
-    )?;
-    // A narrow page has no room for what is the same in each row.
-    let several = judged.joint.trials.len() > 1;
-    let columns = if several { ["trial", "from `time`"] } else { ["from", "`sample`"] };
-    let unit = judged.joint.output_unit.as_deref().map_or_else(String::new, plain);
-    let [place, on] = columns;
-    let height = |worst: &WorstSegment| worst.largest_residual.abs();
-    let highest = failure.worst_segments.iter().map(height).reduce(f64::max).unwrap_or_default();
-    writeln!(page, "\n| rank | {place} | squares | largest {unit} | {on} |")?;
-    writeln!(page, "|---|---|---|---|---|")?;
-    for (rank, worst) in (1..).zip(&failure.worst_segments) {
-        let place =
-            if several { plain(&worst.trial) } else { format!("{} s", number(worst.start_s)) };
-        let share = 100.0 * worst.share_of_squared_error;
-        let on_timeline = on_timeline(layout, worst);
-        let largest = rounded(worst.largest_residual);
-        let largest = if height(worst) < highest { largest } else { format!("**{largest}**") };
-        writeln!(page, "| {rank} | {place} | {share:.0} % | {largest} | {on_timeline} |")?;
-    }
-    Ok(page)
+         squares, and the one with the largest residual of all. The output keeps each error \
+         of the speed until the next restart, so that this need not be where it arises:\n\n{table}",
+        plain(judged.model)
+    )
 }
 
 /// Whether models are compared with the first one; revisions of a model are shown by their ladder.
 fn is_first(models: &[&ComparedJoint<'_>], judged: &ComparedJoint<'_>) -> bool {
     models.first().is_some_and(|first| first.model == judged.model)
-}
-
-/// Which of several models is better than the first one, and where.
-fn against(page: &mut String, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
-    let compared: Vec<ComparedJoint<'_>> = models.iter().map(|model| **model).collect();
-    for (number, difference) in model_differences(&compared).iter().enumerate() {
-        let (model, other) = (plain(difference.model), plain(difference.other));
-        let head = if number == 0 { "\n" } else { "" };
-        let sentences = difference.sentences();
-        let sentences: Vec<_> = sentences.iter().map(|sentence| plain(sentence)).collect();
-        writeln!(page, "{head}**{model} against {other}**\n\n- {}\n", sentences.join("\n- "))?;
-    }
-    Ok(())
-}
-
-/// The parameters of each model.
-fn parameters(joint: &Joint, models: &[&ComparedJoint<'_>]) -> Result<String, std::fmt::Error> {
-    let mut page = String::new();
-    for compared in models {
-        writeln!(page, "\n**{}**\n", compared.model)?;
-        parameter_table(&mut page, joint, &compared.comparison.fit)?;
-    }
-    Ok(page)
-}
-
-/// Where `worst` begins on the timeline `sample`; of several trials, which have one clock each, on that
-/// of the record.
-fn on_timeline(layout: &JointLayout<'_>, worst: &WorstSegment) -> String {
-    let Some(trial) = layout.trial_of(&worst.trial) else { return String::new() };
-    let first = *samples_of(worst, trial).start();
-    match layout.trials.len() {
-        1 => trial.sample(first).to_string(),
-        _ => clock(trial.time_ns(first) / 1_000_000_000),
-    }
-}
-
-/// Seconds as the viewer writes them on an axis: `1m20s`.
-fn clock(seconds: i64) -> String {
-    match (seconds / 60, seconds % 60) {
-        (0, seconds) => format!("{seconds}s"),
-        (minutes, seconds) => format!("{minutes}m{seconds:02}s"),
-    }
 }
 
 /// Times the noise up to which they are worth a count: ten parts in a hundred at most are noise then.

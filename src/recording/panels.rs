@@ -68,7 +68,9 @@ impl Placed {
         let name = (palette::BORDER, name.collect::<Vec<_>>().join(" over "));
         let names: Vec<(Rgb, String)> = [name].into_iter().chain(named).collect();
         let whole: f32 = names.iter().map(|(_, text)| width(text)).sum();
-        let mut left = plot.x(plot.middle()) - 0.5 * whole;
+        // As far to the right as nothing is cut at the side of the sheet.
+        let end = plot.x(x.span.high) + 15.0;
+        let mut left = (plot.x(plot.middle()) - 0.5 * whole).min(end - whole);
         for (rgb, text) in names {
             let half = 0.5 * width(&text);
             texts.put_in(rgb, Vec2D::new(left + half, plot.top - LINE), text);
@@ -208,7 +210,9 @@ pub(super) fn add(layers: &mut Layers<'_>, rows: &[Vec<Placed>]) -> Result<(), R
     let (mut grids, mut texts) = (Vec::new(), Vec::new());
     for row in rows {
         let (mut grid, mut labels) = (Strips::new(), Labels::default());
-        row.iter().for_each(|placed| placed.around(&mut grid, &mut labels));
+        for placed in row {
+            placed.around(&mut grid, &mut labels);
+        }
         grids.push(grid);
         texts.push(labels);
     }

@@ -12,9 +12,10 @@ use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths;
 use crate::delay::Verdict;
-use crate::delay::{Check, Condition, Decision, OnsetModel, Outcome};
-use crate::numerics::quantile;
-use crate::report::{DECISION, EstimatedJoint, JointSummary, Place, dead_time_sentences};
+use crate::delay::{Check, Condition, Decision, Outcome};
+use crate::report::{
+    DECISION, DelayRange, EstimatedJoint, JointSummary, Place, dead_time_sentences, onset_sentence,
+};
 use crate::wording::{doubt_percent, number, rounded};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
@@ -156,21 +157,11 @@ pub(super) fn page(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> Stri
     Facts { trial, segment, typical: typical.as_deref() }.page("")
 }
 
-/// The median delay of the accepted steps of a joint, and the range of most of them: what one of
-/// them is held against.
-fn typical_delay(EstimatedJoint { joint, estimate }: EstimatedJoint<'_>) -> Option<String> {
-    /// Share of the steps that lie between both ends.
-    const MOST: f64 = 0.8;
-    let mut delays = Vec::new();
-    for (trial, found) in joint.trials.iter().zip(&estimate.trials) {
-        let decisions = found.iter().flat_map(|found| &found.decisions);
-        let accepted = decisions.filter_map(Decision::accepted_delay);
-        delays.extend(accepted.map(|samples| samples * trial.period().seconds()));
-    }
-    let [low, middle, high] =
-        [0.5 - MOST / 2.0, 0.5, 0.5 + MOST / 2.0].map(|part| quantile(&delays, part).map(rounded));
-    let most = number(100.0 * MOST);
-    Some(format!("{} s; {most} % within {} to {} s", middle?, low?, high?))
+/// The accepted delays of a joint: what one of them is held against.
+fn typical_delay(estimated: EstimatedJoint<'_>) -> Option<String> {
+    let DelayRange { min, median, max } = JointSummary::of(estimated).delay_s?;
+    let [min, median, max] = [min, median, max].map(rounded);
+    Some(format!("{median} s, of {min} to {max} s"))
 }
 
 /// The table of all results, where there are several.
@@ -312,7 +303,7 @@ impl Facts<'_, '_> {
             }
         }
         if let Some(model) = self.trial.estimate.onset_model.as_deref() {
-            row("response behind the delay", &response(model));
+            row("response behind the delay", &plain(&onset_sentence(model)));
         }
         if let Some(tracking) = &self.trial.estimate.tracking {
             let (offset, gain) = (number(tracking.offset()), number(tracking.gain()));
@@ -402,12 +393,4 @@ impl Facts<'_, '_> {
             Condition::Reviewer => ("none".to_owned(), None),
         }
     }
-}
-
-/// The response behind the dead times.
-fn response(model: &OnsetModel) -> String {
-    let named = model.parameters();
-    let named = named.iter().map(|(name, value)| format!(", {name} {}", number(*value)));
-    let (parameters, misfit) = (named.collect::<String>(), number(model.misfit()));
-    format!("{}{parameters}; residual {misfit} times the noise", model.shape())
 }

@@ -21,9 +21,11 @@ use super::recorded::Recording;
 use super::{
     correlogram, delay_state, difference, error_share, palette, revision, scatter, segment_view,
 };
-use crate::delay::{Condition, Decision, Doubt};
+use crate::delay::{Decision, Doubt};
 use crate::experiment::Joint;
-use crate::report::{ComparedJoint, EstimatedJoint, JointSummary, by_doubt, doubtful_lines};
+use crate::report::{
+    ComparedJoint, EstimatedJoint, JointSummary, by_doubt, doubtful_lines, summary_cells,
+};
 use crate::wording::number;
 
 /// What decides which views there are.
@@ -105,27 +107,6 @@ const LANES: &str =
 /// What plots along the record are called: they are empty on timelines that have no samples.
 const ALONG: &str = "Along sample, time or decision";
 
-/// `28 accepted · 26 rejected: at_rest 25 (joint at rest, before and after), before_input 1 (…)`, the most
-/// frequent reasons first.
-fn verdicts(summary: &JointSummary) -> String {
-    /// Reasons that are named.
-    const MOST: usize = 2;
-    let mut rejected = summary.rejected.clone();
-    rejected.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    let reason = |(condition, count): &(Condition, usize)| {
-        format!("{condition} {count} ({})", condition.meaning())
-    };
-    let mut reasons: Vec<String> = rejected.iter().take(MOST).map(reason).collect();
-    if rejected.len() > MOST {
-        reasons.push("…".to_owned());
-    }
-    let accepted = format!("{} ✓ accepted", summary.accepted);
-    match summary.steps - summary.accepted {
-        0 => format!("{accepted} · none rejected"),
-        count => format!("{accepted} · {count} ✗ rejected: {}", reasons.join(", ")),
-    }
-}
-
 /// Where a plot says what its curves are: a legend covers data.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Legend {
@@ -199,7 +180,9 @@ impl Tab<'_> {
         let size = (SHEET.0, MAP_HEIGHT);
         let map = "Whole record: the framed segment is shown above";
         // How many steps were accepted and why others were rejected, over the lanes that say of which.
-        let verdicts = verdicts(&JointSummary::of(self.estimated));
+        let [_, steps, accepted, rejected, ..] =
+            summary_cells("", &JointSummary::of(self.estimated));
+        let verdicts = format!("{accepted} of {steps} ✓ accepted · ✗ rejected: {rejected}");
         // The verdict names the trial: a lane for it would hide that of the verdicts in a small window.
         let lanes = [paths::VERDICT, paths::SEGMENT].map(|path| self.at(path));
         let left = [

@@ -2,6 +2,7 @@
 
 use super::ladder::{errors_of, errors_table, figures};
 use super::parameters::model_text;
+use super::text_table::TextTable;
 use crate::diagnosis::{Comparison, ModelDifference};
 use crate::experiment::Joint;
 use crate::fit::Horizon;
@@ -51,6 +52,17 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     let models = models.join("\n");
     let horizon = horizons(joints.iter().copied());
     format!("{table}\n{}\n\n{models}\n{residuals}{failures}", errors_note(&horizon))
+}
+
+/// The errors of models of one joint.
+pub(crate) fn model_table(models: &[ComparedJoint<'_>]) -> TextTable {
+    let header = ["model", "training", "validation", "raw", "free run", "fit", "lack of fit"];
+    let row = |of: &ComparedJoint<'_>| {
+        let [training, validation, raw, free, fit, _, lack] =
+            figures(of.joint, &errors_of(of.comparison));
+        [of.model.to_owned(), training, validation, raw, free, fit, lack]
+    };
+    TextTable::of(header, &[], models.iter().map(row))
 }
 
 /// The first model of a joint beside another one.
@@ -137,7 +149,7 @@ fn failure_sentences(compared: &ComparedJoint<'_>) -> Vec<String> {
 }
 
 /// What the errors of a table are.
-pub(super) fn errors_note(horizon: &str) -> String {
+pub(crate) fn errors_note(horizon: &str) -> String {
     format!(
         "root-mean-square errors, {horizon}; training and validation without the mean of each run, \
          raw with it (validation, from the measured output), free run from the start of each trial; \

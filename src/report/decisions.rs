@@ -111,6 +111,12 @@ pub(crate) fn decision_text<'a>(
     facts::text_table(DECISION, place, joint, (rows, |value, found| value(found)))
 }
 
+/// A row per step, for the terminal.
+pub(crate) fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
+    let rows = joints.iter().flat_map(|joint| doubted(*joint));
+    format!("{}\n", decision_text(Terminal, None, rows))
+}
+
 /// What the names in the table at `place` mean: `p: input step; q: breakpoint`.
 pub(crate) fn decision_names(place: Place) -> String {
     let shown = DECISION.iter().filter(|fact| fact.is_shown(place) && !fact.meaning.is_empty());

@@ -203,7 +203,9 @@ pub(super) fn text_table<V: Copy, R>(
         fact.part == Part::Paper || rows.iter().any(|row| !row[column].is_null())
     };
     let kept: Vec<bool> = shown.iter().enumerate().map(is_there).collect();
-    rows.iter_mut().for_each(|row| keep(row, &kept));
+    for row in &mut rows {
+        keep(row, &kept);
+    }
     keep(&mut shown, &kept);
     let numbers = shown.iter().enumerate().filter(|(_, fact)| fact.kind != Kind::Text);
     let row = |row: &Vec<Value>| shown.iter().zip(row).map(|(fact, of)| fact.cell(of)).collect();

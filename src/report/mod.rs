@@ -55,12 +55,14 @@ pub(crate) use against::variable_text;
 pub(crate) use answer::delay_answer;
 pub(crate) use columns::columns_table;
 pub use compare::ComparedJoint;
-pub(crate) use compare::{compare_text, model_differences};
-pub(crate) use conclusion::{Passage, Topic};
+pub(crate) use compare::{compare_text, errors_note, model_differences, model_table};
+pub(crate) use conclusion::Topic;
 pub(crate) use consequence::MANY_TIMES_NOISE;
 pub(crate) use dead_time::{dead_time_sentences, input_note};
 pub use decisions::decision_rows;
-pub(crate) use decisions::{DECISION, decision_columns, decision_table, decision_text};
+pub(crate) use decisions::{
+    DECISION, decision_columns, decision_table, decision_text, steps_table,
+};
 pub(crate) use delay_table::{LEVEL_HEADER, delay_levels_text, level_cells, level_table};
 pub(crate) use delays::delay_table;
 pub use delays::write_delays;
@@ -90,11 +92,11 @@ pub(crate) use page::{
     Document, Heading, Marked, RecordingFile, Report, Timeline, dead_time_panel, delay_panel,
     design_document, record_panels, report_text, simulated_panels, worst_panel,
 };
-pub(crate) use parameters::{delay_of_steps, telling_parameters};
+pub(crate) use parameters::{delay_of_steps, parameter_table};
 pub(crate) use review::{ReviewCount, review_sheet};
 pub(crate) use review_page::review_page;
-pub(crate) use settings::{settings_in_short, settings_rows};
-pub(crate) use steps::{step_line, steps_table};
+pub(crate) use settings::{settings_in_short, settings_table};
+pub(crate) use steps::step_line;
 pub(crate) use summary::{DelayRange, Headline, JointSummary};
 pub use sweep::ReportedSweep;
 pub(crate) use sweep::{
@@ -102,5 +104,8 @@ pub(crate) use sweep::{
     sweep_text,
 };
 pub(crate) use table::{DataTable, Kind};
-pub(crate) use text::{SUMMARY_HEADER, chosen_line, estimate_table, summary_cells};
+pub(crate) use text::{
+    SUMMARY_HEADER, chosen_line, estimate_table, onset_sentence, summary_cells, summary_table,
+};
+pub(crate) use text_table::TextTable;
 pub use warning::Warning;

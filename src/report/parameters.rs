@@ -1,5 +1,6 @@
 //! The parameters of a model, for people.
 
+use super::text_table::TextTable;
 use crate::diagnosis::Comparison;
 use crate::effect::Stage;
 use crate::experiment::{Joint, Trial};
@@ -40,6 +41,23 @@ pub(super) fn model_text(joint: &Joint, comparison: &Comparison, called: Option<
     lines.join("\n")
 }
 
+/// The parameters of a model as a table: a row for each that says something.
+pub(crate) fn parameter_table(joint: &Joint, fit: &AssessedModel) -> TextTable {
+    let delays = delay_of_steps(joint, &fit.model);
+    let mut table = TextTable::new(["parameter", "value ± standard error"], &[]);
+    for (parameter, unit) in telling_parameters(joint, fit) {
+        let (name, value) = (&parameter.name, parameter_value(parameter, &unit));
+        // Beside a law it is that of a step of no size, which may be none of the record.
+        let delays = delays.as_ref().filter(|_| name == "delay");
+        let of = if delays.is_some() { ", step of size 0" } else { "" };
+        if let Some(delays) = delays {
+            table.row(["delay of the steps".to_owned(), delays.clone()]);
+        }
+        table.row([format!("{name}{of}"), value]);
+    }
+    table
+}
+
 /// Which delays a law gives to the steps of the record: those of its parameters are of a step of
 /// no size.
 pub(crate) fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String> {
@@ -67,7 +85,7 @@ pub(crate) fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String
 
 /// The parameters of a model with their units, without those that say nothing: held where they do
 /// nothing.
-pub(crate) fn telling_parameters<'a>(
+pub(super) fn telling_parameters<'a>(
     joint: &Joint,
     fit: &'a AssessedModel,
 ) -> impl Iterator<Item = (&'a Parameter, String)> + use<'a> {

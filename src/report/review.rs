@@ -24,7 +24,7 @@ const REVIEW: &[DecisionFact] = &[
     DECISION[0],
     DECISION[1],
     DECISION[2],
-    fact("verdict", Text, Paper, ("verdict", "", Unit::None, SHOWN), |of| of.said().map_or("", |said| word(said.accepted)).into()),
+    fact("verdict", Text, Paper, ("verdict", "", Unit::None, SHOWN), |of| of.said_verdict().into()),
     fact("delay_s", Real, Paper, ("δ", "", Unit::Seconds, SHOWN), |of| of.delay_s(of.said().and_then(|said| said.delay)).into()),
     fact("note", Text, Paper, ("note", "", Unit::None, SHOWN), |of| of.said().map_or("", |said| &said.note).into()),
     fact("reviewer", Text, Paper, ("by", "", Unit::None, SHOWN), |of| of.said().map_or("", |said| &said.reviewer).into()),
@@ -35,8 +35,15 @@ const REVIEW: &[DecisionFact] = &[
     fact("why", Text, Paper, UNSAID, |of| of.why().into()),
 ];
 
-fn word(accepted: bool) -> &'static str {
-    if accepted { "accepted" } else { "rejected" }
+impl Doubted<'_> {
+    /// What a person said, as the sheet has it.
+    fn said_verdict(&self) -> &'static str {
+        match self.said() {
+            Some(said) if said.accepted => "accepted",
+            Some(_) => "rejected",
+            None => "",
+        }
+    }
 }
 
 /// A row of the sheet by the names of its columns.

@@ -1,6 +1,7 @@
 //! The settings in words.
 
 use super::EstimatedJoint;
+use super::text_table::TextTable;
 use crate::delay::{Automatic, CONFIDENCE, FirstLast, Method, Settings};
 use crate::study::JointEstimate;
 use crate::units::Length;
@@ -27,8 +28,15 @@ pub(super) fn own_settings<'a>(
     (own != &usual).then_some(own)
 }
 
+/// Each setting with its value, as a table.
+pub(crate) fn settings_table(settings: &Settings) -> TextTable {
+    let rows = settings_rows(settings).into_iter();
+    let rows = rows.map(|(name, value)| [name.to_owned(), value]);
+    TextTable::of(["setting", "value"], &[], rows)
+}
+
 /// Each setting with its value, as a person would say it.
-pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> {
+fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> {
     let low_pass = settings.low_pass.map_or_else(
         || "none".to_owned(),
         |filter| {

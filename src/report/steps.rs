@@ -1,9 +1,5 @@
 //! Every step in a row, for the terminal.
 
-use super::EstimatedJoint;
-use super::decisions::decision_text;
-use super::doubt::doubted;
-use super::facts::Place;
 use crate::delay::{Decision, InputStep, Verdict};
 use crate::experiment::{Joint, Trial};
 use crate::wording::{number, samples_text, unit_suffix};
@@ -28,12 +24,6 @@ pub(crate) fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> St
         return format!("{step}: delay {seconds:.3} s ({})", samples_text(samples));
     };
     format!("{step}: rejected, {}", condition.id())
-}
-
-/// A row per step.
-pub(crate) fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
-    let rows = joints.iter().flat_map(|joint| doubted(*joint));
-    format!("{}\n", decision_text(Place::Terminal, None, rows))
 }
 
 #[cfg(test)]

@@ -11,11 +11,10 @@ use crate::wording::{measure, percent, rounded};
 
 /// The table of `estimate`: a row per joint, and the settings below it.
 pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> String {
-    let mut table = TextTable::new(SUMMARY_HEADER, &[1, 2, 4, 5, 6]);
+    let table = summary_table(joints);
     let mut kinds = String::new();
     for joint in joints {
         let (name, summary) = (&joint.joint.name, JointSummary::of(*joint));
-        table.row(summary_cells(name, &summary));
         let sentences = joint.kind_sentences(summary.headline.kinds()).into_iter();
         kinds.extend(sentences.map(|sentence| format!("{name}: {sentence}\n")));
         kinds.extend(summary.reviewed.map(|count| format!("{name}: {}\n", count.sentence())));
@@ -155,6 +154,13 @@ pub(super) fn tracking_line(joint: &EstimatedJoint<'_>) -> Option<String> {
 /// What the cells of [`summary_cells`] are.
 pub(crate) const SUMMARY_HEADER: [&str; 7] =
     ["joint", "steps", "accepted", "rejected", "delay min", "median", "max"];
+
+/// A row per joint, for people.
+pub(crate) fn summary_table(joints: &[EstimatedJoint<'_>]) -> TextTable {
+    let row =
+        |joint: &EstimatedJoint<'_>| summary_cells(&joint.joint.name, &JointSummary::of(*joint));
+    TextTable::of(SUMMARY_HEADER, &[1, 2, 4, 5, 6], joints.iter().map(row))
+}
 
 /// A joint in one row, for people.
 pub(crate) fn summary_cells(name: &str, summary: &JointSummary) -> [String; 7] {

@@ -24,7 +24,7 @@ impl TextTable {
     }
 
     /// A table with a row for each of `rows`.
-    pub(super) fn of<const N: usize>(
+    pub(crate) fn of<const N: usize>(
         header: [&str; N],
         numbers: &[usize],
         rows: impl IntoIterator<Item = [String; N]>,

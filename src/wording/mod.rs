@@ -29,7 +29,7 @@ pub(crate) use number::{
     bracketed, measure, range_text, rounded, samples_text, to_place, unit_suffix, with_error,
     with_unit,
 };
-pub(crate) use parameter::{known_value, parameter_units, parameter_value, remark};
+pub(crate) use parameter::{parameter_units, parameter_value};
 pub(crate) use probability::{p_cell, p_text, percent};
 pub(crate) use prose::{Margins, capitalized, counted, hanging, lines, listed, wrapped};
 pub(crate) use region::{

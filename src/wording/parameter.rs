@@ -7,7 +7,7 @@ use crate::fit::{Parameter, Status};
 use crate::model::{Component, JointModel};
 
 /// What is remarkable about how a parameter was found; nothing where it was simply fitted.
-pub(crate) fn remark(status: Status) -> Option<&'static str> {
+fn remark(status: Status) -> Option<&'static str> {
     match status {
         Status::Fitted => None,
         Status::Fixed => Some("fixed"),
@@ -23,14 +23,9 @@ pub(crate) fn parameter_value(parameter: &Parameter, unit: &str) -> String {
     if is_unlimited(*value) {
         return "none".to_owned();
     }
-    let known = known_value(*value, *std_error);
+    let known = std_error.map_or_else(|| number(*value), |error| with_error(*value, error));
     let remark = remark(*status).map_or_else(String::new, |remark| format!(" ({remark})"));
     format!("{}{remark}", format!("{known} {unit}").trim_end())
-}
-
-/// `0.612 ± 0.021`; to five digits where there is no standard error.
-pub(crate) fn known_value(value: f64, std_error: Option<f64>) -> String {
-    std_error.map_or_else(|| number(value), |error| with_error(value, error))
 }
 
 /// Units of a model's parameters, in the order of [`JointModel::values`].

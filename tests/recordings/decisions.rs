@@ -113,7 +113,7 @@ fn a_delay_between_samples_is_recorded_as_finely_as_it_was_found() {
             for (decision, (_, text)) in decisions().zip(texts) {
                 let shown = decision.fine.map(|fine| number(fine.low)).unwrap_or_default();
                 assert!(text.contains(&format!("| interval of δ | {shown} … ")), "{text}");
-                assert!(text.contains("| response behind the delay | bend"), "{text}");
+                assert!(text.contains("| response behind the delay | after the delay"), "{text}");
             }
         }
     }

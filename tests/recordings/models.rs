@@ -43,7 +43,7 @@ fn figures_of_a_model_are_those_of_its_comparison() {
         );
         let page = back.cell(&format!("/{}/model_page", joint.name), "TextDocument:text");
         let page = page.as_string::<i32>().value(0).to_owned();
-        assert!(page.contains("simulations, free run"), "{page}");
+        assert!(page.contains("errors, free run"), "{page}");
         // What is drawn: a mark per part, and a curve in each of three plots.
         let drawn =
             |part: &str| back.cell(&format!("/{}/{part}", joint.name), "LineStrips2D:strips").len();

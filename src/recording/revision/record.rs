@@ -2,8 +2,6 @@
 
 use std::ops::RangeInclusive;
 
-use crate::diagnosis::Comparison;
-use crate::diagnosis::failure::WorstSegment;
 use crate::figure::Role;
 use crate::recording::canvas::SHEET;
 use crate::recording::error::RecordError;
@@ -59,19 +57,4 @@ fn marked(compared: &ComparedJoint<'_>, timeline: &Timeline<'_>) -> Marked {
         (clauses.join(" and "), ends(where_it_fails(comparison)))
     });
     Marked { unfitted: ends(validation(comparison)), fails }
-}
-
-/// The worst segments, the first of all first, with their ends in seconds of the plots, which go
-/// through all trials.
-pub(super) fn worst_spans<'c>(
-    layout: &JointLayout<'_>,
-    comparison: &'c Comparison,
-) -> Vec<(&'c WorstSegment, [f64; 2])> {
-    let worst = comparison.failure.iter().flat_map(|failure| &failure.worst_segments);
-    let of_plots = |worst: &'c WorstSegment| {
-        let trial = layout.trial_of(&worst.trial)?;
-        let shift = trial.seconds(1) - trial.trial.time_s(1);
-        Some((worst, [worst.start_s, worst.end_s].map(|time_s| time_s + shift)))
-    };
-    worst.filter_map(of_plots).collect()
 }

@@ -16,7 +16,7 @@ use crate::recording::layout::TrialStarts;
 use crate::recording::markdown::plain;
 use crate::recording::origin::made_from;
 use crate::recording::paths::{self, at, joint_root};
-use crate::report::{ReportedSweep, level_text, settings_rows, sweep_sentences};
+use crate::report::{ReportedSweep, level_text, settings_table, sweep_sentences};
 use crate::wording::number;
 
 /// Everything that a recording of a sweep holds.
@@ -111,10 +111,7 @@ fn page(sweep: &SweepRecording<'_>) -> Result<String, std::fmt::Error> {
     )?;
     for base in sweep.grid.bases() {
         writeln!(page, "### {}, where nothing else was tried\n", base.settings.method)?;
-        writeln!(page, "| setting | value |\n|---|---|")?;
-        for (name, value) in settings_rows(&base.settings) {
-            writeln!(page, "| {name} | {value} |")?;
-        }
+        writeln!(page, "{}", settings_table(&base.settings).markdown(plain))?;
     }
     made_from(&mut page, sweep.sources, sweep.reading)?;
     Ok(page)

@@ -19,11 +19,6 @@ impl Finding<'_> {
         ]
     }
 
-    /// The effects that were found to be of no consequence.
-    pub(crate) fn refinements(&self) -> Option<String> {
-        self.consequence().refinements()
-    }
-
     /// The effects that were added, with what could stand in the place of each, and what they explain:
     /// of many those that carry most.
     fn found(&self) -> String {

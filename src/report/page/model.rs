@@ -6,17 +6,16 @@ use super::{model_figures, simulated};
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::effect::Stage;
 use crate::explain::{Candidate, Revision, Verdict};
-use crate::fit::{Parameter, Split, Termination};
+use crate::fit::{Split, Termination};
 use crate::model::Component;
 use crate::report::compare::errors_note;
 use crate::report::equation::filled_in;
 use crate::report::finding::ranking_table;
 use crate::report::ladder::ladder_table;
-use crate::report::text_table::TextTable;
-use crate::report::{ComparedJoint, ImprovedJoint, Topic, delay_of_steps};
+use crate::report::{ComparedJoint, ImprovedJoint, Topic, delay_of_steps, parameter_table};
 use crate::wording::{
-    capitalized, correlation_sentences, effect_ids, failure_sentences, known_value, listed,
-    measure, parameter_units, parameter_value, remark,
+    capitalized, correlation_sentences, effect_ids, failure_sentences, listed, measure,
+    parameter_units, parameter_value,
 };
 
 /// All that is said of the model of a joint.
@@ -35,7 +34,7 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
     );
     blocks.extend(conclusion.commands.into_iter().map(Block::Code));
     blocks.push(Block::Code(equations(compared)));
-    blocks.push(Block::Table(parameters(compared)));
+    blocks.push(Block::Table(parameter_table(compared.joint, &compared.comparison.fit)));
     blocks.push(Block::text(match compared.comparison.termination {
         Termination::NothingToFit => {
             "The model as it is in its file; nothing was fitted.".to_owned()
@@ -159,22 +158,6 @@ fn law(component: &Component) -> String {
         Stage::Output => "on the output",
     };
     format!("    {}, {acts}: {}", spec.id, filled_in(component))
-}
-
-/// A row per parameter.
-fn parameters(compared: &ComparedJoint<'_>) -> TextTable {
-    let fit = &compared.comparison.fit;
-    let units = parameter_units(compared.joint, &fit.model);
-    let header = ["parameter", "value ± standard error", "unit", "remark"];
-    let has_law = delay_of_steps(compared.joint, &fit.model).is_some();
-    let row = |(parameter, unit): (&Parameter, String)| {
-        let value = known_value(parameter.value, parameter.std_error);
-        let constant = Some("constant of its law").filter(|_| has_law && parameter.name == "delay");
-        let remarks: Vec<_> = constant.into_iter().chain(remark(parameter.status)).collect();
-        let remark = remarks.join(", ");
-        [parameter.name.clone(), value, unit, remark]
-    };
-    TextTable::of(header, &[1], fit.parameters.iter().zip(units).map(row))
 }
 
 /// The ladder of errors; without several revisions, the error alone.

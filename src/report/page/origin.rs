@@ -4,7 +4,7 @@ use super::document::{Attachment, Block};
 use super::report::{RecordingFile, Report};
 use crate::experiment::Source;
 use crate::report::chosen_line;
-use crate::report::settings::settings_rows;
+use crate::report::settings::settings_table;
 use crate::report::text_table::TextTable;
 
 pub(super) fn blocks(report: &Report<'_>) -> Vec<Block> {
@@ -20,9 +20,7 @@ pub(super) fn blocks(report: &Report<'_>) -> Vec<Block> {
     }
     blocks.extend(report.recording.iter().flat_map(recording));
     blocks.push(Block::part("Settings"));
-    let settings = settings_rows(report.settings).into_iter();
-    let settings = settings.map(|(name, value)| [name.to_owned(), value]);
-    blocks.push(Block::Table(TextTable::of(["setting", "value"], &[], settings)));
+    blocks.push(Block::Table(settings_table(report.settings)));
     let chosen: Vec<String> = report.joints.iter().filter_map(chosen_line).collect();
     if !chosen.is_empty() {
         blocks.push(Block::text("Chosen from the record of"));
