@@ -57,7 +57,6 @@ pub(crate) const DECISION: &[DecisionFact] = &[
     fact("p_value", Real, Table, UNSAID, |of| of.p_value().into()),
     fact("runner_up_q", Whole, Table, UNSAID, |of| of.decision.runner_up().map(|second| second.breakpoint).into()),
     fact("runner_up_margin", Real, Table, UNSAID, |of| of.margin().into()),
-    fact("hold_s", Real, Table, ("held", "", Unit::Seconds, FIGURES), |of| of.delay_s(Some(of.decision.hold as f64)).into()),
     fact("accepted_with", Text, Table, ("accepted with", "", Unit::None, &[Report]), |of| of.remedies().into()),
     fact("near", Text, People, ("how near", "", Unit::None, &[Terminal, Verdict]), |of| of.how_near().into()),
     fact("doubt", Real, Json, UNSAID, |of| of.doubt.value().into()),
