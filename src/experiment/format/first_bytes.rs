@@ -22,15 +22,6 @@ pub(super) fn is_gzip(start: &[u8]) -> bool {
     start.starts_with(b"\x1f\x8b")
 }
 
-/// Whether these are the first bytes of a file that is packed as no log is read: by zstd, xz, bzip2, lz4
-/// or 7-Zip.
-pub(super) fn is_packed(start: &[u8]) -> bool {
-    const MARKS: [&[u8]; 4] =
-        [b"\x28\xb5\x2f\xfd", b"\xfd7zXZ\0", b"\x04\x22\x4d\x18", b"7z\xbc\xaf\x27\x1c"];
-    let is_bzip2 = start.starts_with(b"BZh") && start.get(4..10) == Some(b"1AY&SY");
-    is_bzip2 || MARKS.iter().any(|mark| start.starts_with(mark))
-}
-
 /// The bytes by which formats are distinguished.
 pub(super) fn start_of(path: &Path) -> Result<Vec<u8>, ReadError> {
     /// MATLAB 7.3 has a header of 512 bytes before its own mark.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::csv;
 use super::fence;
-use super::first_bytes::{is_gzip, is_matlab, is_packed, start_of};
+use super::first_bytes::{is_gzip, is_matlab, start_of};
 #[cfg(feature = "mat")]
 use super::mat;
 #[cfg(feature = "mcap")]
@@ -85,74 +85,54 @@ const FORMATS: [Format; 5] = [
     },
 ];
 
-/// A format that is known by its first bytes, and not read.
-struct Foreign {
-    starts: fn(&[u8]) -> bool,
-    /// What a file of it is.
-    what: &'static str,
-    remedy: &'static str,
-}
+/// Files that are not read: their first bytes, what one is, and what to do with it.
+type Foreign = (&'static [&'static [u8]], &'static str, &'static str);
 
 const FOREIGN: [Foreign; 11] = [
-    Foreign {
-        starts: |start| start.starts_with(b"RRF"),
-        what: "it is a recording of Rerun",
-        remedy: "open it with `rerun FILE`",
-    },
-    Foreign {
-        starts: |start| {
-            let start = start.trim_ascii_start().to_ascii_lowercase();
-            start.starts_with(b"<!doctype html") || start.starts_with(b"<html")
-        },
-        what: "it is a web page",
-        remedy: "open it in a browser",
-    },
-    Foreign {
-        starts: |start| start.trim_ascii_start().starts_with(b"schema = \"tauscope/model/"),
-        what: "it is a model",
-        remedy: "name it behind `--model`, and the log by itself: `tauscope compare LOG --model FILE`",
-    },
-    Foreign {
-        starts: |start| start.starts_with(b"SQLite format 3\0"),
-        what: "it is an SQLite database, as rosbag2 writes",
-        remedy: "convert it to MCAP: `ros2 bag convert -i BAG -o out.yaml`, with \
-                 `storage_id: mcap` in out.yaml",
-    },
-    Foreign {
-        starts: |start| start.starts_with(b"#ROSBAG V"),
-        what: "it is a recording of ROS 1",
-        remedy: "convert it to MCAP: `mcap convert in.bag out.mcap`",
-    },
-    Foreign {
-        starts: |start| start.starts_with(b"\xd0\xcf\x11\xe0"),
-        what: "it is a file of an old spreadsheet program",
-        remedy: "save it as .xlsx, or as CSV",
-    },
-    Foreign {
-        starts: |start| start.starts_with(b"ARROW1") || start.starts_with(b"FEA1"),
-        what: "it is a Feather file of Arrow",
-        remedy: "write it as Parquet: `pandas.read_feather(IN).to_parquet(OUT)`",
-    },
-    Foreign {
-        starts: |start| start.starts_with(b"TDSm"),
-        what: "it is a TDMS file of LabVIEW",
-        remedy: "export it as CSV, or convert it with npTDMS",
-    },
-    Foreign {
-        starts: |start| start.starts_with(b"MDF     "),
-        what: "it is a measurement data file (MDF)",
-        remedy: "export it as CSV, Parquet or .mat, with its own tool or asammdf",
-    },
-    Foreign {
-        starts: |start| start.starts_with(b"ULog\x01\x12\x35"),
-        what: "it is a ULog file of PX4",
-        remedy: "convert it to CSV with `ulog2csv`",
-    },
-    Foreign {
-        starts: is_packed,
-        what: "it is packed by zstd, xz, bzip2, lz4 or 7-Zip",
-        remedy: "unpack it first; of packed files those of gzip are read, and chunks of MCAP",
-    },
+    (&[b"RRF"], "it is a recording of Rerun", "open it with `rerun FILE`"),
+    (
+        &[b"<!doctype html", b"<!DOCTYPE html", b"<!DOCTYPE HTML", b"<html", b"<HTML"],
+        "it is a web page",
+        "open it in a browser",
+    ),
+    (
+        &[b"schema = \"tauscope/model/"],
+        "it is a model",
+        "name it behind `--model`, and the log by itself: `tauscope compare LOG --model FILE`",
+    ),
+    (
+        &[b"SQLite format 3\0"],
+        "it is an SQLite database, as rosbag2 writes",
+        "convert it to MCAP: `ros2 bag convert -i BAG -o out.yaml`, with \
+         `storage_id: mcap` in out.yaml",
+    ),
+    (
+        &[b"#ROSBAG V"],
+        "it is a recording of ROS 1",
+        "convert it to MCAP: `mcap convert in.bag out.mcap`",
+    ),
+    (
+        &[b"\xd0\xcf\x11\xe0"],
+        "it is a file of an old spreadsheet program",
+        "save it as .xlsx, or as CSV",
+    ),
+    (
+        &[b"ARROW1", b"FEA1"],
+        "it is a Feather file of Arrow",
+        "write it as Parquet: `pandas.read_feather(IN).to_parquet(OUT)`",
+    ),
+    (&[b"TDSm"], "it is a TDMS file of LabVIEW", "export it as CSV, or convert it with npTDMS"),
+    (
+        &[b"MDF     "],
+        "it is a measurement data file (MDF)",
+        "export it as CSV, Parquet or .mat, with its own tool or asammdf",
+    ),
+    (&[b"ULog\x01\x12\x35"], "it is a ULog file of PX4", "convert it to CSV with `ulog2csv`"),
+    (
+        &[b"\x28\xb5\x2f\xfd", b"\xfd7zXZ\0", b"BZh", b"\x04\x22\x4d\x18", b"7z\xbc\xaf\x27\x1c"],
+        "it is packed by zstd, xz, bzip2, lz4 or 7-Zip",
+        "unpack it first; of packed files those of gzip are read, and chunks of MCAP",
+    ),
 ];
 
 /// What was `opened` as a workbook. That is a ZIP archive, as others are that hold logs.
@@ -193,8 +173,8 @@ fn open_any(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     if start.is_empty() {
         return Err(ReadError::empty());
     }
-    if let Some(foreign) = foreign(&start) {
-        return Err(ReadError::format("a log", foreign.what, foreign.remedy));
+    if let Some((_, what, remedy)) = foreign(&start) {
+        return Err(ReadError::format("a log", what, remedy));
     }
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let named = FORMATS.iter().find(|format| format.ends(&name));
@@ -214,7 +194,8 @@ fn open_any(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
 
 /// The format of a file that begins like this, where it is one that is not read.
 fn foreign(start: &[u8]) -> Option<&'static Foreign> {
-    FOREIGN.iter().find(|foreign| (foreign.starts)(start))
+    let start = start.trim_ascii_start();
+    FOREIGN.iter().find(|(marks, ..)| marks.iter().any(|mark| start.starts_with(mark)))
 }
 
 /// The bytes that end a line of a log that begins like this, or will be called so; none where it is no text.
