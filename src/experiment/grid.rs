@@ -5,7 +5,7 @@ use std::ops::Range;
 use serde::Serialize;
 
 use super::clock::{Fault, filled_s};
-use crate::numerics::median;
+use crate::numerics::{as_written, median};
 use crate::units::{SamplePeriod, floor_to_index};
 
 /// What may be done to a log that is not uniform or not complete.
@@ -25,6 +25,9 @@ pub struct Repair {
 /// Largest difference of a time step from the median, as a part of it, that still
 /// counts as uniform.
 const UNIFORMITY: f64 = 0.01;
+
+/// Digits of a period: 0.01 s out of times that are binary sums.
+const DIGITS: usize = 9;
 
 /// Without a stated limit, resampling does not bridge gaps longer than this many
 /// periods: a line drawn over a pause would look like a measurement.
@@ -58,17 +61,11 @@ pub(super) struct Grid {
 pub(super) struct Part {
     /// The rows, where they are not simply those of the trial.
     rows: Option<Vec<usize>>,
-    placement: Placement,
+    /// Where each lies: in samples of a grid that begins at so many seconds, else in seconds.
+    at: Vec<f64>,
+    on_grid_from_s: Option<f64>,
     /// Gaps up to so many seconds are filled, longer ones cut the part.
     longest_gap_s: f64,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-enum Placement {
-    /// Each row has a place on a grid that begins at so many seconds.
-    Places { start_s: f64, places: Vec<usize> },
-    /// The grid lies anew over the rows' times.
-    Times(Vec<f64>),
 }
 
 /// The signals of one joint in one trial, a value per row, NaN where missing.
@@ -108,15 +105,17 @@ impl Grid {
         let start_s = times.first().copied().unwrap_or_default();
         let span = times.last().copied().unwrap_or_default() - start_s;
         let period = span / places.last().copied().unwrap_or(1) as f64;
-        let period = SamplePeriod::from_seconds(tidy(period)).ok_or(Fault::SingleRow)?;
+        let period =
+            SamplePeriod::from_seconds(as_written(period, DIGITS)).ok_or(Fault::SingleRow)?;
         let longest_gap_s = repair.longest_gap_s(period.seconds());
-        Self::of_parts(period, vec![Part::at_places(start_s, places, longest_gap_s)])
+        Self::of_parts(period, vec![Part::at_places(start_s, &places, longest_gap_s)])
     }
 
     /// A grid on which row follows row, where the log has no times.
     pub(super) fn of_rows(rows: usize, period: SamplePeriod, repair: Repair) -> Self {
         let longest_gap_s = repair.longest_gap_s(period.seconds());
-        let part = Part::at_places(0.0, (0..rows).collect(), longest_gap_s);
+        let places: Vec<usize> = (0..rows).collect();
+        let part = Part::at_places(0.0, &places, longest_gap_s);
         Self { period, parts: vec![part] }
     }
 
@@ -152,13 +151,14 @@ impl Grid {
 
 impl Part {
     /// Rows in these `places` of a grid that begins at `start_s`.
-    pub(super) fn at_places(start_s: f64, places: Vec<usize>, longest_gap_s: f64) -> Self {
-        Self { rows: None, placement: Placement::Places { start_s, places }, longest_gap_s }
+    pub(super) fn at_places(start_s: f64, places: &[usize], longest_gap_s: f64) -> Self {
+        let at = places.iter().map(|place| *place as f64).collect();
+        Self { rows: None, at, on_grid_from_s: Some(start_s), longest_gap_s }
     }
 
     /// Rows at these times, which increase, under a grid that lies anew over them.
     pub(super) fn resampled(times: Vec<f64>, longest_gap_s: f64) -> Self {
-        Self { rows: None, placement: Placement::Times(times), longest_gap_s }
+        Self { rows: None, at: times, on_grid_from_s: None, longest_gap_s }
     }
 
     /// This part, which consists of these rows of the trial.
@@ -166,65 +166,104 @@ impl Part {
         Self { rows: Some(rows), ..self }
     }
 
+    /// The row of the trial with this index among its own.
+    fn row(&self, index: usize) -> usize {
+        let row = self.rows.as_ref().map(|rows| rows.get(index));
+        row.map_or(index, |row| row.copied().unwrap_or(usize::MAX))
+    }
+
+    fn at(&self, index: usize) -> f64 {
+        self.at.get(index).copied().unwrap_or(f64::NAN)
+    }
+
+    /// Seconds of what places are counted in, of a grid of this period.
+    fn unit_s(&self, period: f64) -> f64 {
+        if self.on_grid_from_s.is_some() { period } else { 1.0 }
+    }
+
     /// The time between two rows, seconds.
     fn apart_s(&self, from: usize, to: usize, period: f64) -> f64 {
-        let apart = match &self.placement {
-            Placement::Places { places, .. } => {
-                let places = places.get(from).zip(places.get(to));
-                places.map(|(from, to)| (to - from) as f64 * period)
-            }
-            Placement::Times(times) => {
-                times.get(from).zip(times.get(to)).map(|(from, to)| to - from)
-            }
-        };
-        apart.unwrap_or(f64::NAN)
+        (self.at(to) - self.at(from)) * self.unit_s(period)
     }
 
     /// Whether the time between two rows is not a gap that cuts, rounding left aside. Rows in neighbouring
     /// places are joined however little may be filled.
     fn joins(&self, from: usize, to: usize, period: f64) -> bool {
-        let least = if matches!(self.placement, Placement::Places { .. }) { period } else { 0.0 };
-        self.apart_s(from, to, period) <= self.longest_gap_s.max(least) * (1.0 + 1e-9)
+        self.apart_s(from, to, period) <= self.longest_gap_s.max(period) * (1.0 + 1e-9)
     }
 
     /// Samples that it may have.
     fn length(&self, period: f64) -> f64 {
-        let rows = match &self.placement {
-            Placement::Places { places, .. } => places.len(),
-            Placement::Times(times) => times.len(),
-        };
         let to_next = |row: usize| {
             let is_joined = self.joins(row - 1, row, period);
             if is_joined { self.apart_s(row - 1, row, period) / period } else { 1.0 }
         };
-        1.0 + (1..rows).map(to_next).sum::<f64>()
+        1.0 + (1..self.at.len()).map(to_next).sum::<f64>()
     }
 
-    fn pieces(&self, all: &Signals, period: f64) -> Vec<Piece> {
-        let own = self.rows.as_ref().map(|rows| all.of_rows(rows));
-        let signals = own.as_ref().unwrap_or(all);
-        let measured: Vec<usize> =
-            (0..signals.output.len()).filter(|row| !signals.output[*row].is_nan()).collect();
-        let mut pieces = Vec::new();
-        for rows in measured.chunk_by(|from, to| self.joins(*from, *to, period)) {
-            let (first, last) = (rows[0], rows[rows.len() - 1]);
-            match &self.placement {
-                Placement::Places { start_s, places } => {
-                    let Some(places) = places.get(first..=last) else { continue };
-                    let start_s = start_s + places[0] as f64 * period;
-                    pieces.push(on_grid(signals, first, start_s, places));
+    fn pieces(&self, signals: &Signals, period: f64) -> Vec<Piece> {
+        let is_measured =
+            |index: &usize| signals.output.get(self.row(*index)).is_some_and(|y| !y.is_nan());
+        let measured: Vec<usize> = (0..self.at.len()).filter(is_measured).collect();
+        let runs = measured.chunk_by(|from, to| self.joins(*from, *to, period));
+        // Of one row alone it is not known to what time its grid belongs.
+        let runs = runs.filter(|run| self.on_grid_from_s.is_some() || run.len() > 1);
+        runs.map(|run| self.piece(signals, run, period)).collect()
+    }
+
+    /// One piece: `rows` are those with an output, no long gap between them. On the grid the output lies on the
+    /// lines between them, and the input is held.
+    fn piece(&self, signals: &Signals, rows: &[usize], period: f64) -> Piece {
+        /// Part of a period by which a row may come late and still count as on time.
+        const ON_TIME: f64 = 1e-6;
+        let (unit_s, first, last) = (self.unit_s(period), rows[0], rows[rows.len() - 1]);
+        let (step, start) = (period / unit_s, self.at(first));
+        let count = floor_to_index((self.at(last) - start) / step + ON_TIME) + 1;
+        let value =
+            |values: &[f64], index: usize| values.get(self.row(index)).copied().unwrap_or(f64::NAN);
+        let mut piece = Piece {
+            start_s: self.on_grid_from_s.unwrap_or_default() + start * unit_s,
+            first_row: self.row(first),
+            signals: signals.map(|_| Vec::with_capacity(count)),
+            filled: Vec::new(),
+        };
+        let (mut row, mut pair) = (first, 0);
+        for now in (0..count).map(|k| start + k as f64 * step) {
+            while row < last && self.at(row + 1) <= now + ON_TIME * step {
+                row += 1;
+            }
+            while pair + 2 < rows.len() && self.at(rows[pair + 1]) <= now {
+                pair += 1;
+            }
+            let (from, to) = (rows[pair], rows[(pair + 1).min(rows.len() - 1)]);
+            let between = |values: &[f64]| {
+                let (start, end) = (value(values, from), value(values, to));
+                let part = (now - self.at(from)) / (self.at(to) - self.at(from));
+                match part {
+                    1.0.. => end,
+                    0.0.. => start + part * (end - start),
+                    _ => start,
                 }
-                Placement::Times(times) if rows.len() > 1 => {
-                    pieces.push(resampled_piece(signals, times, rows, period));
-                }
-                Placement::Times(_) => {}
+            };
+            let is_at_a_row = (self.at(row) - now).abs() <= 0.0;
+            let further = |values: &[f64]| match self.on_grid_from_s {
+                _ if is_at_a_row => value(values, row),
+                Some(_) => f64::NAN,
+                None => between(values),
+            };
+            piece.signals.input.push(value(&signals.input, row));
+            piece.signals.output.push(between(&signals.output));
+            for (target, source) in piece.signals.covariates.iter_mut().zip(&signals.covariates) {
+                target.push(further(source));
             }
         }
-        for piece in &mut pieces {
-            let in_trial = self.rows.as_ref().and_then(|rows| rows.get(piece.first_row));
-            piece.first_row = in_trial.copied().unwrap_or(piece.first_row);
+        if self.on_grid_from_s.is_some() {
+            let places =
+                rows.windows(2).map(|pair| [pair[0], pair[1]].map(|row| self.at(row) - start));
+            let between = places.map(|[from, to]| floor_to_index(from) + 1..floor_to_index(to));
+            piece.filled = between.filter(|samples| !samples.is_empty()).collect();
         }
-        pieces
+        piece
     }
 }
 
@@ -236,13 +275,6 @@ impl Signals {
             output: of(&self.output),
             covariates: self.covariates.iter().map(|signal| of(signal)).collect(),
         }
-    }
-
-    /// The values of some rows, in their order.
-    fn of_rows(&self, rows: &[usize]) -> Self {
-        self.map(|values| {
-            rows.iter().map(|&row| values.get(row).copied().unwrap_or(f64::NAN)).collect()
-        })
     }
 }
 
@@ -262,7 +294,11 @@ fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, 
         let countable = periods < MOST_PLACES;
         let lost_rows = repair.fill_s.is_some() && (uniform || pause) && countable;
         if !(lost_rows || uniform && periods < 1.5) {
-            return Err(Fault::NotUniform { row: index + 1, step, period: tidy(period) });
+            return Err(Fault::NotUniform {
+                row: index + 1,
+                step,
+                period: as_written(period, DIGITS),
+            });
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
         let periods = periods as usize;
@@ -270,25 +306,6 @@ fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, 
         places.push(place);
     }
     Ok(places)
-}
-
-/// The signals of the rows from `first` on at their `places`, gaps between them filled:
-/// output linear, input held.
-fn on_grid(signals: &Signals, first: usize, start_s: f64, places: &[usize]) -> Piece {
-    let start = places.first().copied().unwrap_or_default();
-    let length = places.last().map_or(0, |last| last + 1 - start);
-    let mut grid = signals.map(|values| {
-        let mut grid = vec![f64::NAN; length];
-        for (value, place) in values.iter().skip(first).zip(places) {
-            if let Some(slot) = grid.get_mut(place - start) {
-                *slot = *value;
-            }
-        }
-        grid
-    });
-    hold(&mut grid.input);
-    let filled = interpolate(&mut grid.output);
-    Piece { start_s, first_row: first, signals: grid, filled }
 }
 
 /// Replaces each NaN by the number before it, the first ones by the first number.
@@ -301,71 +318,6 @@ pub(super) fn hold(values: &mut [f64]) {
         }
         last = *value;
     }
-}
-
-/// Replaces each NaN between numbers by the line through its neighbours; what was replaced.
-fn interpolate(values: &mut [f64]) -> Vec<Range<usize>> {
-    let mut filled = Vec::new();
-    let mut last: Option<(usize, f64)> = None;
-    for index in 0..values.len() {
-        let Some(&value) = values.get(index).filter(|value| !value.is_nan()) else {
-            continue;
-        };
-        if let Some((from, start)) = last.filter(|(from, _)| index - from > 1) {
-            let slope = (value - start) / (index - from) as f64;
-            for (offset, slot) in values[from..index].iter_mut().enumerate() {
-                *slot = start + slope * offset as f64;
-            }
-            filled.push(from + 1..index);
-        }
-        last = Some((index, value));
-    }
-    filled
-}
-
-/// One piece: `rows` are those with an output, no long gap between them.
-fn resampled_piece(signals: &Signals, times: &[f64], rows: &[usize], period: f64) -> Piece {
-    /// Part of a period by which a row may come late and still count as on time.
-    const ON_TIME: f64 = 1e-6;
-    let time = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
-    let start_s = rows.first().map_or(0.0, |&row| time(row));
-    let span = rows.last().map_or(0.0, |&row| time(row)) - start_s;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "span ≥ 0")]
-    let count = (span / period + ON_TIME) as usize + 1;
-    let grid = (0..count).map(|k| start_s + k as f64 * period);
-    let late = ON_TIME * period;
-    let (mut row, mut pair) = (0, 0);
-    let mut piece =
-        Signals { covariates: vec![Vec::new(); signals.covariates.len()], ..Signals::default() };
-    for now in grid {
-        while row + 1 < times.len() && time(row + 1) <= now + late {
-            row += 1;
-        }
-        while pair + 2 < rows.len() && rows.get(pair + 1).is_some_and(|&next| time(next) <= now) {
-            pair += 1;
-        }
-        let (Some(&from), Some(&to)) = (rows.get(pair), rows.get(pair + 1)) else {
-            break;
-        };
-        let part = ((now - time(from)) / (time(to) - time(from))).clamp(0.0, 1.0);
-        let value = |values: &[f64], row: usize| values.get(row).copied().unwrap_or(f64::NAN);
-        let between = |values: &[f64]| {
-            let (start, end) = (value(values, from), value(values, to));
-            start + part * (end - start)
-        };
-        piece.input.push(value(&signals.input, row));
-        piece.output.push(between(&signals.output));
-        for (target, source) in piece.covariates.iter_mut().zip(&signals.covariates) {
-            target.push(between(source));
-        }
-    }
-    let first_row = rows.first().copied().unwrap_or_default();
-    Piece { start_s, first_row, signals: piece, filled: Vec::new() }
-}
-
-/// `seconds` to nine significant digits: 0.01 s out of times that are binary sums.
-fn tidy(seconds: f64) -> f64 {
-    format!("{seconds:.8e}").parse().unwrap_or(seconds)
 }
 
 #[cfg(test)]

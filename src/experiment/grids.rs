@@ -109,7 +109,7 @@ fn grid(clock: &Clock, times: &[f64], period: f64, repair: Repair) -> Result<Gri
     let part = |run: &Run| {
         if is_even {
             let start_s = run.start_s(times, period);
-            Part::at_places(start_s, run.places.clone(), longest_gap_s).of_rows(run.rows.clone())
+            Part::at_places(start_s, &run.places, longest_gap_s).of_rows(run.rows.clone())
         } else {
             interpolated(run, times, longest_gap_s)
         }
@@ -247,14 +247,9 @@ impl Findings<'_> {
         let worst = clocks.max_by(|(_, a), (_, b)| a.largest.0.total_cmp(&b.largest.0));
         let Some((trial, clock)) = worst else { return format!("{what} {grid}") };
         let (largest, row) = clock.largest;
-        let drift = if clock.drift > 0.5 && evenness == Evenness::Jitters {
-            format!(" and drifts by up to {:.1} periods", clock.drift)
-        } else {
-            String::new()
-        };
         format!(
             "the clock jitters by {} % of its period of {} (standard deviation), \
-             largest {} % at row {}{drift}: {what} {grid}",
+             largest {} % at row {}: {what} {grid}",
             two_digits(100.0 * clock.jitter),
             duration(clock.period),
             two_digits(100.0 * largest),

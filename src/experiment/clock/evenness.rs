@@ -33,7 +33,6 @@ pub(in crate::experiment) enum Evenness {
 pub(super) struct Deviations {
     /// Beside the slow drift, of every row of every run.
     jitter: Vec<(f64, usize)>,
-    pub(super) drift: f64,
     /// Largest change of the drift from block to block, as a part of the time between them.
     rate: f64,
 }
@@ -41,7 +40,7 @@ pub(super) struct Deviations {
 impl Deviations {
     pub(super) fn of(runs: &[Run], times: &[f64], period: f64, typical: &Typical) -> Self {
         let block = block_rows(typical, period);
-        let mut all = Self { jitter: Vec::new(), drift: 0.0, rate: 0.0 };
+        let mut all = Self { jitter: Vec::new(), rate: 0.0 };
         for run in runs {
             let start = run.start_s(times, period);
             let whole: Vec<f64> =
@@ -56,7 +55,6 @@ impl Deviations {
             }
             for (k, (deviation, &row)) in whole.iter().zip(&run.rows).enumerate() {
                 let drift = between_blocks(&blocks, block, k);
-                all.drift = all.drift.max(drift.abs());
                 all.jitter.push((deviation - drift, row));
             }
         }

@@ -17,7 +17,10 @@ pub(super) fn is_even_once_sorted(times: &[f64]) -> bool {
 }
 
 /// Runs of rows between the places where time jumps back for good.
-pub(super) fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usize>>, Fault> {
+pub(in crate::experiment) fn between_restarts(
+    times: &[f64],
+    period: f64,
+) -> Result<Vec<Vec<usize>>, Fault> {
     let at = |row: usize| times.get(row).copied();
     let mut runs = vec![Vec::new()];
     for row in 0..times.len() {

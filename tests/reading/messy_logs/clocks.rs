@@ -42,7 +42,7 @@ pub(crate) fn clocks() -> Vec<Messy> {
         messy(
             "drift.csv",
             plain(&timed(|k| at(k) + 0.03 * (at(k) / 6.0).sin() + 3e-4 * noise(k))),
-            read(0.002, "drifts"),
+            read(0.002, "the clock jitters by 2 %"),
         ),
         messy("rounded.csv", table(HEADER, &clean(), ",", |x| format!("{x:.2}")), read(0.051, "")),
         messy(

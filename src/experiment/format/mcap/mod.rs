@@ -5,32 +5,30 @@
 //! field `name` or `…names`, else by its number from 0. Messages are decoded by the
 //! definitions that the file itself holds.
 //!
-//! Each topic is a series with times of its own. The rows are the messages of the topic of the output;
+//! Each topic has times of its own. The rows are the messages of the topic of the output;
 //! what comes from other topics is held from their latest message; of a slow output there are rows meanwhile.
 //! The file is read twice: to see what there is, and for the values that are wanted, which are all that
 //! is kept.
 
-mod align;
 mod fields;
 mod message;
+mod messages;
 mod notes;
-mod runs;
-mod series;
 mod stream;
 mod topics;
 
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use mcap::records::{MessageHeader, Record};
 
-use self::series::Series;
+use self::messages::{Aligned, Messages, times_of};
 use self::stream::refused;
 use self::topics::{Clock, Place, Topics};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
+use crate::experiment::names::listed;
 use crate::experiment::table::{Column, Head, Labels, OpenTable, Rows, Table, Wanted};
 
 /// A file whose topics are known.
@@ -64,27 +62,27 @@ fn opened(path: &Path) -> Result<(BufReader<File>, u64), ReadError> {
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         let clock = self.clock(wanted);
-        let series = self.collect(clock, self.series(wanted))?;
-        let name = |topic| self.topics.name(topic);
-        let of_several = notes::clocks_differ(&series, name, clock.name());
-        let mut aligned = self.topics.align(series, wanted, &self.budget)?;
+        let mut messages = self.collect(clock, wanted)?;
+        let mut table = messages.table(wanted, &self.budget)?;
+        if table.times.is_empty() && times_of(&messages.list, wanted.clock).next().is_some() {
+            return Err(self.never_together(&messages, wanted.clock));
+        }
         let zero = self.topics.zero.get(&clock).copied().unwrap_or_default();
-        let times = format!("times are {} from {:.9} s on", clock.name(), zero as f64 * 1e-9);
-        let notes = [times].into_iter().chain(std::mem::take(&mut aligned.notes)).chain(of_several);
-        let notes = notes.collect();
-        let labels = wanted.label.and_then(|label| aligned.columns.get(&label));
-        let labels = labels.into_iter().flatten().map(f64::to_string);
+        let notes = self.notes(&messages, &table, (clock, zero), wanted);
+        let column = |header: usize| messages.column(header).map(|at| &table.columns[at]);
+        let labels = wanted.label.and_then(column).into_iter().flatten().map(f64::to_string);
         let labels = Labels::of(labels, &self.budget)?;
         let column = |index: &usize| match self.places.get(*index) {
             Some(Place::Time(other)) => {
-                let times = aligned.times.iter().filter(|_| *other == clock);
+                let times = table.times.iter().filter(|_| *other == clock);
                 times.map(|time| time.saturating_sub(zero) as f64 / 1e9).collect()
             }
-            _ => aligned.columns.remove(index).unwrap_or_default(),
+            _ => messages
+                .column(*index)
+                .map_or_else(Vec::new, |at| std::mem::take(&mut table.columns[at])),
         };
         let columns = wanted.numeric.iter().map(column).map(Column::of).collect();
-        let rows = aligned.times.len();
-        Ok(Table { notes, ..Table::counted(rows, columns, labels) })
+        Ok(Table { notes, ..Table::counted(table.times.len(), columns, labels) })
     }
 }
 
@@ -98,45 +96,65 @@ impl Unread {
         wanted.numeric.iter().find_map(clock).unwrap_or(Clock::Log)
     }
 
-    /// What is to be collected, by topics.
-    fn series(&self, wanted: &Wanted<'_>) -> BTreeMap<usize, Series> {
-        let mut series: BTreeMap<usize, Series> = BTreeMap::new();
+    /// Collects what is wanted of the messages.
+    fn collect(&self, clock: Clock, wanted: &Wanted<'_>) -> Result<Messages, ReadError> {
+        let mut messages = Messages::default();
         for index in wanted.numeric.iter().chain(&wanted.label).copied() {
             if let Some(Place::Field(topic, field)) = self.places.get(index) {
-                series.entry(*topic).or_insert_with(|| Series::of(*topic)).add(index, field);
+                messages.want(*topic, field, index);
             }
         }
-        series
+        let (file, size) = opened(&self.path)?;
+        stream::each_record(file, size, &self.budget, |record| match record {
+            Record::Message { header, data } => self.take(&header, &data, clock, &mut messages),
+            _ => Ok(()),
+        })?;
+        Ok(messages)
     }
 
-    /// Collects what is wanted of the messages.
-    fn collect(
+    fn never_together(&self, messages: &Messages, clock: usize) -> ReadError {
+        let others = messages.topics.keys().filter(|topic| **topic != clock);
+        let others: Vec<&str> = others.map(|topic| self.topics.name(*topic)).collect();
+        let (topic, others) = (self.topics.name(clock), listed(others.into_iter()));
+        refused(
+            format!("no message of {topic} comes after the first ones of {others}"),
+            "choose topics that were recorded together, and `--time log_time` where their stamps are of \
+             several clocks",
+        )
+    }
+
+    /// What the reader of the log should know.
+    fn notes(
         &self,
-        clock: Clock,
-        mut series: BTreeMap<usize, Series>,
-    ) -> Result<Vec<Series>, ReadError> {
-        let (file, size) = opened(&self.path)?;
-        let mut place = 0_u32;
-        stream::each_record(file, size, &self.budget, |record| {
-            if let Record::Message { header, data } = record {
-                self.take((&header, place), &data, clock, &mut series)?;
-                place = place.saturating_add(1);
-            }
-            Ok(())
-        })?;
-        Ok(series.into_values().collect())
+        messages: &Messages,
+        table: &Aligned,
+        (clock, zero): (Clock, i64),
+        wanted: &Wanted<'_>,
+    ) -> Vec<String> {
+        let name = |topic| self.topics.name(topic);
+        let mut notes =
+            vec![format!("times are {} from {:.9} s on", clock.name(), zero as f64 * 1e-9)];
+        notes.extend(notes::held(messages, wanted.clock, table.early, name));
+        if table.empty_runs > 0 {
+            let runs = table.empty_runs;
+            notes.push(format!(
+                "its clock starts anew, and {runs} runs without a message of each topic are left out"
+            ));
+        }
+        notes.extend(notes::clocks_differ(messages, name, clock.name()));
+        notes
     }
 
     /// Takes what is wanted of a message.
     fn take(
         &self,
-        (header, place): (&MessageHeader, u32),
+        header: &MessageHeader,
         data: &[u8],
         clock: Clock,
-        series: &mut BTreeMap<usize, Series>,
+        messages: &mut Messages,
     ) -> Result<(), ReadError> {
         let Some(channel) = self.topics.channels.get(&header.channel_id) else { return Ok(()) };
-        let Some(series) = series.get_mut(&channel.topic) else { return Ok(()) };
+        let Some(topic) = messages.topics.get_mut(&channel.topic) else { return Ok(()) };
         let name = self.topics.name(channel.topic);
         let value = channel.decoder.decode(data).map_err(|reason| {
             let (number, time) = (header.sequence, header.log_time);
@@ -154,7 +172,7 @@ impl Unread {
             ));
         };
         let lag = Clock::Log.time(header, &value).map(|recorded| recorded.saturating_sub(time));
-        series.least_lag = [series.least_lag, lag].into_iter().flatten().min();
-        series.push((time, place), &value, &self.budget)
+        topic.least_lag = [topic.least_lag, lag].into_iter().flatten().min();
+        messages.push(channel.topic, time, &value, &self.budget)
     }
 }

@@ -2,42 +2,61 @@
 
 use std::ops::RangeInclusive;
 
-use super::series::Series;
+use super::messages::{Messages, times_of};
 use crate::numerics::median;
 
-/// A line on topics whose messages are held at those of `topic`, the first rows of which are left out.
-pub(super) fn held(topic: &str, others: &[&str], left_out: usize) -> Option<String> {
-    if others.is_empty() {
-        return None;
+/// What was held at the messages of the topic `clock`, of which so many are too `early` and left out, and what
+/// is missing; `name` is that of a topic.
+pub(super) fn held<'a>(
+    messages: &Messages,
+    clock: usize,
+    early: usize,
+    name: impl Fn(usize) -> &'a str,
+) -> Vec<String> {
+    let mut notes = Vec::new();
+    let (topic, list) = (name(clock), &messages.list);
+    let others: Vec<usize> =
+        messages.topics.keys().copied().filter(|topic| *topic != clock).collect();
+    if !others.is_empty() {
+        let early = match early {
+            0 => String::new(),
+            1 => ", of which the first comes too early and is left out".to_owned(),
+            _ => format!(", of which the first {early} come too early and are left out"),
+        };
+        let are = if others.len() > 1 { "are held from their" } else { "is held from its" };
+        let others = others.iter().map(|topic| name(*topic)).collect::<Vec<_>>().join("`, `");
+        notes.push(format!("`{others}` {are} latest message at each message of `{topic}`{early}"));
     }
-    let early = match left_out {
-        0 => String::new(),
-        1 => ", of which the first comes too early and is left out".to_owned(),
-        _ => format!(", of which the first {left_out} come too early and are left out"),
-    };
-    let are = if others.len() > 1 { "are held from their" } else { "is held from its" };
-    let others = others.join("`, `");
-    Some(format!("`{others}` {are} latest message at each message of `{topic}`{early}"))
-}
-
-/// A line on messages of the topic of the rows that have none of its values.
-pub(super) fn without_values(clock: &Series, name: &str) -> Option<String> {
-    let (empty, all) = (clock.empty, clock.empty + clock.times.len());
-    (empty > 0).then(|| {
-        format!("{empty} of {all} messages of `{name}` have none of its values and are left out")
-    })
+    let empty = messages.topics.get(&clock).map_or(0, |topic| topic.empty);
+    if empty > 0 {
+        let all = empty + times_of(list, clock).count();
+        notes.push(format!(
+            "{empty} of {all} messages of `{topic}` have none of its values and are left out"
+        ));
+    }
+    let end = times_of(list, clock).last().unwrap_or_default();
+    notes.extend(others.into_iter().filter_map(|topic| missing(messages, topic, end, name(topic))));
+    notes
 }
 
 /// A line on what is missing from a topic that is held, up to the `end` of the record: messages without a
 /// value, and pauses of one that else sends at one rate.
-pub(super) fn missing(series: &Series, end: i64, name: &str) -> Option<String> {
+fn missing(messages: &Messages, topic: usize, end: i64, name: &str) -> Option<String> {
+    /// Messages to one without the values, at least (chosen): where many have none, these are the messages of
+    /// another node, which says nothing of these joints.
+    const SELDOM: usize = 10;
+    let of_topic = messages.list.iter().filter(|message| message.topic == topic);
+    let lacking = of_topic.filter(|message| message.numbers.iter().any(|n| n.is_nan())).count();
+    let times: Vec<i64> = times_of(&messages.list, topic).collect();
+    let empty = messages.topics.get(&topic).map_or(0, |topic| topic.empty);
+    let lacking = lacking + if SELDOM * empty < times.len() { empty } else { 0 };
     let mut said = Vec::new();
-    match pauses(&series.times, end) {
+    match pauses(&times, end) {
         (0, _) => {}
         (1, longest) => said.push(format!("pauses once, for up to {longest:.2} s")),
         (times, longest) => said.push(format!("pauses {times} times, for up to {longest:.2} s")),
     }
-    match series.lacking() {
+    match lacking {
         0 => {}
         1 => said.push("has 1 message without a value".to_owned()),
         count => said.push(format!("has {count} messages without a value")),
@@ -71,13 +90,13 @@ fn pauses(times: &[i64], end: i64) -> (usize, f64) {
 /// A line on topics whose messages are timed by clocks that differ, as those of two computers do: by the
 /// time from the stamp of a message to its recording, at least.
 pub(super) fn clocks_differ<'a>(
-    series: &[Series],
+    messages: &Messages,
     name: impl Fn(usize) -> &'a str,
     clock: &str,
 ) -> Option<String> {
     /// Nanoseconds that messages may take to their recording.
     const USUAL: i64 = 50_000_000;
-    let lags = || series.iter().filter_map(|series| Some((series.least_lag?, series.topic)));
+    let lags = || messages.topics.iter().filter_map(|(topic, of)| Some((of.least_lag?, *topic)));
     let ((least, of_least), (most, of_most)) = lags().min().zip(lags().max())?;
     let apart = most.saturating_sub(least);
     (apart > USUAL).then(|| {
@@ -94,13 +113,15 @@ pub(super) fn clocks_differ<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::format::mcap::messages::Message;
 
     fn note(seconds: impl Iterator<Item = f64>, end_s: f64, without: usize) -> Option<String> {
         let nanoseconds = |seconds: f64| format!("{:.0}", seconds * 1e9).parse::<i64>().unwrap();
-        let times: Vec<i64> = seconds.map(nanoseconds).collect();
-        let mut series = Series::of(0);
-        (series.times, series.empty) = (times, without);
-        missing(&series, nanoseconds(end_s), "/valve")
+        let mut messages = Messages::default();
+        messages.want(0, "data", 1);
+        messages.list = seconds.map(|s| Message::of(0, nanoseconds(s), vec![1.0])).collect();
+        messages.topics.get_mut(&0).unwrap().empty = without;
+        missing(&messages, 0, nanoseconds(end_s), "/valve")
     }
 
     #[test]

@@ -1,0 +1,393 @@
+//! The messages of the topics that are wanted, and their table: a row at each message of one topic, at
+//! which the others are held.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use super::fields::{each_number, first_field};
+use super::message::Value;
+use crate::experiment::clock::between_restarts;
+use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
+use crate::experiment::table::Wanted;
+use crate::numerics::median;
+
+/// Memory of a number: itself, a copy, and what its vector has to spare.
+const NUMBER_SIZE: usize = 3 * size_of::<f64>();
+
+/// Time in nanoseconds by which a step may come late, and by which rows are apart then.
+const LATE: i64 = 10_000_000;
+
+/// Rows for each message, at most.
+const MOST_ROWS: i64 = 10;
+
+/// Usual intervals beyond which nothing is known between two messages, as in tables.
+const LONGEST: f64 = 3.0;
+
+/// Usual intervals by which messages must be behind the rows, more than they usually are, to belong to the
+/// next run of the clock.
+const BACK: f64 = 5.0;
+
+/// What is wanted of a topic.
+#[derive(Debug, Default)]
+pub(super) struct Topic {
+    /// The columns of its numbers, and which of them bears which name.
+    pub(super) columns: Vec<usize>,
+    by_name: HashMap<String, usize>,
+    /// The fields of the messages in which these lie.
+    fields: HashSet<String>,
+    /// Messages that have none of the numbers.
+    pub(super) empty: usize,
+    /// How long before their recording the messages are timed, at least, nanoseconds.
+    pub(super) least_lag: Option<i64>,
+}
+
+/// What is wanted of a message.
+#[derive(Debug)]
+pub(super) struct Message {
+    /// How often the clock has started anew before it.
+    run: usize,
+    /// Nanoseconds.
+    pub(super) time: i64,
+    pub(super) topic: usize,
+    /// NaN where it does not have one.
+    pub(super) numbers: Vec<f64>,
+}
+
+/// The messages, in the order of the file until their table is made.
+#[derive(Debug, Default)]
+pub(super) struct Messages {
+    pub(super) topics: BTreeMap<usize, Topic>,
+    pub(super) list: Vec<Message>,
+    /// The header of each column.
+    headers: Vec<usize>,
+}
+
+/// Columns with a value for each row.
+#[derive(Debug, Default)]
+pub(super) struct Aligned {
+    /// Nanoseconds.
+    pub(super) times: Vec<i64>,
+    pub(super) columns: Vec<Vec<f64>>,
+    /// Messages before the first ones of all other topics.
+    pub(super) early: usize,
+    /// Runs of the clock in which the others say nothing.
+    pub(super) empty_runs: usize,
+}
+
+impl Message {
+    /// A message of the first run.
+    pub(super) fn of(topic: usize, time: i64, numbers: Vec<f64>) -> Self {
+        Self { run: 0, time, topic, numbers }
+    }
+}
+
+impl Messages {
+    /// The number of this name in the messages of `topic` is wanted, for the header with this index.
+    pub(super) fn want(&mut self, topic: usize, name: &str, header: usize) {
+        let topic = self.topics.entry(topic).or_default();
+        topic.fields.insert(first_field(name).to_owned());
+        topic.by_name.entry(name.to_owned()).or_insert_with(|| {
+            topic.columns.push(self.headers.len());
+            self.headers.push(header);
+            topic.columns.len() - 1
+        });
+    }
+
+    /// The column for the header with this index.
+    pub(super) fn column(&self, header: usize) -> Option<usize> {
+        self.headers.iter().position(|of| *of == header)
+    }
+
+    /// Takes the numbers of a message, if it has any of those that are wanted.
+    pub(super) fn push(
+        &mut self,
+        topic: usize,
+        time: i64,
+        message: &Value<'_>,
+        budget: &Budget,
+    ) -> Result<(), ReadError> {
+        let Some(of) = self.topics.get_mut(&topic) else { return Ok(()) };
+        let mut numbers = vec![None; of.columns.len()];
+        each_number(
+            message,
+            |field| of.fields.contains(field),
+            |name, number| {
+                let column = of.by_name.get(name).and_then(|column| numbers.get_mut(*column));
+                column.map(|column| column.get_or_insert(number));
+                Ok(())
+            },
+        )?;
+        if numbers.iter().all(Option::is_none) {
+            of.empty += 1;
+            return Ok(());
+        }
+        budget.take_values(1, size_of::<Message>() + numbers.len() * NUMBER_SIZE)?;
+        let numbers = numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect();
+        self.list.push(Message::of(topic, time, numbers));
+        Ok(())
+    }
+
+    /// All columns at the messages of the clock's topic, and at times between these where it is slow: each
+    /// other topic is held from its latest message, of one time the one that the file has first. What comes
+    /// before the first message of all others is left out; what begins later is NaN up to there, so that a
+    /// joint whose command comes late takes no rows from those beside it.
+    pub(super) fn table(
+        &mut self,
+        wanted: &Wanted<'_>,
+        budget: &Budget,
+    ) -> Result<Aligned, ReadError> {
+        self.number_runs(wanted.clock);
+        self.list.sort_by_key(|message| (message.run, message.time));
+        let columns = vec![Vec::new(); self.headers.len()];
+        let mut table = Aligned { columns, ..Aligned::default() };
+        for run in self.list.chunk_by(|a, b| a.run == b.run) {
+            let rows = table.times.len();
+            self.add_run(run, &mut table, wanted, budget)?;
+            table.empty_runs += usize::from(table.times.len() == rows);
+        }
+        Ok(table)
+    }
+
+    /// Adds the rows of a run in which the clock does not start anew.
+    fn add_run(
+        &self,
+        run: &[Message],
+        table: &mut Aligned,
+        wanted: &Wanted<'_>,
+        budget: &Budget,
+    ) -> Result<(), ReadError> {
+        let times: Vec<i64> = times_of(run, wanted.clock).collect();
+        let parts = rows_per_message(&times, run, wanted.clock);
+        let usual = interval(&times).unwrap_or_default();
+        let most = times.len().saturating_mul(usize::try_from(parts).unwrap_or(1));
+        budget.take_values(most.saturating_mul(self.headers.len()), NUMBER_SIZE)?;
+        let label = wanted.label.and_then(|label| self.column(label));
+        let own = self.topics.get(&wanted.clock).map_or(&[][..], |topic| &topic.columns);
+        let held: Vec<usize> = (0..self.headers.len()).filter(|at| !own.contains(at)).collect();
+        let mut latest = vec![f64::NAN; self.headers.len()];
+        let mut add = |time: i64, latest: &[f64], is_between: bool| {
+            // Between two messages, what is missing is filled where it is an output.
+            if !held.is_empty() && held.iter().all(|column| latest[*column].is_nan()) {
+                table.early += usize::from(!is_between);
+                return;
+            }
+            table.times.push(time);
+            for (at, (column, value)) in table.columns.iter_mut().zip(latest).enumerate() {
+                let is_unknown = is_between && label != Some(at) && own.contains(&at);
+                column.push(if is_unknown { f64::NAN } else { *value });
+            }
+        };
+        let (mut between, mut next) = (Vec::new(), times.iter().skip(1));
+        for message in run {
+            while let Some(time) = between.pop_if(|time| *time < message.time) {
+                add(time, &latest, true);
+            }
+            let Some(topic) = self.topics.get(&message.topic) else { continue };
+            let is_own = message.topic == wanted.clock;
+            for (column, number) in topic.columns.iter().zip(&message.numbers) {
+                if is_own || !number.is_nan() {
+                    latest[*column] = *number;
+                }
+            }
+            if is_own {
+                add(message.time, &latest, false);
+                let step = next.next().map_or(0, |next| next.saturating_sub(message.time));
+                let parts = if step as f64 <= LONGEST * usual { parts } else { 1 };
+                let time = |part: i64| message.time.saturating_add(step / parts * part);
+                between = (1..parts).rev().map(time).collect();
+            }
+        }
+        Ok(())
+    }
+
+    /// Numbers the runs of the clock, which starts anew where a simulation is reset or a computer's clock set
+    /// back. Runs that do not overlap are parts of one record in another order.
+    ///
+    /// Where another topic starts anew does not show by itself: its runs begin where those of the clock do in
+    /// the file, and with the messages before it that are behind the clock already.
+    fn number_runs(&mut self, clock: usize) {
+        let times: Vec<i64> = times_of(&self.list, clock).collect();
+        let starts = restarts(&times);
+        let (Some(usual), false) = (interval(&times), starts.is_empty()) else { return };
+        let (mut rows, mut latest, mut behind) = (0, None, Vec::new());
+        for message in &mut self.list {
+            if message.topic == clock {
+                rows += 1;
+                latest = Some(message.time);
+            }
+            message.run = starts.partition_point(|start| *start < rows);
+            behind.push(latest.map_or(0.0, |latest| latest.saturating_sub(message.time) as f64));
+        }
+        for topic in self.topics.keys().filter(|topic| **topic != clock) {
+            let own =
+                || self.list.iter().zip(&behind).filter(|(message, _)| message.topic == *topic);
+            let usually = median(&own().map(|(_, behind)| *behind).collect::<Vec<_>>());
+            let limit = usually.unwrap_or_default() + BACK * usual;
+            let mut following = starts.len();
+            for (message, behind) in self.list.iter_mut().zip(&behind).rev() {
+                if message.topic == *topic {
+                    message.run = if *behind > limit { following } else { message.run };
+                    following = message.run;
+                }
+            }
+        }
+    }
+}
+
+/// The times of the messages of a topic.
+pub(super) fn times_of(list: &[Message], topic: usize) -> impl Iterator<Item = i64> {
+    list.iter().filter(move |message| message.topic == topic).map(|message| message.time)
+}
+
+/// Where the clock starts anew, of `times` in the order of the file.
+fn restarts(times: &[i64]) -> Vec<usize> {
+    let Some(usual) = interval(times) else { return Vec::new() };
+    let since_first = |time: &i64| time.saturating_sub(times[0]) as f64;
+    let relative: Vec<f64> = times.iter().map(since_first).collect();
+    let runs = between_restarts(&relative, usual).unwrap_or_default();
+    let ends = |run: &Vec<usize>| {
+        let times = || run.iter().map(|row| times[*row]);
+        times().min().zip(times().max())
+    };
+    let mut covered: Vec<(i64, i64)> = runs.iter().filter_map(ends).collect();
+    covered.sort_unstable();
+    let overlap = covered.windows(2).any(|pair| pair[1].0 < pair[0].1);
+    let starts = runs.iter().skip(1).filter_map(|run| run.first().copied());
+    starts.filter(|_| overlap).collect()
+}
+
+/// Rows for each message of the clock at these `times`: more than one where messages are far apart and a value
+/// that is held would come later than by [`LATE`] without them.
+fn rows_per_message(times: &[i64], run: &[Message], clock: usize) -> i64 {
+    let Some(usual) = interval(times).filter(|_| comes_late(run, clock)) else { return 1 };
+    let is_enough = |parts: &i64| (parts * LATE) as f64 >= usual;
+    (1..MOST_ROWS).find(is_enough).unwrap_or(MOST_ROWS)
+}
+
+/// Whether a new value of another topic comes more than [`LATE`] before the next message of the clock.
+fn comes_late(run: &[Message], clock: usize) -> bool {
+    let (mut before, mut waits, mut is_begun) = (HashMap::new(), None, false);
+    for Message { time, topic, numbers, .. } in run {
+        if *topic == clock {
+            let is_late = waits.take().is_some_and(|sent| time - sent > LATE);
+            if std::mem::replace(&mut is_begun, true) && is_late {
+                return true;
+            }
+        } else if let Some(before) = before.insert(*topic, numbers) {
+            let is_new = before.iter().zip(numbers).any(|(old, new)| (new - old).abs() > 0.0);
+            waits = waits.or(is_new.then_some(*time));
+        }
+    }
+    false
+}
+
+/// The usual interval between `times` that follow one another.
+fn interval(times: &[i64]) -> Option<f64> {
+    let steps = times.windows(2).map(|pair| pair[1].saturating_sub(pair[0]) as f64);
+    median(&steps.filter(|step| *step > 0.0).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::MemoryLimit;
+    use crate::experiment::table::Head;
+
+    fn times(count: i64, first: i64) -> Vec<i64> {
+        (0..count).map(|k| first + 10 * k).collect()
+    }
+
+    #[test]
+    fn a_clock_that_is_set_back_starts_anew() {
+        assert_eq!(restarts(&[times(500, 0), times(300, 0)].concat()), [500]);
+        assert_eq!(restarts(&[times(500, 0), times(300, 4900)].concat()), [500]);
+    }
+
+    #[test]
+    fn messages_out_of_order_do_not_start_it_anew() {
+        // Later part first, late messages, two publishers, and any order.
+        assert!(restarts(&[times(300, 5000), times(500, 0)].concat()).is_empty());
+        let mut late = times(500, 0);
+        late[300..303].iter_mut().for_each(|time| *time -= 900);
+        assert!(restarts(&late).is_empty());
+        let two: Vec<i64> = times(500, 0).into_iter().flat_map(|time| [time, time - 200]).collect();
+        assert!(restarts(&two).is_empty());
+        let wild: Vec<i64> = (0..1000).map(|k| k * 7919 % 1000).collect();
+        assert!(restarts(&wild).is_empty());
+        assert!(restarts(&[]).is_empty());
+    }
+
+    /// The table of messages of the topics 0, which gives the rows, and 1, each with its time and its number,
+    /// in the order of the file.
+    fn table(messages: &[(usize, i64, f64)]) -> (Aligned, usize) {
+        let budget = Budget::new(MemoryLimit::of_bytes(1 << 20));
+        let mut all = Messages::default();
+        all.want(0, "a", 3);
+        all.want(1, "b", 4);
+        for (topic, time, number) in messages {
+            let name = ["a", "b"][*topic];
+            let message = Value::Message(vec![(name, Value::Number(*number))]);
+            all.push(*topic, *time, &message, &budget).unwrap();
+        }
+        let head = Head::without_lines(Vec::new());
+        let wanted = Wanted { head: &head, numeric: &[3, 4], label: None, time: None, clock: 0 };
+        (all.table(&wanted, &budget).unwrap(), all.topics[&0].empty)
+    }
+
+    #[test]
+    fn a_value_is_held_from_its_message_on() {
+        let (found, _) = table(&[
+            (1, 10, 1.0),
+            (0, 5, 0.0),
+            (0, 10, 0.1),
+            (0, 19, 0.2),
+            (1, 20, 2.0),
+            (0, 20, 0.3),
+            (1, 20, 3.0),
+            (1, 30, f64::NAN),
+            (0, 20, 0.4),
+            (0, 40, 0.5),
+        ]);
+        assert_eq!(found.columns[1], [1.0, 1.0, 2.0, 3.0, 3.0]);
+        assert_eq!(found.columns[0], [0.1, 0.2, 0.3, 0.4, 0.5]);
+        assert_eq!((found.early, found.empty_runs), (1, 0));
+    }
+
+    #[test]
+    fn rows_between_messages_hold_no_number_of_theirs() {
+        let of_clock = [0, 20, 40, 200, 220].map(|ms: i64| (0, ms * 1_000_000, ms as f64));
+        let commands = [(1, 0, 1.0), (1, 22_000_000, 2.0)];
+        let (found, _) = table(&[&commands[..], &of_clock].concat());
+        let times: Vec<i64> = found.times.iter().map(|time| time / 1_000_000).collect();
+        assert_eq!(times, [0, 10, 20, 30, 40, 200, 210, 220], "none in the pause");
+        assert_eq!(found.columns[1], [1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 2.0]);
+        let is_own: Vec<bool> = found.columns[0].iter().map(|value| !value.is_nan()).collect();
+        assert_eq!(is_own, [true, false, true, false, true, true, false, true]);
+    }
+
+    #[test]
+    fn what_is_held_begins_anew_with_the_clock() {
+        let run = |from: f64| (0..300).map(move |k| (0, 10 * k, from)).collect::<Vec<_>>();
+        let (found, _) =
+            table(&[vec![(1, 0, 1.0)], run(1.0), vec![(1, 50, 2.0)], run(2.0)].concat());
+        assert_eq!(found.times.len(), 300 + 295);
+        assert_eq!((found.early, found.columns[1][300]), (5, 2.0));
+    }
+
+    #[test]
+    fn messages_are_taken_by_the_names_of_their_numbers() {
+        let budget = Budget::new(MemoryLimit::of_bytes(1 << 20));
+        let mut all = Messages::default();
+        all.want(0, "boom", 3);
+        all.want(0, "arm", 4);
+        let twice = [("boom", 5.0), ("boom", 6.0)];
+        for numbers in [&[("arm", 2.0)][..], &[("other", 3.0)], &twice] {
+            let number = |(name, number): &(&'static str, f64)| (*name, Value::Number(*number));
+            let message = Value::Message(numbers.iter().map(number).collect());
+            all.push(0, 1, &message, &budget).unwrap();
+        }
+        assert_eq!((all.list.len(), all.topics[&0].empty), (2, 1));
+        assert!(all.list[0].numbers[0].is_nan());
+        assert_eq!(all.list[1].numbers[0], 5.0, "the first of two of one name");
+    }
+}
