@@ -31,8 +31,6 @@ pub struct ReadError {
 pub enum ReadErrorKind {
     /// The file cannot be opened or read.
     Io(std::io::Error),
-    /// The file is not a table of text.
-    Csv(csv::Error),
     /// The file is not what its name or its first bytes say, it is damaged, or this build cannot read
     /// its format.
     Format,
@@ -40,35 +38,25 @@ pub enum ReadErrorKind {
     TooLarge,
     /// There is no log, no row or no number.
     Empty,
-    /// Rows or columns have more or fewer cells than others, or it is not known which are rows.
-    Shape,
-    /// A name or a unit in the header is missing, there twice, or none.
-    Header,
+    /// A name, a cell, a row or a time is none that can be read or computed with, or contradicts others.
+    Content,
     /// A column that is needed is not there.
     MissingColumn,
     /// No column belongs to a joint. What names and data suggest, though not for sure: the column of
     /// the time, and the name, the input and the output of each joint, the likeliest of several mappings
     /// first.
     NoJoints(Box<Likely>),
-    /// Joints contradict one another.
-    Joints,
     /// A joint that is asked for is not there.
     NoSuchJoint,
     /// There is no time, and no sample period was given: the name of the first column, where it is one
     /// that programs give to an index without a name.
     NoTime(Option<String>),
-    /// A sample period is none that a log can have.
-    Period,
-    /// A cell, or a whole column, does not hold numbers that can be computed with.
-    Cell,
     /// A cell is empty or NaN where nothing may be filled.
     Missing,
     /// A cell holds text where a time belongs.
     NotATime,
     /// No sample period follows from the times, or none that a log can have.
     Times,
-    /// Times do not increase, are missing, or change their unit.
-    Clock,
     /// A time step differs from the median by more than 1 %.
     NotUniform {
         /// Time since the row before, in seconds.
@@ -113,7 +101,7 @@ impl ReadError {
         let text = format!(
             "column `{column}` has {found} values but `{other}` has {expected}; choose columns of one length"
         );
-        Self::new(ReadErrorKind::Shape, text).about(column)
+        Self::new(ReadErrorKind::Content, text).about(column)
     }
 
     /// It is about this row: the line of the file, counted from 1, as an editor shows it; where a file
@@ -184,7 +172,6 @@ impl Error for ReadError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match &self.kind {
             ReadErrorKind::Io(source) => Some(source),
-            ReadErrorKind::Csv(source) => Some(source),
             ReadErrorKind::Trial(source) => Some(source.as_ref()),
             _ => None,
         }
@@ -194,11 +181,5 @@ impl Error for ReadError {
 impl From<std::io::Error> for ReadError {
     fn from(source: std::io::Error) -> Self {
         Self::new(ReadErrorKind::Io(source), "cannot be read")
-    }
-}
-
-impl From<csv::Error> for ReadError {
-    fn from(source: csv::Error) -> Self {
-        Self::new(ReadErrorKind::Csv(source), "not a CSV table")
     }
 }

@@ -1,18 +1,17 @@
 //! Logs that a program already has in memory.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::rc::Rc;
 
 use sha2::{Digest as _, Sha256};
 
 use super::error::ReadError;
 use super::joint::Joint;
 use super::layout::unknown_joint;
-use super::log::Log;
 use super::memory::Budget;
-use super::read::{Experiment, Failure, ReadOptions, laid_out, laid_out_by_names};
+use super::read::{Experiment, Failure, Place, ReadOptions, read_log};
 use super::source::{Source, hashed};
-use super::survey::Survey;
-use super::table::{Column, Head, Header, Labels, Table};
+use super::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
 
 /// A log in memory: columns of equal length, with the names that a file would have.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,9 +49,9 @@ impl HandedValues {
     }
 
     /// What is missing in it stays so; rows are counted from 1.
-    fn column(&mut self) -> Column {
+    fn column(&self) -> Column {
         match self {
-            Self::Numbers(numbers) => Column::of(std::mem::take(numbers)),
+            Self::Numbers(numbers) => Column::of(numbers.clone()),
             Self::Texts(_) => Column::text(),
         }
     }
@@ -94,9 +93,14 @@ impl Experiment {
         let budget = Budget::new(options.memory);
         let is_one = logs.len() == 1;
         for log in logs {
-            let path = PathBuf::from(&log.name);
-            let stem = (!is_one).then(|| log.name.clone());
-            experiment.add(read(log, stem.as_deref(), options, &budget), &path);
+            let log = Rc::new(log);
+            let place = Place {
+                open: &|| open(&log, budget.rest()),
+                source: &|| Ok(source_of(&log)),
+                file: None,
+                stem: Some(&*log.name).filter(|_| !is_one),
+            };
+            experiment.add(read_log(&place, options, &budget), Path::new(&log.name));
         }
         experiment.skip_logs_without();
         experiment
@@ -147,43 +151,31 @@ impl Digested {
     }
 }
 
-fn read(
-    mut log: HandedLog,
-    stem: Option<&str>,
-    options: &ReadOptions,
-    budget: &Budget,
-) -> Result<Experiment, ReadError> {
+/// Opens a log in memory.
+fn open(log: &Rc<HandedLog>, budget: Budget) -> Result<OpenTable, ReadError> {
     let headers = log.columns.iter().map(|column| Header::parse(&column.name)).collect();
-    let head = Head::without_lines(headers);
-    let rows = same_length(&log)?;
-    let (layout, mut found) = match laid_out(&head, options) {
-        Err(error) if error.has_no_joints() => {
-            laid_out_by_names(&head, &survey(&head, &log), options)?
-        }
-        found => found?,
-    };
-    let source = source_of(&log);
-    if layout.joints.is_empty() {
-        found.sources.push(source);
-        return Ok(found);
-    }
-    let trial = layout.trial.and_then(|place| log.columns.get(place));
-    let labels = trial.into_iter().flat_map(|column| (0..rows).map(|row| column.values.text(row)));
-    let labels = Labels::of(labels, budget)?;
-    let numeric = layout.numeric_columns();
-    let column = |place: &usize| log.columns.get_mut(*place).map(|column| column.values.column());
-    let columns = numeric.iter().filter_map(column).collect();
-    let table = Table { source: Some(source), ..Table::counted(rows, columns, labels) };
-    let how = (options.repair, stem);
-    found.add_log(Log::new(&head, &layout, &numeric, table, budget, how))?;
-    Ok(found)
+    let rows = same_length(log)?;
+    let rows = Box::new(Unread { log: Rc::clone(log), rows, budget });
+    Ok(OpenTable { head: Head::without_lines(headers), rows })
 }
 
-/// What its columns seem to be.
-fn survey(head: &Head, log: &HandedLog) -> Survey {
-    let columns: Vec<Column> =
-        log.columns.iter().map(|column| column.values.clone().column()).collect();
-    Survey::of_columns(head, columns.iter().enumerate())
+/// A log whose columns have so many rows.
+struct Unread {
+    log: Rc<HandedLog>,
+    rows: usize,
+    budget: Budget,
+}
+
+impl Rows for Unread {
+    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+        let values = |place: &usize| self.log.columns.get(*place).map(|column| &column.values);
+        let trial = wanted.label.and_then(|label| values(&label));
+        let labels =
+            trial.into_iter().flat_map(|values| (0..self.rows).map(|row| values.text(row)));
+        let labels = Labels::of(labels, &self.budget)?;
+        let columns = wanted.numeric.iter().filter_map(values).map(HandedValues::column).collect();
+        Ok(Table::counted(self.rows, columns, labels))
+    }
 }
 
 /// How many rows there are.

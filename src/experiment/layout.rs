@@ -213,7 +213,7 @@ impl Layout {
         names.sort();
         if let Some([name, _]) = names.array_windows().find(|[one, other]| one == other) {
             let text = format!("two joints are named `{name}`; give each its own name");
-            return Err(ReadError::new(ReadErrorKind::Joints, text));
+            return Err(ReadError::new(ReadErrorKind::Content, text));
         }
         for joint in joints {
             match joint_layout(columns, joint) {
@@ -278,7 +278,7 @@ fn joint_layout(columns: &Columns<'_>, joint: &JointColumns) -> Result<JointLayo
             "joint `{}` has column `{column}` for its input and for its output; give each its own",
             joint.name
         );
-        return Err(ReadError::new(ReadErrorKind::Joints, text).about(column));
+        return Err(ReadError::new(ReadErrorKind::Content, text).about(column));
     }
     Ok(JointLayout {
         name: joint.name.clone(),

@@ -87,12 +87,6 @@ impl Budget {
         Ok(())
     }
 
-    /// Gives back bytes that were taken and are free again.
-    #[cfg(feature = "mat")]
-    pub(super) fn give_back(&self, bytes: u64) {
-        self.taken.set(self.taken.get().saturating_sub(bytes));
-    }
-
     /// Takes the memory of `count` values of `size` bytes each.
     pub(super) fn take_values(&self, count: usize, size: usize) -> Result<(), ReadError> {
         self.take((count as u64).saturating_mul(size as u64))

@@ -1,6 +1,6 @@
 //! Logs into an [`Experiment`]; what cannot be read is listed beside what can.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -17,7 +17,7 @@ use super::memory::{Budget, MemoryLimit};
 use super::names::on_one_line;
 use super::repairs::mend_all;
 use super::source::{Source, source_of};
-use super::survey::{Survey, further_joint};
+use super::survey::Survey;
 use super::table::{Head, OpenTable};
 use super::time_column::{find_time_column, note_on_times};
 use super::trial::Trial;
@@ -86,7 +86,13 @@ impl Experiment {
                 continue;
             }
             let stem = (paths.len() > 1).then(|| unique_stem(path, &stems));
-            experiment.add(read_log(path, stem.as_deref(), options, &budget), path);
+            let place = Place {
+                open: &|| format::open(path, budget.rest()),
+                source: &|| source_of(path),
+                file: Some(path),
+                stem: stem.as_deref(),
+            };
+            experiment.add(read_log(&place, options, &budget), path);
             stems.extend(stem);
         }
         experiment.skip_logs_without();
@@ -173,7 +179,7 @@ fn merge(known: &mut Joint, joint: Joint) -> Result<(), ReadError> {
         let (name, found, expected) = (&joint.name, describe(&joint), describe(known));
         let text =
             format!("joint `{name}` is in [{found}] here but in [{expected}] in an earlier log");
-        return Err(ReadError::new(ReadErrorKind::Joints, text));
+        return Err(ReadError::new(ReadErrorKind::Content, text));
     }
     // The clocks of logs that both count from 1970 are one.
     let origin_s = known.trials.first().map_or(0.0, Trial::origin_s);
@@ -287,16 +293,25 @@ fn lower_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
-fn read_log(
-    path: &Path,
-    stem: Option<&str>,
+/// Where a log is, and how it is opened, as often as it takes.
+pub(super) struct Place<'a> {
+    pub(super) open: &'a dyn Fn() -> Result<OpenTable, ReadError>,
+    /// All of it, for its hash.
+    pub(super) source: &'a dyn Fn() -> Result<Source, ReadError>,
+    /// Its file, beside which a mapping may be kept.
+    pub(super) file: Option<&'a Path>,
+    /// What its trials are named after, where there are several logs.
+    pub(super) stem: Option<&'a str>,
+}
+
+pub(super) fn read_log(
+    place: &Place<'_>,
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Experiment, ReadError> {
-    let open = || format::open(path, budget.rest());
-    let table = open()?;
+    let table = (place.open)()?;
     let (mut layout, mut found) = match laid_out(&table.head, options) {
-        Err(error) if error.has_no_joints() => laid_out_foreign(&table.head, path, options)?,
+        Err(error) if error.has_no_joints() => laid_out_foreign(&table.head, place, options)?,
         found => found?,
     };
     let unequal = layout.without_unequal(&table.head, |column| table.rows.rows_of(column));
@@ -305,8 +320,8 @@ fn read_log(
     let mut failed_clocks = Vec::new();
     for layout in layout.by_clock() {
         // Each clock has rows of its own, and is read in a pass of its own.
-        let table = next.take().map_or_else(open, Ok)?;
-        if let Err(error) = found.read_clock(table, &layout, (path, stem), options.repair, budget) {
+        let table = next.take().map_or_else(place.open, Ok)?;
+        if let Err(error) = found.read_clock(table, &layout, place, options.repair, budget) {
             failed_clocks.push((layout.joints, error));
         }
     }
@@ -321,7 +336,7 @@ fn read_log(
                 "it cannot be read, as joint `{}`, whose output has the same clock",
                 first.name
             );
-            failed((joint.name.clone(), ReadError::new(ReadErrorKind::Joints, text)))
+            failed((joint.name.clone(), ReadError::new(ReadErrorKind::Content, text)))
         };
         found.failures.push(failed((first.name.clone(), error)));
         found.failures.extend(others.iter().map(as_first));
@@ -330,10 +345,7 @@ fn read_log(
 }
 
 /// What every column means, and the joints that are not to be had.
-pub(super) fn laid_out(
-    head: &Head,
-    options: &ReadOptions,
-) -> Result<(Layout, Experiment), ReadError> {
+fn laid_out(head: &Head, options: &ReadOptions) -> Result<(Layout, Experiment), ReadError> {
     let period = sample_period(&options.columns)?;
     let mut layout = Layout::find(head, &options.columns, period)?;
     let unknown = layout.keep(&options.joints);
@@ -352,46 +364,35 @@ pub(super) fn laid_out(
     }
     let signals = layout.numeric_columns();
     let note = layout.time.column().and_then(|column| note_on_times(head, column, &signals));
-    let are_native = options.columns.joints.is_empty() && options.joints.is_empty();
-    let further = if are_native { note_on_further_joint(head, &layout) } else { None };
-    found.notes.extend(note.into_iter().chain(further));
+    found.notes.extend(note);
     Ok((layout, found))
-}
-
-/// Says which columns look like a joint beside those with native names, and are not read.
-fn note_on_further_joint(head: &Head, layout: &Layout) -> Option<String> {
-    let mut taken: HashSet<usize> = layout.numeric_columns().into_iter().collect();
-    taken.extend(layout.trial);
-    let [input, output] = further_joint(head, &taken)?;
-    Some(format!(
-        "`{input}` and `{output}` look like a joint, but are not named like the others \
-         (`<joint>.input`, `<joint>.output`) and are not read: name the columns of all joints with \
-         `--columns`"
-    ))
 }
 
 /// What every column means in a log without native names: as the mapping beside it says, else by names and
 /// data.
 fn laid_out_foreign(
     head: &Head,
-    path: &Path,
+    place: &Place<'_>,
     options: &ReadOptions,
 ) -> Result<(Layout, Experiment), ReadError> {
-    let unusable = match ColumnMap::kept_beside(path) {
+    let unusable = match place.file.map_or(Ok(None), ColumnMap::kept_beside) {
         Ok(Some((file, kept))) => match laid_out_as_kept(head, &file, kept, options) {
             // It was kept for another log of the folder.
             Err(error) if matches!(error.kind, ReadErrorKind::MissingColumn) => {
                 let (file, column) = (file.display(), error.column().unwrap_or_default());
                 Some(format!("`{file}` names the column `{column}`, which this log lacks"))
             }
-            Err(error) => Some(format!("`{}`: {}", file.display(), error.in_file(path))),
+            Err(error) => {
+                let log = place.file.unwrap_or(&file);
+                Some(format!("`{}`: {}", file.display(), error.in_file(log)))
+            }
             laid_out => return laid_out,
         },
         Ok(None) => None,
         Err(error) => Some(error.to_string()),
     };
     let unusable = unusable.map(|why| format!("the mapping beside it is not used: {why}"));
-    let survey = Survey::of(path, options.memory)?;
+    let survey = Survey::of_table((place.open)()?)?;
     let laid_out = laid_out_by_names(head, &survey, options);
     let (layout, mut found) = laid_out.map_err(|error| match &unusable {
         Some(why) if error.has_no_joints() => error.with(&format!("; {why}")),
@@ -434,7 +435,7 @@ fn laid_out_as_kept(
 }
 
 /// What every column means in a log without native names, where `survey` is sure of it.
-pub(super) fn laid_out_by_names(
+fn laid_out_by_names(
     head: &Head,
     survey: &Survey,
     options: &ReadOptions,
@@ -475,25 +476,21 @@ impl Experiment {
         &mut self,
         table: OpenTable,
         layout: &Layout,
-        (path, stem): (&Path, Option<&str>),
+        place: &Place<'_>,
         repair: Repair,
         budget: &Budget,
     ) -> Result<(), ReadError> {
         let head = table.head.clone();
         if layout.joints.is_empty() {
-            self.sources.push(source_of(path)?);
+            self.sources.push((place.source)()?);
             return Ok(());
         }
         let numeric = layout.numeric_columns();
         let mut table = table.read(&numeric, layout.trial, layout.time_column(), layout.clock())?;
         if table.source.is_none() {
-            table.source = Some(source_of(path)?);
+            table.source = Some((place.source)()?);
         }
-        self.add_log(Log::new(&head, layout, &numeric, table, budget, (repair, stem)))
-    }
-
-    /// Adds the joints of `log`, which is mended before.
-    pub(super) fn add_log(&mut self, mut log: Log<'_>) -> Result<(), ReadError> {
+        let mut log = Log::new(&head, layout, &numeric, table, budget, (repair, place.stem));
         mend_all(&mut log)?;
         let grids = log.main_grids()?;
         self.notes.append(&mut log.notes);
@@ -523,6 +520,6 @@ fn sample_period(map: &ColumnMap) -> Result<Option<SamplePeriod>, ReadError> {
     let period = Some(seconds).filter(|seconds| is_period(*seconds));
     period.and_then(SamplePeriod::from_seconds).map(Some).ok_or_else(|| {
         let text = format!("a sample period of {seconds} s is not one from 1e-9 to 1e8 s");
-        ReadError::new(ReadErrorKind::Period, text)
+        ReadError::new(ReadErrorKind::Content, text)
     })
 }

@@ -76,13 +76,13 @@ impl Head {
         }
         let text = "the first row holds numbers, and no names of columns; write a header above it, as in \
                     `time_s,boom.input,boom.output`";
-        Err(ReadError::new(ReadErrorKind::Header, text).in_row(self.header_row))
+        Err(ReadError::new(ReadErrorKind::Content, text).in_row(self.header_row))
     }
 
     /// That two columns are named so.
     pub(super) fn two_columns(&self, name: &str) -> ReadError {
         let text = format!("two columns are named `{name}`; rename one of them");
-        ReadError::new(ReadErrorKind::Header, text).in_row(self.header_row).about(name)
+        ReadError::new(ReadErrorKind::Content, text).in_row(self.header_row).about(name)
     }
 
     /// A column's header as it stands in the file.
@@ -115,7 +115,7 @@ fn check_name(name: &str, row: u64) -> Result<(), ReadError> {
     let text = format!(
         "the name `{start}` is longer than {LONGEST_NAME} bytes, the most of a name; shorten it"
     );
-    Err(ReadError::new(ReadErrorKind::Header, text).in_row(row))
+    Err(ReadError::new(ReadErrorKind::Content, text).in_row(row))
 }
 
 /// The columns of a log, and what is in them still unread.
@@ -175,8 +175,8 @@ impl OpenTable {
 pub(super) struct Table {
     /// Where the file was read to its end; whoever reads the log looks at it again where it was not.
     pub(super) source: Option<Source>,
-    /// What messages call each row: its line of the file, or its number.
-    pub(super) rows: RowNumbers,
+    /// What messages call each row: its line of the file, or its number from 1 where that has no lines.
+    pub(super) rows: Vec<u32>,
     pub(super) columns: Vec<Column>,
     /// Runs of rows with the same label; empty without a label column.
     pub(super) trials: Vec<TrialRows>,
@@ -188,7 +188,7 @@ impl Table {
     /// Turns the rows round: the last is the first.
     pub(super) fn turn(&mut self) {
         let rows = self.rows.len();
-        self.rows.turn();
+        self.rows.reverse();
         // What ends at a bad cell is refused anyhow.
         for column in self.columns.iter_mut().filter(|column| column.error.is_none()) {
             column.values.reverse();
@@ -201,63 +201,8 @@ impl Table {
 
     /// The rows of a file that has no lines, counted from 1.
     pub(super) fn counted(rows: usize, columns: Vec<Column>, labels: Labels) -> Self {
-        let (rows, notes) = (RowNumbers::counted(rows), Vec::new());
-        Self { source: None, rows, columns, trials: labels.runs, notes }
-    }
-}
-
-/// The number of each row: its line, or its place from 1 where a file has no lines. Lines
-/// follow one another but for comments, blank lines and quotations.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct RowNumbers {
-    /// Where numbers are left out: a row's index, and its number.
-    runs: Vec<(usize, u64)>,
-    count: usize,
-    /// Whether the last row of the file is the first of the table.
-    turned: bool,
-}
-
-impl RowNumbers {
-    /// So many rows, counted from 1.
-    pub(super) fn counted(count: usize) -> Self {
-        Self { runs: vec![(0, 1)], count, turned: false }
-    }
-
-    pub(super) fn push(&mut self, number: u64) {
-        if self.count == 0 || self.number(self.count) != number {
-            self.runs.push((self.count, number));
-        }
-        self.count += 1;
-    }
-
-    pub(super) fn len(&self) -> usize {
-        self.count
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
-    /// Goes on from the last row to the first; no row is added later.
-    fn turn(&mut self) {
-        self.turned = !self.turned;
-    }
-
-    /// The numbers of some rows.
-    pub(super) fn of_some(&self, rows: &[usize]) -> Self {
-        let mut some = Self::default();
-        for row in rows {
-            some.push(self.number(*row));
-        }
-        some
-    }
-
-    /// What messages call the row with this index.
-    pub(super) fn number(&self, index: usize) -> u64 {
-        let index = if self.turned { (self.count - 1).saturating_sub(index) } else { index };
-        let later = self.runs.partition_point(|(first, _)| *first <= index);
-        let run = later.checked_sub(1).and_then(|run| self.runs.get(run));
-        run.map_or(0, |(first, number)| number + (index - first) as u64)
+        let rows = (1..).take(rows).collect();
+        Self { source: None, rows, columns, trials: labels.runs, notes: Vec::new() }
     }
 }
 
@@ -305,16 +250,6 @@ impl Column {
     pub(super) fn too_small(&self) -> Option<f64> {
         let largest = self.values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         (largest > 0.0 && largest < SMALLEST).then_some(largest)
-    }
-
-    /// Its largest magnitude, how far apart doubles are there, and the range of its numbers, where an offset is
-    /// so large that doubles are too far apart for what the signal does.
-    pub(super) fn coarse(&self) -> Option<[f64; 3]> {
-        let known = || self.values.iter().copied().filter(|value| value.is_finite());
-        let (low, high) = known().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
-        let largest = low.abs().max(high.abs());
-        let apart = largest.next_up() - largest;
-        (low < high && apart > COARSE * (high - low)).then_some([largest, apart, high - low])
     }
 
     /// A column that holds texts.
@@ -398,10 +333,6 @@ pub(crate) const LARGEST: f64 = 1e75;
 /// what is left of them by a model, are lost to zero.
 const SMALLEST: f64 = 1e-75;
 
-/// The part of the range of a signal from which it matters how far apart doubles are: that of a
-/// sensor of ten bits.
-const COARSE: f64 = 1e-3;
-
 /// Memory of a trial beside the bytes of its label: its run of rows and the text with what their
 /// allocations have to spare, once as they come, once in the table and once in the log; its label
 /// among those seen; the numbers of its rows, their times and its grid (measured: 290 bytes before
@@ -469,13 +400,9 @@ mod tests {
     fn a_table_that_is_turned_keeps_the_numbers_of_its_rows() {
         let column = |values: &[f64]| Column { values: values.to_vec(), ..Column::default() };
         let trial = |label: &str, start, end| TrialRows { label: label.to_owned(), start, end };
-        let mut rows = RowNumbers::default();
-        for row in [3, 4, 6, 7] {
-            rows.push(row);
-        }
         let mut table = Table {
             source: None,
-            rows,
+            rows: vec![3, 4, 6, 7],
             columns: vec![column(&[1.0, 2.0, 3.0, 4.0])],
             trials: vec![trial("b", 0, 1), trial("a", 1, 4)],
             notes: Vec::new(),
@@ -483,7 +410,7 @@ mod tests {
         table.turn();
         assert_eq!(table.columns[0].values, [4.0, 3.0, 2.0, 1.0]);
         assert_eq!(table.trials, [trial("a", 0, 3), trial("b", 3, 4)]);
-        assert_eq!([0, 1, 2, 3].map(|row| table.rows.number(row)), [7, 6, 4, 3]);
+        assert_eq!(table.rows, [7, 6, 4, 3]);
     }
 
     #[test]
@@ -498,16 +425,5 @@ mod tests {
         assert_eq!(labels.runs.len(), 3);
         let refused = labels.push("d", 5, &budget);
         assert!(matches!(refused.unwrap_err().kind, ReadErrorKind::TooLarge));
-    }
-
-    #[test]
-    fn rows_bear_the_numbers_they_were_given() {
-        let mut rows = RowNumbers::default();
-        for line in [2, 3, 4, 9, 10, 12] {
-            rows.push(line);
-        }
-        assert_eq!(rows.runs.len(), 3);
-        assert_eq!([0, 2, 3, 4, 5].map(|index| rows.number(index)), [2, 4, 9, 10, 12]);
-        assert_eq!(rows.len(), 6);
     }
 }

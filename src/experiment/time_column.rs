@@ -65,7 +65,7 @@ pub(super) fn times(
         let text = format!(
             "time in [{unit}] is not known; expected [s], [ms], [us], [ns], [min] or no unit"
         );
-        ReadError::new(ReadErrorKind::Header, text).in_row(head.header_row).in_column(name)
+        ReadError::new(ReadErrorKind::Content, text).in_row(head.header_row).in_column(name)
     };
     // `[hh:mm:ss]` is how a time is written, and no unit.
     if unit.to_lowercase().contains("mm:ss") {
@@ -151,22 +151,15 @@ fn is_like_a_time(head: &Head, header: &Header) -> bool {
     if header.name == "T" || is_other || is_stamp {
         return false;
     }
-    let bare = name.trim_end_matches(|c: char| c.is_ascii_digit() || " _.#".contains(c));
-    let bare = unit::parted(bare).0;
-    // `t1` is a temperature.
-    let numbered = Some(bare).filter(|bare| bare.len() > 1);
-    let last = name.rsplit('.').next();
-    if [Some(&*name), numbered, last].into_iter().flatten().any(|n| known_place(n).is_some()) {
-        return true;
-    }
-    let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).collect();
+    let words = name.split(|c: char| !c.is_alphanumeric());
+    let words: Vec<&str> = words.map(|word| word.trim_end_matches(char::is_numeric)).collect();
     let is_signal = |word: &&str| {
         let of = |other: &Header| other.name.eq_ignore_ascii_case(word);
         SIGNALS.contains(word) || word.len() > 1 && head.headers.iter().any(of)
     };
-    let is_time = words.iter().any(|word| TIMES.contains(word));
-    let is_t_of_signal = || words.contains(&"t") && words.iter().any(is_signal);
-    !name.contains(['.', '/']) && (is_time || is_t_of_signal())
+    known_place(&name).is_some()
+        || words.iter().any(|word| TIMES.contains(word))
+        || words.contains(&"t") && words.iter().any(is_signal)
 }
 
 /// A name in lower case without the unit of time that it ends in.

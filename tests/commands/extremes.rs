@@ -199,32 +199,3 @@ fn a_log_in_the_folder_of_the_drawings_is_not_replaced() {
     assert!(said.contains("lies in the folder of the drawings"), "{said}");
     assert_eq!(fs::read(LOG).unwrap(), fs::read(log).unwrap());
 }
-
-/// What is said of a log whose output has this offset.
-fn notes_on(offset: f64) -> String {
-    let folder = TempDir::new().unwrap();
-    let row = |k: u32| {
-        let input = if (k / 50).is_multiple_of(2) { 1 } else { -1 };
-        let output = f64::from(k % 100).min(f64::from(100 - k % 100)) * 0.1;
-        format!("{},{input},{}\n", f64::from(k) * 0.02, output + offset)
-    };
-    let log = format!("time_s,boom.input,boom.output\n{}", (0..1000).map(row).collect::<String>());
-    fs::write(folder.path().join("log.csv"), log).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_tauscope"));
-    let output = command.args(["estimate", "log.csv"]).current_dir(folder.path()).output().unwrap();
-    String::from_utf8(output.stderr).unwrap()
-}
-
-#[test]
-fn an_offset_beside_which_the_motion_is_beyond_double_precision_is_named() {
-    let said = notes_on(1e16);
-    assert!(
-        said.contains("joint `boom`: numbers near 1.0e16 as in `boom.output` are 2 apart"),
-        "{said}"
-    );
-    assert!(said.contains("beyond double precision"), "{said}");
-    for offset in [0.0, 1e6, 1e10] {
-        let said = notes_on(offset);
-        assert!(!said.contains("precision"), "{offset}: {said}");
-    }
-}

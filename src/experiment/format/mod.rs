@@ -4,12 +4,12 @@
 //! [`OpenTable`](super::table::OpenTable), and an entry in `registry.rs`: its name, the
 //! endings of its files, its first bytes, its feature and `open`.
 
-mod blanks;
 mod cell;
 mod csv;
 mod date;
 mod fence;
 mod first_bytes;
+mod line;
 #[cfg(feature = "mat")]
 mod mat;
 #[cfg(feature = "mcap")]

@@ -1,20 +1,17 @@
 //! How a table of text is written: what parts its cells, and where its header is.
 
-use super::blanks::tabbed;
 use super::cell::{Time, is_of_thousands, parse_time};
+use super::line::{BLANK, part};
 use crate::experiment::unit::is_unit;
 
 /// What parts the cells, and what stands before the header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Spelling {
     /// The mark between cells, or [`BLANK`].
-    delimiter: u8,
+    pub(super) delimiter: u8,
     /// Bytes and lines before the header that belong to no table.
     pub(super) preamble: (usize, u64),
 }
-
-/// What stands for runs of blanks and tabs between cells.
-const BLANK: u8 = b' ';
 
 /// What may part the cells, the least likely first.
 const MARKS: [u8; 5] = [BLANK, b'|', b'\t', b';', b','];
@@ -44,16 +41,6 @@ impl Spelling {
         });
         let plain = || Self { delimiter: most_cells(start, marks), preamble: (0, 0) };
         best.map_or_else(plain, |best| best.spelling)
-    }
-
-    /// Whether runs of blanks part the cells, for each of which a tab is put.
-    pub(super) fn is_of_blanks(self) -> bool {
-        self.delimiter == BLANK
-    }
-
-    /// The mark between cells, once tabs are put for runs of blanks.
-    pub(super) fn mark(self) -> u8 {
-        if self.is_of_blanks() { b'\t' } else { self.delimiter }
     }
 }
 
@@ -222,23 +209,9 @@ fn line_ends(rows: &[&[u8]]) -> u64 {
 
 /// The cells of a line.
 fn split(line: &[u8], mark: u8) -> csv::ByteRecord {
-    let (line, mark) = if mark == BLANK { (tabbed(line), b'\t') } else { (line.to_vec(), mark) };
-    // The tables of a reader take longer to make than a plain line to part.
-    if !line.contains(&b'"') && line.is_ascii() {
-        return plain_cells(&line, mark);
-    }
-    let mut reader = csv::ReaderBuilder::new();
-    reader.delimiter(mark).flexible(true).has_headers(false).buffer_capacity(line.len().max(1));
-    let mut record = csv::ByteRecord::new();
-    // What cannot be parted is no row of numbers.
-    let is_row = reader.from_reader(&*line).read_byte_record(&mut record).unwrap_or(false);
-    if is_row { record } else { csv::ByteRecord::new() }
-}
-
-/// The cells of the first line of `text` that has any, which are not quoted.
-fn plain_cells(text: &[u8], mark: u8) -> csv::ByteRecord {
-    let line = text.split(|byte| b"\r\n".contains(byte)).find(|line| !line.is_empty());
-    line.map_or_else(csv::ByteRecord::new, |line| line.split(|byte| *byte == mark).collect())
+    let mut cells = csv::ByteRecord::new();
+    part(line, mark, &mut cells);
+    cells
 }
 
 /// Cells that are not empty.
@@ -379,7 +352,7 @@ mod tests {
             "t s;u V\n0 1\n0 2\n".to_owned(),
             "     t  u  y note\n0 0.0  1  2\n1 0.1  1  2\n".to_owned(),
         ] {
-            assert!(!Spelling::of(text.as_bytes(), None).is_of_blanks(), "{text:?}");
+            assert!(Spelling::of(text.as_bytes(), None).delimiter != BLANK, "{text:?}");
         }
     }
 

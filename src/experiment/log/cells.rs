@@ -7,6 +7,7 @@ use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::grid::Repair;
 use crate::experiment::layout::{JointLayout, Layout};
 use crate::experiment::memory::Budget;
+use crate::experiment::origin::Counting;
 use crate::experiment::table::{Column, Head, Table, TrialRows};
 use crate::units::SamplePeriod;
 
@@ -21,9 +22,9 @@ pub(in crate::experiment) struct Log<'a> {
     /// What may be done to it.
     pub(in crate::experiment) options: Repair,
     pub(in crate::experiment) times: Times,
+    /// How they count, where they are read from a column of times.
+    pub(super) counting: Option<Counting>,
     pub(in crate::experiment) trials: Vec<TrialRows>,
-    /// The columns of outputs that wrapped.
-    pub(in crate::experiment) unwrapped: Vec<usize>,
     /// What a reader of the log should know.
     pub(in crate::experiment) notes: Vec<String>,
 }
@@ -47,8 +48,9 @@ impl<'a> Log<'a> {
         (options, stem): (Repair, Option<&str>),
     ) -> Self {
         let trials = named(&table, stem);
-        let (times, unwrapped, notes) = (Times::Stamps(Vec::new()), Vec::new(), Vec::new());
-        Self { head, layout, numeric, table, budget, options, times, trials, unwrapped, notes }
+        let (times, notes) = (Times::Stamps(Vec::new()), Vec::new());
+        let counting = None;
+        Self { head, layout, numeric, table, budget, options, times, counting, trials, notes }
     }
 
     /// The joints, of those with the same output the first.
@@ -109,13 +111,13 @@ impl<'a> Log<'a> {
 
     /// What messages call a row.
     pub(in crate::experiment) fn row(&self, index: usize) -> u64 {
-        self.table.rows.number(index)
+        self.table.rows.get(index).map_or(0, |row| u64::from(*row))
     }
 
     /// The first bad cell of a column.
     pub(super) fn bad_cell(&self, column: usize) -> Option<ReadError> {
         let (row, bad) = self.column(column)?.error.as_ref()?;
-        let error = ReadError::new(ReadErrorKind::Cell, bad.to_string());
+        let error = ReadError::new(ReadErrorKind::Content, bad.to_string());
         Some(error.in_row(*row).in_column(self.header(column)))
     }
 }

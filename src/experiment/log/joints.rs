@@ -1,8 +1,8 @@
 //! The joints of a log: cells checked, trials cut and put on a uniform grid.
 
 use super::cells::Log;
+use super::missing::Filled;
 use crate::experiment::error::{ReadError, ReadErrorKind};
-use crate::experiment::gaps::{gap_with_all_steps_s, unlogged};
 use crate::experiment::grid::{Grid, Piece, Repair, Signals};
 use crate::experiment::joint::{Joint, Signal};
 use crate::experiment::layout::JointLayout;
@@ -15,52 +15,40 @@ use crate::numerics::to_digits_by;
 const SAMPLE_SIZE: usize = 8 * size_of::<f64>();
 
 impl Log<'_> {
-    /// A joint on `grids`, and what should be known of how it was read.
+    /// A joint on `grids`, or on its own where more of its output is filled than the clock's gaps; and what
+    /// should be known of how it was read.
     pub(in crate::experiment) fn joint(
         &self,
         layout: &JointLayout,
         grids: &[Grid],
     ) -> Result<(Joint, Vec<String>), ReadError> {
-        let read = self.joint_on(layout, grids, self.options)?;
-        Ok(self.joint_with_gaps(&read.0, layout).unwrap_or(read))
-    }
-
-    fn joint_on(
-        &self,
-        layout: &JointLayout,
-        grids: &[Grid],
-        options: Repair,
-    ) -> Result<(Joint, Vec<String>), ReadError> {
         self.check_joint(layout)?;
         let (layout, unread) = self.with_readable_covariates(layout);
         let layout = &layout;
         self.check_one_series(layout.output.column)?;
-        let (longest_s, mut notes) = self.missing(layout, options)?;
-        let own = match longest_s {
+        let (filled, mut notes) = self.missing(layout, grids)?;
+        let own = match filled.longest_s() {
             None => None,
-            Some(_) => Some(self.grids(Repair { fill_s: longest_s, ..options })?.0),
+            fill_s => Some(self.grids(Repair { fill_s, ..self.options })?.0),
         };
-        notes.extend(self.coarse_notes(layout));
         notes.extend(unread);
-        let grids = own.as_deref().unwrap_or(grids);
-        let (joint, split) = self.on_grids(layout, grids, longest_s)?;
+        let (joint, split) = self.on_grids(layout, own.as_deref().unwrap_or(grids), filled)?;
         notes.extend(shown(split));
         Ok((joint, notes))
     }
 
-    /// The joint on `grids`, and a line on each trial that is split. What is filled of an output counts as not
-    /// measured where that is interpolated over up to `slow_s` seconds.
+    /// The joint on `grids`, and a line on each trial that is split.
     fn on_grids(
         &self,
         layout: &JointLayout,
         grids: &[Grid],
-        slow_s: Option<f64>,
+        filled: Filled,
     ) -> Result<(Joint, Vec<String>), ReadError> {
         let origin_s = self.origin_s();
         let covariates: Vec<Signal> = layout.covariates.iter().map(|c| c.signal.clone()).collect();
         let (mut trials, mut split) = (Vec::new(), Vec::new());
         let size = (2 + covariates.len()) * SAMPLE_SIZE;
-        for (rows, grid) in self.trials.iter().zip(grids) {
+        for (index, (rows, grid)) in self.trials.iter().zip(grids).enumerate() {
             self.take(grid.samples(), size)?;
             let pieces = grid.pieces(self.signals(layout, rows));
             if pieces.len() > 1 {
@@ -68,9 +56,17 @@ impl Log<'_> {
             }
             let labels = part_labels(&rows.label, pieces.len(), &self.trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
-                let filled = if slow_s.is_some() { piece.filled.clone() } else { Vec::new() };
+                let between = piece.filled.clone();
                 let trial = trial(layout, label, grid, piece)?;
-                trials.push(trial.counted_from(origin_s).with_interpolated(filled));
+                let trial = match filled {
+                    Filled::Readings { .. } => trial.with_interpolated(between),
+                    Filled::Pauses { .. } => {
+                        let pauses = self.pauses(index, &trial);
+                        trial.with_unlogged(pauses)
+                    }
+                    Filled::Gaps => trial,
+                };
+                trials.push(trial.counted_from(origin_s));
             }
         }
         if trials.is_empty() {
@@ -85,39 +81,6 @@ impl Log<'_> {
             trials: trials.into(),
         };
         Ok((joint, split))
-    }
-
-    /// The joint once more, where its input changes in gaps alone: these are filled, so that its
-    /// steps are those at their ends. `None` where it does not, or where the user says what is to
-    /// be filled.
-    fn joint_with_gaps(&self, read: &Joint, layout: &JointLayout) -> Option<(Joint, Vec<String>)> {
-        /// Samples to a row, at most: beyond it gaps are not what is missing from a record.
-        const LONGEST: usize = 100;
-        let output = &self.column(layout.output.column)?.values;
-        // Where outputs are missing, the reaction may be among them.
-        let is_whole = !output.iter().any(|value| value.is_nan());
-        if self.options.as_it_stands || self.options.fill_s.is_some() || !is_whole {
-            return None;
-        }
-        let gap_s = gap_with_all_steps_s(read)?;
-        let options = Repair { fill_s: Some(gap_s), ..self.options };
-        let (grids, _) = self.grids(options).ok()?;
-        let samples: usize = grids.iter().map(Grid::samples).sum();
-        if samples > LONGEST * output.len() {
-            return None;
-        }
-        let (mut joint, mut notes) = self.joint_on(layout, &grids, options).ok()?;
-        let marked = joint.trials.into_iter().map(|whole| {
-            let gaps = unlogged(&whole, &read.trials);
-            whole.with_unlogged(gaps)
-        });
-        joint.trials = marked.collect();
-        notes.push(format!(
-            "its input changes only in gaps (of up to {gap_s} s): they are filled, the \
-             output interpolated and the input held, and delays count from their ends; a reaction within a \
-             gap is not seen, and what is accepted behind it then is none"
-        ));
-        Some((joint, notes))
     }
 
     /// A line on a trial that was split in `pieces` at gaps, the longest of which it names.
@@ -138,20 +101,6 @@ impl Log<'_> {
             None => String::new(),
         };
         format!("trial `{label}` is split in {count} at long gaps{gap}")
-    }
-
-    /// The signals whose offset is so large that double precision does not hold their motion.
-    fn coarse_notes(&self, layout: &JointLayout) -> Vec<String> {
-        let note = |column: usize| {
-            let [largest, apart, range] = self.column(column)?.coarse()?;
-            let column = self.header(column);
-            Some(format!(
-                "numbers near {largest:.1e} as in `{column}` are {apart} apart, and \
-                 these differ by {range} at most: how the signal moves is beyond double precision; \
-                 log it without the offset"
-            ))
-        };
-        [layout.input.column, layout.output.column].into_iter().filter_map(note).collect()
     }
 
     /// The joint without the further signals that have bad cells, and a line on each of these: what drives
@@ -189,7 +138,9 @@ impl Log<'_> {
                     "its largest number, {largest:e}, is below what double precision can square; write \
                      it in a smaller unit"
                 );
-                return Err(ReadError::new(ReadErrorKind::Cell, text).in_column(self.header(index)));
+                return Err(
+                    ReadError::new(ReadErrorKind::Content, text).in_column(self.header(index))
+                );
             }
         }
         Ok(())

@@ -5,30 +5,111 @@
 //! between those around it, where these are near one another: how near depends on whether most rows have
 //! one, or the sensor has a clock of its own. A grid fills them so. A further signal stays missing.
 
+use std::ops::Range;
+
 use super::cells::{Log, Times};
+use crate::experiment::clock::filled_s;
 use crate::experiment::error::{ReadError, ReadErrorKind};
-use crate::experiment::grid::Repair;
+use crate::experiment::grid::{Grid, Repair, hold};
 use crate::experiment::layout::JointLayout;
-use crate::numerics::median;
+use crate::experiment::trial::Trial;
+use crate::numerics::{median, to_digits_by};
+use crate::units::floor_to_index;
+
+/// What of an output is filled with lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Filled {
+    /// The gaps that are filled in the clock.
+    Gaps,
+    /// What lies between the readings of a sensor that is slower than the log.
+    Readings { longest_s: f64 },
+    /// The pauses of a logger in which the input changes, and nowhere else.
+    Pauses { longest_s: f64 },
+}
+
+impl Filled {
+    /// How far apart outputs are joined, seconds, where it is farther than in the clock.
+    pub(super) fn longest_s(self) -> Option<f64> {
+        match self {
+            Self::Gaps => None,
+            Self::Readings { longest_s } | Self::Pauses { longest_s } => Some(longest_s),
+        }
+    }
+}
 
 impl Log<'_> {
-    /// Up to how many seconds an output of a joint is interpolated, where its sensor is slower than the log,
-    /// and what is said of missing cells. Of other outputs the gaps are filled that are filled in a clock.
+    /// What of the output of a joint is filled, whose clock is that of `grids`, and what is said of it.
     ///
     /// # Errors
     /// [`ReadErrorKind::Missing`] where nothing may be filled.
     pub(super) fn missing(
         &self,
         layout: &JointLayout,
-        options: Repair,
-    ) -> Result<(Option<f64>, Vec<String>), ReadError> {
-        if options.as_it_stands && options.fill_s.is_none() {
+        grids: &[Grid],
+    ) -> Result<(Filled, Vec<String>), ReadError> {
+        let Repair { as_it_stands, fill_s, .. } = self.options;
+        if as_it_stands && fill_s.is_none() {
             self.check_whole(layout)?;
         }
-        Ok(match self.slow_sensor(layout).filter(|_| options.is_free()) {
-            Some((longest_s, note)) => (Some(longest_s), vec![note]),
-            None => (None, self.filled_notes(layout)),
-        })
+        if let Some((filled, note)) = self.slow_sensor(layout).filter(|_| self.options.is_free()) {
+            return Ok((filled, vec![note]));
+        }
+        let mut notes = self.filled_notes(layout);
+        let is_asked = as_it_stands || fill_s.is_some();
+        let pause_s = self.pause_with_steps_s(layout, grids);
+        let Some(longest_s) = pause_s.filter(|_| !is_asked) else {
+            return Ok((Filled::Gaps, notes));
+        };
+        notes.push(format!(
+            "its input changes only in gaps (of up to {longest_s} s): they are filled, the \
+             output interpolated and the input held, and delays count from their ends; a reaction within a \
+             gap is not seen, and what is accepted behind it then is none"
+        ));
+        Ok((Filled::Pauses { longest_s }, notes))
+    }
+
+    /// The longest pause of a logger, with two periods to spare, to three digits, where the input of a joint
+    /// changes in pauses and nowhere else, as where it pauses while the valve is switched: cut there, no
+    /// trial has a step. None where a pause is longer than that of one stroke.
+    fn pause_with_steps_s(&self, layout: &JointLayout, grids: &[Grid]) -> Option<f64> {
+        /// Chosen: a gap that is longer parts two experiments; and samples to a row, at most: beyond it gaps
+        /// are not what is missing from a record.
+        const LONGEST_S: f64 = 2.0;
+        const SAMPLES: f64 = 100.0;
+        let mut input = self.column(layout.input.column)?.values.clone();
+        hold(&mut input);
+        // Where outputs are missing, the reaction may be among them.
+        let output = &self.column(layout.output.column)?.values;
+        if output.iter().any(|value| value.is_nan()) {
+            return None;
+        }
+        let (mut longest_s, mut samples, mut any_step) = (0.0_f64, 0.0, false);
+        for (trial, (rows, grid)) in self.spans().into_iter().zip(grids).enumerate() {
+            let (period, input) = (grid.period().seconds(), input.get(rows)?);
+            for (times, input) in self.times_of(trial)?.windows(2).zip(input.windows(2)) {
+                let (seconds, is_pause) = (times[1] - times[0], is_pause(times, period));
+                let is_step = (input[1] - input[0]).abs() > 0.0;
+                if is_step && !is_pause {
+                    return None;
+                }
+                any_step |= is_step;
+                samples += seconds / period;
+                longest_s =
+                    if is_pause { longest_s.max(seconds + 2.0 * period) } else { longest_s };
+            }
+        }
+        let is_short = longest_s <= LONGEST_S && samples <= SAMPLES * output.len() as f64;
+        (any_step && is_short).then(|| to_digits_by(longest_s, 3, f64::ceil))
+    }
+
+    /// The samples of `whole`, of the trial with this index, in the pauses of its logger.
+    pub(super) fn pauses(&self, trial: usize, whole: &Trial) -> Vec<Range<usize>> {
+        let period = whole.period().seconds();
+        let sample = |time_s: f64| floor_to_index(((time_s - whole.time_s(1)) / period).round());
+        let pauses = self.times_of(trial).unwrap_or_default().windows(2);
+        let pauses = pauses.filter(|times| is_pause(times, period));
+        let samples = pauses.map(|times| sample(times[0]) + 1..sample(times[1]).min(whole.len()));
+        samples.filter(|samples| !samples.is_empty()).collect()
     }
 
     /// Refuses the first missing cell.
@@ -49,7 +130,7 @@ impl Log<'_> {
 
     /// How far apart outputs may be that are joined by a line, where so many rows have none that the sensor
     /// must have a clock of its own: steps of the input keep their times.
-    fn slow_sensor(&self, layout: &JointLayout) -> Option<(f64, String)> {
+    fn slow_sensor(&self, layout: &JointLayout) -> Option<(Filled, String)> {
         /// Part of the rows without an output, at least, and times the usual distance of two outputs beyond
         /// which nothing is known between them (chosen).
         const SPARSE: f64 = 0.3;
@@ -72,7 +153,7 @@ impl Log<'_> {
              samples for measured, and an onset model the lines between them for a lag; models are held \
              against those that are measured"
         );
-        Some((LONGEST * usual_s, note))
+        Some((Filled::Readings { longest_s: LONGEST * usual_s }, note))
     }
 
     /// A line on cells that are missing in the input and the output of a joint.
@@ -100,5 +181,42 @@ impl Log<'_> {
             .into_iter()
             .filter_map(note)
             .collect()
+    }
+}
+
+/// Whether so much time passes between two rows that the record is cut there unless it is filled.
+fn is_pause(times: &[f64], period: f64) -> bool {
+    let seconds = times[1] - times[0];
+    (seconds / period).round() * period > filled_s(period) * (1.0 + 1e-9)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::experiment::{Experiment, HandedColumn, HandedLog, HandedValues, ReadOptions};
+
+    /// The gaps that are filled in a log at 10 Hz with these inputs, whose second half begins so late.
+    fn unlogged(inputs: [f64; 6], late_s: f64) -> Vec<std::ops::Range<usize>> {
+        let times = (0..6).map(|k| 0.1 * f64::from(k) + if k > 2 { late_s } else { 0.0 });
+        let column = |name: &str, numbers: Vec<f64>| HandedColumn {
+            name: name.to_owned(),
+            values: HandedValues::Numbers(numbers),
+        };
+        let columns = vec![
+            column("time_s", times.collect()),
+            column("boom.input", inputs.to_vec()),
+            column("boom.output", vec![0.0, 0.1, 0.2, 0.3, 0.4, 0.5]),
+        ];
+        let log = HandedLog { name: "bench".to_owned(), columns };
+        let found = Experiment::of_logs(vec![log], &ReadOptions::default());
+        found.joints[0].trials.iter().flat_map(|trial| trial.unlogged().to_vec()).collect()
+    }
+
+    #[test]
+    fn steps_are_in_pauses_where_they_are_nowhere_else() {
+        let step = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        assert_eq!(unlogged(step, 1.0), [3..13]);
+        assert!(unlogged(step, 4.0).is_empty(), "too long");
+        assert!(unlogged([0.0; 6], 1.0).is_empty(), "no step");
+        assert!(unlogged([0.0, 0.0, 0.0, 1.0, 1.0, 2.0], 1.0).is_empty(), "another step");
     }
 }

@@ -8,7 +8,7 @@ use crate::experiment::format::date_of_seconds;
 use crate::experiment::grid::{Grid, Repair};
 use crate::experiment::grids::grids;
 use crate::experiment::names::shown;
-use crate::experiment::origin::{Counting, origin_s};
+use crate::experiment::origin::Counting;
 use crate::experiment::table::{BadCell, Column, TrialRows};
 use crate::experiment::time_column::TimeSource;
 use crate::numerics::median;
@@ -27,10 +27,13 @@ impl Log<'_> {
         };
         let values = self.column(column).map_or(&[][..], |column| &column.values);
         self.check_one_unit(column, values)?;
-        let counting = self.counting(column, scale);
+        let are_dates = self.column(column).is_some_and(|column| column.are_dates);
+        let counting = Counting::of(column, values, scale.filter(|_| !are_dates));
         let times: Vec<f64> = values.iter().map(|value| counting.seconds_of(*value)).collect();
         self.check_times(column, &times)?;
         self.times = Times::Stamps(times);
+        let is_number = matches!(self.layout.time, TimeSource::SampleNumbers(..));
+        self.counting = Some(counting).filter(|_| !is_number);
         Ok(())
     }
 
@@ -62,51 +65,21 @@ impl Log<'_> {
         })
     }
 
-    /// The first time, as it stands in the log.
-    fn first_time(&self, column: usize) -> f64 {
-        let values = self.column(column).map_or(&[][..], |column| &column.values);
-        values.iter().copied().find(|value| !value.is_nan()).unwrap_or_default()
-    }
-
     /// What the clock shows where times are counted from, in seconds.
     pub(super) fn origin_s(&self) -> f64 {
-        let TimeSource::Times(column, scale) = self.layout.time else { return 0.0 };
-        origin_s(self.counting(column, scale).seconds_of(self.first_time(column)))
-    }
-
-    /// How times count: dates in seconds, numbers in the unit of `scale` seconds that is named, else as
-    /// their size says.
-    fn counting(&self, column: usize, scale: Option<f64>) -> Counting {
-        if let Some(scale) = scale.filter(|_| !self.are_dates(column)) {
-            return Counting::in_unit(scale);
-        }
-        let first = self.first_time(column);
-        let values = self.column(column).map_or(&[][..], |column| &column.values);
-        let later = values.iter().copied().find(|value| *value > first).unwrap_or(f64::NAN);
-        Counting::of(first, later - first)
-    }
-
-    /// Whether times are written in words.
-    fn are_dates(&self, column: usize) -> bool {
-        self.column(column).is_some_and(|column| column.are_dates)
-    }
-
-    /// Whether the unit of the times is named, or plain from their size: that of times since 1970, or of
-    /// dates.
-    fn is_unit_known(&self, column: usize, scale: Option<f64>) -> bool {
-        scale.is_some() || self.counting(column, scale).is_recognized()
+        self.counting.map_or(0.0, Counting::origin_s)
     }
 
     /// What is said of times whose unit was inferred from their size, or that are counted anew.
     fn origin_note(&self) -> Option<String> {
-        let TimeSource::Times(column, scale) = self.layout.time else { return None };
-        let origin_s = self.origin_s();
+        let counting = self.counting?;
+        let origin_s = counting.origin_s();
         let counted = (origin_s != 0.0).then(|| match date_of_seconds(origin_s) {
             Some(date) => format!("times count from {date} ({origin_s} s of its clock)"),
             None => format!("times count from {origin_s} s of its clock"),
         });
-        let unit = self.counting(column, scale).inferred_unit();
-        let unit = unit.map(|unit| format!("`{}` is taken for {unit}", self.header(column)));
+        let header = self.header(counting.column);
+        let unit = counting.inferred_unit().map(|unit| format!("`{header}` is taken for {unit}"));
         let said: Vec<String> = unit.into_iter().chain(counted).collect();
         (!said.is_empty()).then(|| said.join("; "))
     }
@@ -117,10 +90,10 @@ impl Log<'_> {
         /// No joint is logged so seldom as every quarter of an hour, and nothing that moves once a day.
         const SELDOM_S: (f64, f64) = (900.0, 86_400.0);
         let Some(column) = self.layout.time.column() else { return Ok(()) };
-        let most = match self.layout.time {
-            TimeSource::Times(column, scale) if self.is_unit_known(column, scale) => SELDOM_S.1,
-            TimeSource::Times(..) => SELDOM_S.0,
-            TimeSource::SampleNumbers(..) | TimeSource::Rows(_) => f64::INFINITY,
+        let most = match self.counting {
+            Some(counting) if counting.is_known() => SELDOM_S.1,
+            Some(_) => SELDOM_S.0,
+            None => f64::INFINITY,
         };
         for (trial, grid) in self.trials.iter().zip(grids) {
             let period = grid.period().seconds();
@@ -152,17 +125,16 @@ impl Log<'_> {
         const GUESSED_FROM: f64 = 20.5;
         /// Seconds since 1970 of the year 5138: what counts more counts in another unit.
         const LATEST_S: f64 = 1e11;
-        let TimeSource::Times(column, scale) = self.layout.time else { return None };
-        let name = self.header(column);
-        if scale.is_some() && self.origin_s() > LATEST_S {
-            let first = self.first_time(column);
+        let counting = self.counting?;
+        let (name, first) = (self.header(counting.column), counting.first);
+        if counting.is_named && counting.origin_s() > LATEST_S {
             return Some(format!(
                 "is `{first:e}` in `{name}` really in the unit that it names? It looks like a time \
                  since 1970 in ms, µs or ns; say so with `--time '{name} [ms]'`, [us] or [ns]"
             ));
         }
-        let is_known = self.is_unit_known(column, scale) || self.are_dates(column);
-        let lowest = if is_known { PLAUSIBLE.0 } else { GUESSED_FROM };
+        let are_dates = self.column(counting.column).is_some_and(|column| column.are_dates);
+        let lowest = if counting.is_known() || are_dates { PLAUSIBLE.0 } else { GUESSED_FROM };
         let mut rates = grids.iter().map(|grid| 1.0 / grid.period().seconds());
         let odd = rates.find(|rate| !(lowest..=PLAUSIBLE.1).contains(rate))?;
         let rate = format!("{odd:.2e}").parse::<f64>().unwrap_or(odd);
@@ -226,7 +198,7 @@ impl Log<'_> {
 
     /// What is wrong with the clock at a row.
     fn clock_error(&self, text: impl Into<String>, index: usize) -> ReadError {
-        ReadError::new(ReadErrorKind::Clock, text).in_row(self.row(index))
+        ReadError::new(ReadErrorKind::Content, text).in_row(self.row(index))
     }
 
     /// `fault` in the clock of a trial, whose rows have these `times` and this `number`.
@@ -246,7 +218,7 @@ impl Log<'_> {
                     "time goes from {before} s to {time} s, but it must increase; remove the row if it \
                      is there twice, or mark a new trial in a `trial` column"
                 );
-                (ReadErrorKind::Clock, number(row), text)
+                (ReadErrorKind::Content, number(row), text)
             }
             Fault::NotUniform { row, step, period } => {
                 let text = format!(
@@ -279,7 +251,7 @@ impl Log<'_> {
             Fault::SingleRow => {
                 let text =
                     format!("trial `{trial}` has one row only, but needs two for a sample period");
-                (ReadErrorKind::Clock, number(0), text)
+                (ReadErrorKind::Content, number(0), text)
             }
         };
         ReadError::new(kind, text).in_row(row)
@@ -317,7 +289,7 @@ impl Log<'_> {
                 "each time stands in {size} rows, whose values in `{column}` lie far apart, as in a table \
                  with a row for each joint; give each joint an input and an output column of its own"
             );
-            return Err(ReadError::new(ReadErrorKind::Shape, text).about(column));
+            return Err(ReadError::new(ReadErrorKind::Content, text).about(column));
         }
         Ok(())
     }

@@ -4,6 +4,7 @@
 //! stamps are read: in [`super::clock`].
 
 mod bursts;
+mod mended;
 mod rezeroed;
 mod same_time;
 mod slow_sensor;
@@ -12,6 +13,7 @@ mod wrap;
 use super::error::ReadError;
 use super::log::{Log, Times};
 use super::table::TrialRows;
+use mended::mend_outputs;
 use wrap::Wrap;
 
 /// Mends everything in `log` that may be: the rows before their times, the times before the signals. What
@@ -33,12 +35,13 @@ pub(super) fn mend_all(log: &mut Log<'_>) -> Result<(), ReadError> {
         bursts::spread_out(log);
     }
     if log.options.is_free() {
-        slow_sensor::keep_first_readings(log);
+        mend_outputs(log, slow_sensor::first_readings);
     }
     if is_whole {
-        wrap::unwrap(log);
-        // A turn is a jump, too: what it leaves over may be a sensor whose zero was set anew.
-        rezeroed::put_back(log);
+        // A turn is a jump, too: of what wraps it is not known where its zero is set anew.
+        mend_outputs(log, |log, joint| {
+            wrap::unwrap(log, joint).or_else(|| rezeroed::put_back(log, joint))
+        });
     }
     Ok(())
 }

@@ -3,46 +3,40 @@
 //! An incremental encoder that is homed again goes on from another value: from one row to the next the
 //! output jumps as it never moves. What follows is taken back by the jump.
 
+use super::mended::Mended;
 use crate::experiment::layout::JointLayout;
 use crate::experiment::log::{Log, Times};
-use crate::experiment::table::Column;
 use crate::numerics::{median, to_digits};
 
-/// Takes back what outputs jump by where their zero is set anew.
-pub(super) fn put_back(log: &mut Log<'_>) {
-    for joint in log.with_own_outputs() {
-        let Some(shifts) = shifts(log, joint) else { continue };
-        let spans = log.spans();
-        let Some(Column { values, .. }) = log.column_mut(joint.output.column) else { continue };
-        let mut jumps = Vec::new();
-        for rows in spans {
-            let Some(part) = values.get_mut(rows.clone()) else { continue };
-            jumps.extend(shifts.put_back(part).into_iter().map(|(row, by)| (rows.start + row, by)));
-        }
-        let Some((row, by)) = jumps.first() else { continue };
-        let unit =
-            joint.output.signal.unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
-        let (row, by) = (log.row(*row), to_digits(*by, 3));
-        let more = match jumps.len() {
-            1 => String::new(),
-            2 => ", and once more".to_owned(),
-            count => format!(", and {} times more", count - 1),
-        };
-        let text = format!(
-            "the output jumps by {by}{unit} at row {row}{more}, much farther than it moves \
-             between any other rows: taken for a sensor that was re-zeroed, and later samples are shifted \
-             back by as much"
-        );
-        log.note_on(joint, &text);
+/// The output of a joint without its jumps where its zero is set anew.
+pub(super) fn put_back(log: &Log<'_>, joint: &JointLayout) -> Option<Mended> {
+    let shifts = shifts(log, joint)?;
+    let mut values = log.column(joint.output.column)?.values.clone();
+    let mut jumps = Vec::new();
+    for rows in log.spans() {
+        let part = values.get_mut(rows.clone())?;
+        jumps.extend(shifts.put_back(part).into_iter().map(|(row, by)| (rows.start + row, by)));
     }
+    let (row, by) = jumps.first()?;
+    let unit =
+        joint.output.signal.unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+    let (row, by) = (log.row(*row), to_digits(*by, 3));
+    let more = match jumps.len() {
+        1 => String::new(),
+        2 => ", and once more".to_owned(),
+        count => format!(", and {} times more", count - 1),
+    };
+    let note = format!(
+        "the output jumps by {by}{unit} at row {row}{more}, much farther than it moves \
+         between any other rows: taken for a sensor that was re-zeroed, and later samples are shifted \
+         back by as much"
+    );
+    Some(Mended { values, note: Some(note) })
 }
 
 /// The jumps of the output of a joint. Rows behind a gap lie as far apart as the joint moved there, and where the clock
 /// starts anew so does the record. Of what wraps it is not known.
 fn shifts(log: &Log<'_>, joint: &JointLayout) -> Option<Shifts> {
-    if log.unwrapped.contains(&joint.output.column) {
-        return None;
-    }
     let (inputs, outputs) = (log.parts(joint.input.column)?, log.parts(joint.output.column)?);
     let signals = inputs.into_iter().zip(&outputs).map(|(input, output)| [input, output]);
     let shifts = Shifts::of(&signals.collect::<Vec<_>>())?;

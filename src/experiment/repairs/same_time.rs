@@ -28,7 +28,7 @@ pub(super) fn join(log: &mut Log<'_>) {
     for trial in &mut log.trials {
         (trial.start, trial.end) = (place(trial.start), place(trial.end));
     }
-    table.rows = table.rows.of_some(&kept);
+    table.rows = kept.iter().filter_map(|row| table.rows.get(*row).copied()).collect();
     for (column, (values, _)) in table.columns.iter_mut().zip(columns) {
         column.values = values;
     }

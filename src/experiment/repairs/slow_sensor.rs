@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::mended::Mended;
+use crate::experiment::layout::JointLayout;
 use crate::experiment::log::Log;
 use crate::numerics::quantile;
 
@@ -11,18 +13,16 @@ const FEWEST_ROWS: usize = 3;
 /// Readings that show it.
 const FEWEST: usize = 20;
 
-/// Leaves of each reading of an output the first row alone, where a sensor is slower than the log.
-pub(super) fn keep_first_readings(log: &mut Log<'_>) {
-    let spans = log.spans();
-    for joint in log.with_own_outputs() {
-        let Some(column) = log.column_mut(joint.output.column) else { continue };
-        let Some(rows) = rows_of_a_reading(&column.values, &spans) else { continue };
-        keep_first(&mut column.values, &spans, rows);
-        let text = format!(
-            "each reading of the output stands in {rows} rows, and counts in the first of them"
-        );
-        log.note_on(joint, &text);
-    }
+/// The output of a joint with the first row alone of each reading, where its sensor is slower than the log.
+pub(super) fn first_readings(log: &Log<'_>, joint: &JointLayout) -> Option<Mended> {
+    let (values, spans) = (&log.column(joint.output.column)?.values, log.spans());
+    let rows = rows_of_a_reading(values, &spans)?;
+    let mut values = values.clone();
+    keep_first(&mut values, &spans, rows);
+    let note = format!(
+        "each reading of the output stands in {rows} rows, and counts in the first of them"
+    );
+    Some(Mended { values, note: Some(note) })
 }
 
 /// Leaves the first row of each reading alone, and NaN in the others.

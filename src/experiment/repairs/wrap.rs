@@ -4,27 +4,22 @@
 //! sample, which no joint makes. Where all large jumps of an output are of a turn, they are taken
 //! out. Its unit says what a turn is, else the jumps themselves do.
 
+use super::mended::Mended;
+use crate::experiment::layout::JointLayout;
 use crate::experiment::log::Log;
-use crate::experiment::table::Column;
 use crate::numerics::{RunningLine, as_written, median, quantile, to_decimals};
 
-/// Takes the turns out of outputs that wrap.
-pub(super) fn unwrap(log: &mut Log<'_>) {
-    for joint in log.with_own_outputs() {
-        let (column, unit) = (joint.output.column, joint.output.signal.unit.as_deref());
-        let trials = log.parts(column);
-        let Some(wrap) = trials.and_then(|trials| Wrap::of(&trials, unit)) else { continue };
-        let spans = log.spans();
-        let Some(Column { values, .. }) = log.column_mut(column) else { continue };
-        let mut count = 0;
-        for rows in spans {
-            count += values.get_mut(rows).map_or(0, |part| wrap.unwrap(part));
-        }
-        log.unwrapped.push(column);
-        if count > 0 {
-            log.note_on(joint, &wrap.note(count, unit));
-        }
+/// The output of a joint without the turns of a sensor that wraps.
+pub(super) fn unwrap(log: &Log<'_>, joint: &JointLayout) -> Option<Mended> {
+    let (column, unit) = (joint.output.column, joint.output.signal.unit.as_deref());
+    let wrap = Wrap::of(&log.parts(column)?, unit)?;
+    let mut values = log.column(column)?.values.clone();
+    let mut count = 0;
+    for rows in log.spans() {
+        count += values.get_mut(rows).map_or(0, |part| wrap.unwrap(part));
     }
+    let note = (count > 0).then(|| wrap.note(count, unit));
+    Some(Mended { values, note })
 }
 
 /// A sensor that wraps after so much, output units.

@@ -36,13 +36,13 @@ pub(super) struct Columns<'a> {
 const COMPARED: usize = 100;
 
 /// An input and an output.
-pub(super) struct Pair {
-    pub(super) input: usize,
-    pub(super) output: usize,
+struct Pair {
+    input: usize,
+    output: usize,
     /// What both names say of which joint it is.
     shared: BTreeSet<String>,
     /// Whether no other input could be meant.
-    pub(super) is_only: bool,
+    is_only: bool,
 }
 
 impl Pair {
@@ -60,11 +60,7 @@ impl<'a> Columns<'a> {
     pub(super) fn of(head: &'a Head, signals: &'a [Option<Signal>]) -> Self {
         let moves = |signal: &Option<Signal>| signal.as_ref().is_some_and(|s| !s.is_constant());
         let moving = (0..signals.len()).filter(|column| signals.get(*column).is_some_and(moves));
-        Self::among(head, signals, moving.collect())
-    }
-
-    /// These columns, whatever they hold.
-    pub(super) fn among(head: &'a Head, signals: &'a [Option<Signal>], moving: Vec<usize>) -> Self {
+        let moving: Vec<usize> = moving.collect();
         let mut names: Vec<Option<Name>> = vec![None; head.headers.len()];
         for column in &moving {
             if let (Some(name), Some(header)) = (names.get_mut(*column), head.headers.get(*column))
@@ -110,7 +106,7 @@ impl Columns<'_> {
 
     /// Inputs and outputs by their names that share words of a joint: those that share most first, and of
     /// these the likeliest. Each column stands in one pair.
-    pub(super) fn by_names(&self) -> Vec<Pair> {
+    fn by_names(&self) -> Vec<Pair> {
         let mut inputs: Vec<usize> = self.on(Side::Input).collect();
         let mut outputs: Vec<usize> = self.on(Side::Output).collect();
         let is_named = !inputs.is_empty();

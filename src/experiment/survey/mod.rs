@@ -5,7 +5,7 @@ mod joints;
 mod signal;
 mod words;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::columns::{ColumnMap, JointColumns};
@@ -13,7 +13,7 @@ use super::error::ReadError;
 use super::format;
 use super::layout::find_trial;
 use super::memory::{Budget, MemoryLimit};
-use super::table::{Column, Head};
+use super::table::{Column, Head, OpenTable};
 use super::time_column::find_time_column;
 use super::unit;
 use joints::{Columns, FoundJoint};
@@ -73,11 +73,13 @@ impl Survey {
     /// # Errors
     /// [`ReadError`] when it cannot be read at all.
     pub fn of(path: &Path, memory: MemoryLimit) -> Result<Self, ReadError> {
-        Self::read(path, memory).map_err(|error| error.in_file(path))
+        let table = format::open(path, Budget::new(memory));
+        let found = table.and_then(Self::of_table).map_err(|error| error.in_file(path))?;
+        Ok(Self { path: path.to_owned(), ..found })
     }
 
-    fn read(path: &Path, memory: MemoryLimit) -> Result<Self, ReadError> {
-        let table = format::open(path, Budget::new(memory))?;
+    /// Looks at an open log.
+    pub(super) fn of_table(table: OpenTable) -> Result<Self, ReadError> {
         let head = table.head.clone();
         head.check_is_header()?;
         let (time, trial) = (find_time_column(&head), find_trial(&head));
@@ -89,15 +91,11 @@ impl Survey {
         let clock = head.headers.first().map_or(0, |header| header.clock);
         let read = table.read(&numeric, trial, time, clock)?;
         let read = read.columns.iter().zip(numeric);
-        let found = Self::of_columns(&head, read.map(|(column, index)| (index, column)));
-        Ok(Self { path: path.to_owned(), ..found })
+        Ok(Self::of_columns(&head, read.map(|(column, index)| (index, column))))
     }
 
     /// Looks at columns with their indices in `head`.
-    pub(super) fn of_columns<'a>(
-        head: &Head,
-        columns: impl Iterator<Item = (usize, &'a Column)>,
-    ) -> Self {
+    fn of_columns<'a>(head: &Head, columns: impl Iterator<Item = (usize, &'a Column)>) -> Self {
         let (time, trial) = (find_time_column(head), find_trial(head));
         let mut signals: Vec<Option<Signal>> = vec![None; head.headers.len()];
         for (index, column) in columns.filter(|(index, _)| ![time, trial].contains(&Some(*index))) {
@@ -143,17 +141,6 @@ impl Survey {
         let maps = std::iter::once(&self.map).chain(&self.alternatives);
         maps.map(ColumnMap::named_joints).filter(|joints| !joints.is_empty()).collect()
     }
-}
-
-/// The names of an input and an output that look like one more joint beside those whose columns are `taken`.
-pub(super) fn further_joint(head: &Head, taken: &HashSet<usize>) -> Option<[String; 2]> {
-    // Names with a point are native, as `boom.pressure`.
-    let headers = head.headers.iter().enumerate();
-    let free = headers.filter(|(column, h)| !taken.contains(column) && !h.name.contains('.'));
-    let columns = Columns::among(head, &[], free.map(|(column, _)| column).collect());
-    let pairs = columns.by_names().into_iter().filter(|pair| pair.is_only);
-    let first = pairs.min_by_key(|pair| pair.input)?;
-    Some([first.input, first.output].map(|column| head.text(column)))
 }
 
 impl Columns<'_> {

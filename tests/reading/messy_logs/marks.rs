@@ -2,7 +2,6 @@
 
 use super::log::*;
 use super::texts::{gzip, utf16};
-use tauscope::experiment::ColumnMap;
 
 /// Ends of lines, and what begins with the mark of a comment.
 pub(crate) fn ends_and_comments() -> Vec<Messy> {
@@ -22,16 +21,8 @@ pub(crate) fn ends_and_comments() -> Vec<Messy> {
                     k => format!("#{},{line}\n", 1 + k / 900),
                 })
                 .collect::<String>(),
-            Expected::Refused(&["row 2", "`#1`", "without `#`"]),
+            Expected::Refused(&["rows begin with `#`", "first at row 2"]),
         ),
-        Messy {
-            columns: ColumnMap { trial: Some("label".to_owned()), ..ColumnMap::default() },
-            ..messy(
-                "labels_by_another_name.csv",
-                labels_before(&all),
-                Expected::Refused(&["row 902", "`#b`", "without `#`"]),
-            )
-        },
         messy(
             "output_first_and_missing.csv",
             output_first(&cell(&cell(&all, 617, 2, "#NV"), 1017, 2, "#N/A")),
@@ -82,16 +73,6 @@ pub(crate) fn cells_and_units() -> Vec<Messy> {
 fn old_line_ends(log: &str) -> String {
     let commented = log.replacen("\n1.000000,", "\n# here the operator changed\n1.000000,", 1);
     format!("# by hand\n{commented}").replace('\n', "\r")
-}
-
-/// The log behind a column of labels, the second of which begins with the mark of a comment.
-fn labels_before(log: &str) -> String {
-    let row = |(k, line): (usize, &str)| match k {
-        0 => format!("label,{line}\n"),
-        1..=900 => format!("a,{line}\n"),
-        _ => format!("#b,{line}\n"),
-    };
-    log.lines().enumerate().map(row).collect()
 }
 
 /// The log with its last column first.

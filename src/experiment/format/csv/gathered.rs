@@ -8,7 +8,7 @@ use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::names::shown;
 use crate::experiment::source::Source;
-use crate::experiment::table::{BadCell, Column, Header, Labels, RowNumbers, Table, Wanted};
+use crate::experiment::table::{BadCell, Column, Header, Labels, Table, Wanted};
 
 /// Rows of words that may stand below a table, and bytes that each may have.
 const MOST_REMARKS: usize = 20;
@@ -25,7 +25,7 @@ pub(super) struct Gathered<'w> {
     /// Whether times are dates or times of day, as the first one shows.
     are_times_in_words: Option<bool>,
     milliseconds: Milliseconds,
-    rows: RowNumbers,
+    rows: Vec<u32>,
     columns: Vec<Column>,
     labels: Labels,
     pub(super) notes: Vec<String>,
@@ -49,8 +49,8 @@ impl<'w> Gathered<'w> {
             delimiter,
             marks: DecimalMarks::of(wanted.numeric.len(), delimiter),
             are_times_in_words: None,
-            milliseconds: Milliseconds::new(),
-            rows: RowNumbers::default(),
+            milliseconds: Milliseconds::default(),
+            rows: Vec::new(),
             columns,
             labels: Labels::default(),
             notes: Vec::new(),
@@ -119,7 +119,7 @@ impl<'w> Gathered<'w> {
         let size = (wanted.numeric.len() + 1) * NUMBER_SIZE + label.len();
         self.budget.take_values(1, size)?;
         let index = self.rows.len();
-        self.rows.push(row);
+        self.rows.push(u32::try_from(row).unwrap_or(u32::MAX));
         let columns = self.columns.iter_mut().zip(wanted.numeric).enumerate();
         for (place, (column, wanted_at)) in columns {
             let cell = cell(*wanted_at);
@@ -159,7 +159,7 @@ impl<'w> Gathered<'w> {
         let text = format!(
             "{found} cells, but the header has {width}; give every row a cell per column{hint}"
         );
-        Err(ReadError::new(ReadErrorKind::Shape, text).in_row(place.row))
+        Err(ReadError::new(ReadErrorKind::Content, text).in_row(place.row))
     }
 
     /// Refuses a row one cell of which holds further rows: a quotation mark in it is never closed, or far
@@ -180,7 +180,7 @@ impl<'w> Gathered<'w> {
             "a cell that begins with a quotation mark goes over {lines} lines, which look like rows; \
              close it, or remove the mark"
         );
-        Err(ReadError::new(ReadErrorKind::Shape, text).in_row(row))
+        Err(ReadError::new(ReadErrorKind::Content, text).in_row(row))
     }
 
     /// The table of all rows, which were read from this file. What was held back is no row of it.

@@ -23,22 +23,6 @@ pub(super) fn check_header_size(cells: usize, budget: &Budget) -> Result<(), Rea
     budget.take_values(cells, HEADER_SIZE)
 }
 
-/// Refuses a table whose cells are parted by blanks, which would be one column.
-pub(super) fn check_parted(head: &Head, first: &csv::ByteRecord) -> Result<(), ReadError> {
-    let words = |cell: &[u8]| String::from_utf8_lossy(cell).split_whitespace().count();
-    let [header] = head.headers.as_slice() else { return Ok(()) };
-    let (names, values) = (words(header.text.as_bytes()), first.get(0).map_or(0, words));
-    if first.len() > 1 || names < 2 || values < 2 {
-        return Ok(());
-    }
-    let reason = format!(
-        "its cells are parted by blanks, {names} words in row {} and {values} in the row below it",
-        head.header_row
-    );
-    let remedy = "part them by commas, semicolons or tabs, or write each name as one word";
-    Err(ReadError::format(A_TABLE, reason, remedy))
-}
-
 /// A name without the quotation marks that a blank before them makes part of the cell, or single ones.
 fn unquoted(cell: &str) -> &str {
     let inner = |mark: char| cell.trim().strip_prefix(mark)?.strip_suffix(mark);
@@ -102,7 +86,7 @@ pub(super) fn head(record: &csv::ByteRecord, header_row: u64) -> Result<Head, Re
             let text = format!(
                 "the name of column {column} is not UTF-8 text; choose UTF-8 when saving it"
             );
-            ReadError::new(ReadErrorKind::Header, text).in_row(header_row)
+            ReadError::new(ReadErrorKind::Content, text).in_row(header_row)
         })
     };
     let headers = record.iter().zip(1..).map(header).collect::<Result<_, _>>()?;

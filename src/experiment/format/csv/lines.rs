@@ -1,30 +1,40 @@
-//! Records of a text, and the lines of the file that they stand on.
+//! Rows of a text, and the lines of the file that they stand on.
 
-use std::io::{self, BufRead as _, BufReader, Read};
+use std::io::{BufRead as _, BufReader};
 
-use super::super::blanks::tabbed;
 use super::super::cell::is_missing;
+use super::super::line::part;
 use super::super::spelling::Spelling;
 use super::super::text::Bytes;
-use super::comments::Comments;
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::Budget;
 
-/// Bytes of a row, with comments and blank lines before it: what is longer is no table of text,
-/// or a quotation that is never closed.
+/// Bytes of a row: what is longer is no table of text, or a quotation that is never closed.
 const LONGEST_ROW: u64 = 1 << 24;
 
 /// Lines of the same.
-const MOST_LINES: u64 = 1 << 20;
+const MOST_LINES: u64 = 100;
 
 /// Memory that is taken for a byte of a row while it grows, if all cells are empty (measured: 26).
 const ROW_SIZE: u64 = 32;
 
 /// The rows of a table of text, one after another.
 pub(super) struct Records {
-    reader: csv::Reader<Lines<Bytes>>,
-    /// The one that was read last.
+    bytes: BufReader<Bytes>,
+    mark: u8,
+    /// Lines that were read.
+    count: u64,
+    /// Bytes that a row may have.
+    longest: u64,
+    /// The lines of the row that was read last.
+    text: Vec<u8>,
+    /// Its cells.
     pub(super) record: csv::ByteRecord,
+    /// Cells of the header, once it has come.
+    pub(super) width: usize,
+    /// Comments below the header that have as many cells, with a number in the second one: how many, and the
+    /// first of them.
+    wide: (u64, u64),
 }
 
 /// Where a record is in the file.
@@ -41,201 +51,110 @@ pub(super) struct Place {
 impl Records {
     /// The records of `bytes`, written in this way, from the table's first line on.
     pub(super) fn of(bytes: Bytes, spelling: Spelling, budget: &Budget) -> Self {
-        let mark = spelling.mark();
-        let (_, lines) = spelling.preamble;
-        let longest = LONGEST_ROW.min(budget.left() / ROW_SIZE);
-        let lines = Lines::after(bytes, lines, (mark, spelling.is_of_blanks()), longest);
-        let mut reader = csv::ReaderBuilder::new();
-        reader.delimiter(mark).flexible(true).has_headers(false);
-        Self { reader: reader.from_reader(lines), record: csv::ByteRecord::new() }
+        let (_, count) = spelling.preamble;
+        Self {
+            bytes: BufReader::with_capacity(1 << 16, bytes),
+            mark: spelling.delimiter,
+            count,
+            longest: LONGEST_ROW.min(budget.left() / ROW_SIZE),
+            text: Vec::new(),
+            record: csv::ByteRecord::new(),
+            width: 0,
+            wide: (0, 0),
+        }
     }
 
-    /// Reads the next record; where it is, or `None` at the end.
+    /// Reads the next record, past comments and blank lines; where it is, or `None` at the end. A quoted cell
+    /// may go over several lines.
     pub(super) fn next(&mut self) -> Result<Option<Place>, ReadError> {
-        self.reader.get_mut().begin_record();
-        let more = self.reader.read_byte_record(&mut self.record)?;
-        let Lines { count, first, ref line, .. } = *self.reader.get_ref();
-        let is_open = !line.last().is_some_and(|byte| b"\r\n".contains(byte));
-        Ok(more.then_some(Place { row: first, lines: count + 1 - first, is_open }))
-    }
-
-    pub(super) fn comments(&mut self) -> &mut Comments {
-        &mut self.reader.get_mut().comments
+        self.text.clear();
+        let mut row = self.count + 1;
+        while self.read_line(row)? {
+            self.count += 1;
+            let is_whole = part(&self.text, self.mark, &mut self.record);
+            if row == self.count && self.is_left_out() {
+                self.text.clear();
+                row += 1;
+            } else if is_whole {
+                break;
+            }
+        }
+        let is_open = !self.text.last().is_some_and(|byte| b"\r\n".contains(byte));
+        let lines = self.count + 1 - row;
+        Ok((!self.text.is_empty()).then_some(Place { row, lines, is_open }))
     }
 
     pub(super) fn into_bytes(self) -> Bytes {
-        self.reader.into_inner().inner.into_inner()
-    }
-}
-
-/// Hands on the lines of a text, one at a time, without comments and blank lines between records: so it is
-/// known on which lines a record stands, which a quoted cell may go over.
-struct Lines<R> {
-    inner: BufReader<R>,
-    /// Lines that were read.
-    count: u64,
-    /// The first line of the record, counted from 1.
-    first: u64,
-    /// Bytes since the end of the last record.
-    waiting: u64,
-    /// Bytes that may be.
-    longest: u64,
-    /// Whether a line of the record was handed on.
-    is_begun: bool,
-    line: Vec<u8>,
-    /// Bytes of the line that were handed on.
-    passed: usize,
-    /// What parts the cells.
-    mark: u8,
-    /// Whether a tab is to be put for each run of blanks.
-    of_blanks: bool,
-    comments: Comments,
-}
-
-impl<R: Read> Lines<R> {
-    /// Bytes that come after so many lines.
-    fn after(inner: R, count: u64, (mark, of_blanks): (u8, bool), longest: u64) -> Self {
-        Self {
-            inner: BufReader::with_capacity(1 << 16, inner),
-            count,
-            first: count,
-            waiting: 0,
-            longest,
-            is_begun: false,
-            line: Vec::new(),
-            passed: 0,
-            mark,
-            of_blanks,
-            comments: Comments::default(),
-        }
+        self.bytes.into_inner()
     }
 
-    fn begin_record(&mut self) {
-        (self.is_begun, self.waiting, self.first) = (false, 0, self.count);
-    }
-
-    /// Reads the next line that belongs to a record; an empty one at the end.
-    fn read_line(&mut self) -> io::Result<()> {
+    /// Adds the next line to those of the record at `row`, up to a line feed, or to a carriage return that
+    /// ends a line alone; whether there was one.
+    fn read_line(&mut self, row: u64) -> Result<bool, ReadError> {
+        let start = self.text.len();
         loop {
-            self.read_any_line()?;
-            if self.line.is_empty() {
-                return Ok(());
-            }
-            self.count += 1;
-            if self.is_begun {
-                return Ok(());
-            }
-            self.first = self.count;
-            if !self.is_left_out() {
-                self.is_begun = true;
-                return Ok(());
-            }
-        }
-    }
-
-    /// Reads up to a line feed, or to a carriage return that ends a line alone.
-    fn read_any_line(&mut self) -> io::Result<()> {
-        (self.passed, self.line) = (0, std::mem::take(&mut self.line));
-        self.line.clear();
-        loop {
-            let bytes = self.inner.fill_buf()?;
+            let bytes = self.bytes.fill_buf()?;
             let Some(next) = bytes.first() else { break };
-            if self.line.ends_with(b"\r") && !b"\r\n".contains(next) {
+            let read = self.text.get(start..).unwrap_or_default();
+            if read.ends_with(b"\n") || read.ends_with(b"\r") && *next != b'\n' {
                 break;
             }
             let end = bytes.iter().position(|byte| *byte == b'\n' || *byte == b'\r');
             let length = end.map_or(bytes.len(), |end| end + 1);
-            self.line.extend_from_slice(bytes.get(..length).unwrap_or_default());
-            self.inner.consume(length);
-            self.waiting += length as u64;
-            self.check_length()?;
-            if self.line.ends_with(b"\n") {
-                break;
+            self.text.extend_from_slice(bytes.get(..length).unwrap_or_default());
+            self.bytes.consume(length);
+            if self.text.len() as u64 > self.longest || self.count >= row + MOST_LINES {
+                return Err(self.without_end(row));
             }
         }
-        if self.of_blanks {
-            self.line = tabbed(&self.line);
-        }
-        Ok(())
+        Ok(self.text.len() > start)
     }
 
-    fn check_length(&self) -> io::Result<()> {
-        if self.waiting <= self.longest && self.count - self.first <= MOST_LINES {
-            return Ok(());
-        }
-        let is_for_memory = self.longest < LONGEST_ROW;
-        let or_memory =
-            if is_for_memory { " A longer row needs a larger `--max-memory`." } else { "" };
-        Err(io::Error::other(format!(
-            "the row behind line {} does not end within {} bytes and {MOST_LINES} lines; is a \
-             quotation mark never closed?{or_memory}",
-            self.count, self.longest
-        )))
+    fn without_end(&self, row: u64) -> ReadError {
+        let or_memory = if self.longest < LONGEST_ROW {
+            " A longer row needs a larger `--max-memory`."
+        } else {
+            ""
+        };
+        let text = format!(
+            "it does not end within {} bytes and {MOST_LINES} lines; is a quotation mark never closed? If so, \
+             close it, or remove the mark.{or_memory}",
+            self.longest
+        );
+        ReadError::new(ReadErrorKind::Content, text).in_row(row)
     }
 
     /// Whether a line between records is blank or a comment. One that begins with a cell like `#N/A` is none.
     fn is_left_out(&mut self) -> bool {
-        if self.line.iter().all(|byte| b" \r\n".contains(byte)) {
-            return true;
+        if !self.text.trim_ascii_start().starts_with(b"#") {
+            return self.text.iter().all(|byte| b" \r\n".contains(byte));
         }
-        let line = self.line.trim_ascii_end();
-        let first = line.split(|byte| *byte == self.mark).next().unwrap_or_default();
-        let is_comment =
-            line.starts_with(b"#") && !std::str::from_utf8(first).is_ok_and(is_missing);
-        if is_comment {
-            self.comments.note(line, self.count, self.mark);
+        let first = self.record.get(0).unwrap_or_default().trim_ascii();
+        if std::str::from_utf8(first).is_ok_and(is_missing) {
+            return false;
         }
-        is_comment
-    }
-}
-
-impl<R: Read> Read for Lines<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        if self.passed == self.line.len() {
-            self.read_line()?;
+        let is_name = first.get(1).is_some_and(u8::is_ascii_alphanumeric);
+        let second = self.record.get(1).unwrap_or_default().trim_ascii().first();
+        let is_number = second.is_some_and(|byte| byte.is_ascii_digit() || b"+-.".contains(byte));
+        if is_name && is_number && self.record.len() == self.width {
+            let (count, first) = self.wide;
+            self.wide = (count + 1, if count == 0 { self.count } else { first });
         }
-        let count = self.line.get(self.passed..).unwrap_or_default().read(buffer)?;
-        self.passed += count;
-        Ok(count)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Hands on few bytes at a time.
-    struct Few<'t>(&'t [u8], usize);
-
-    impl Read for Few<'_> {
-        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-            let count = self.1.min(buffer.len());
-            self.0.read(&mut buffer[..count])
-        }
+        true
     }
 
-    /// The lines between records, each the only one of its record.
-    fn lines(text: &[u8], pieces: usize) -> Vec<(u64, String)> {
-        let mut lines = Lines::after(Few(text, pieces), 0, (b',', false), 1000);
-        let mut found = Vec::new();
-        loop {
-            lines.begin_record();
-            lines.read_line().unwrap();
-            if lines.line.is_empty() {
-                return found;
-            }
-            found.push((lines.first, String::from_utf8_lossy(&lines.line).into_owned()));
-        }
-    }
-
-    #[test]
-    fn a_value_that_is_none_is_no_comment() {
-        let text = b"#N/A\n# by hand\r\n#N/A,1\r# old\r#N/Ax,1\n\n#DIV/0!,2\n0,#N/A\n#\n#NV";
-        let expected =
-            [(1, "#N/A\n"), (3, "#N/A,1\r"), (7, "#DIV/0!,2\n"), (8, "0,#N/A\n"), (10, "#NV")];
-        let expected = expected.map(|(row, line)| (row, line.to_owned()));
-        for pieces in 1..20 {
-            assert_eq!(lines(text, pieces), expected, "{pieces}");
+    /// Says how many comments are as wide as the rows.
+    pub(super) fn on_wide_comments(&self) -> Option<String> {
+        match self.wide {
+            (0, _) => None,
+            (1, row) => Some(format!(
+                "row {row} begins with `#` and is left out as a comment, although it has as many \
+                 cells as the others"
+            )),
+            (count, row) => Some(format!(
+                "{count} rows begin with `#` and are left out as comments, although they have as \
+                 many cells as the others (first at row {row})"
+            )),
         }
     }
 }

@@ -2,47 +2,38 @@
 //! 100.
 
 /// What the decimals of the times say.
+#[derive(Debug, Default)]
 pub(super) struct Milliseconds {
-    /// What each time changes by, in seconds, if its decimals are milliseconds; none where one time at least
-    /// has other decimals.
-    changes: Option<Vec<f64>>,
+    /// One and as many zeros as each time has decimals.
+    scales: Vec<f64>,
     /// Whether a time has decimals that end in a zero, as no decimals do that are shortened.
     ends_in_zero: bool,
-    /// Whether a time has three decimals, and another one fewer, as no milliseconds do that are filled up.
-    has_three: bool,
-    has_fewer: bool,
+    /// Whether one has other decimals than milliseconds without leading zeros.
+    has_others: bool,
 }
 
 impl Milliseconds {
-    pub(super) fn new() -> Self {
-        let changes = Some(Vec::new());
-        Self { changes, ends_in_zero: false, has_three: false, has_fewer: false }
-    }
-
     /// Takes the cell of the next time.
     pub(super) fn take(&mut self, cell: &[u8]) {
-        let Some(changes) = &mut self.changes else { return };
-        let Some(decimals) = decimals(cell) else {
-            self.changes = None;
+        let Some(decimals) = decimals(cell).filter(|_| !self.has_others) else {
+            self.has_others = true;
             return;
         };
-        self.has_three |= decimals.len() == 3;
-        self.has_fewer |= decimals.len() < 3;
         self.ends_in_zero |= decimals.len() > 1 && decimals.ends_with('0');
-        let number: f64 = decimals.parse().unwrap_or_default();
-        let shown = decimals.bytes().fold(1.0, |scale, _| 10.0 * scale);
-        changes.push(number / 1000.0 - number / shown);
+        self.scales.push(decimals.bytes().fold(1.0, |scale, _| 10.0 * scale));
     }
 
-    /// Changes the `times` that were taken, where they all are milliseconds without leading zeros;
-    /// whether they are.
+    /// Changes the `times` that were taken, where they all are milliseconds without leading zeros, some of three
+    /// digits and others of fewer, as none are that are filled up; whether they are.
     pub(super) fn apply(&self, times: &mut [f64]) -> bool {
-        let are_milliseconds = self.ends_in_zero && self.has_three && self.has_fewer;
-        let Some(changes) = self.changes.as_ref().filter(|_| are_milliseconds) else {
-            return false;
-        };
-        times.iter_mut().zip(changes).for_each(|(time, change)| *time += change);
-        true
+        let are_milliseconds = !self.has_others
+            && self.ends_in_zero
+            && self.scales.iter().any(|scale| *scale > 100.0)
+            && self.scales.iter().any(|scale| *scale < 1000.0);
+        for (time, scale) in times.iter_mut().zip(&self.scales).filter(|_| are_milliseconds) {
+            *time = time.floor() + (time.fract() * scale).round() / 1000.0;
+        }
+        are_milliseconds
     }
 }
 
@@ -61,7 +52,7 @@ mod tests {
     use super::*;
 
     fn changed(cells: &[&str]) -> Vec<f64> {
-        let mut milliseconds = Milliseconds::new();
+        let mut milliseconds = Milliseconds::default();
         for cell in cells {
             milliseconds.take(cell.as_bytes());
         }

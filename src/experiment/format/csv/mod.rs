@@ -1,6 +1,5 @@
 //! Tables of text: delimiter, cells, line numbers.
 
-mod comments;
 mod gathered;
 mod header;
 mod lines;
@@ -11,11 +10,11 @@ use std::path::Path;
 
 use super::spelling::Spelling;
 use super::text::Bytes;
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
 use gathered::Gathered;
-use header::{check_header_size, check_last_name, check_parted, describes, head};
+use header::{check_header_size, check_last_name, describes, head};
 use lines::{Place, Records};
 
 /// What follows the header, still unread.
@@ -46,19 +45,16 @@ pub(super) fn table(
     let (spelling, is_text) = (Spelling::of(start, delimiter), delimiter.is_none());
     let (before, _) = spelling.preamble;
     io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink())?;
-    let delimiter = spelling.mark();
+    let delimiter = spelling.delimiter;
     let mut records = Records::of(bytes, spelling, &budget);
     let Some(place) = records.next()? else {
         return Err(ReadError::empty());
     };
     check_header_size(records.record.len(), &budget)?;
     let mut head = head(&records.record, place.row)?;
-    records.comments().width = head.headers.len();
+    records.width = head.headers.len();
     let mut above = Vec::new();
     let mut first = records.next()?;
-    if first.is_some() {
-        check_parted(&head, &records.record)?;
-    }
     while let Some(place) = first {
         if !describes(&mut head, &records.record, delimiter, above.len()) {
             // Sheets say which cell is of which column.
@@ -83,8 +79,12 @@ impl Rows for Unread {
             gathered.add(&records.record, place)?;
             next = records.next()?;
         }
-        records.comments().check_labels(wanted)?;
-        gathered.notes.extend(records.comments().on_wide());
+        match records.on_wide_comments() {
+            Some(note) if first.is_none() => {
+                return Err(ReadError::new(ReadErrorKind::Empty, note));
+            }
+            note => gathered.notes.extend(note),
+        }
         Ok(gathered.finish(records.into_bytes().finish()?))
     }
 }
@@ -106,8 +106,7 @@ mod tests {
             let open = open(&path, Budget::new(MemoryLimit::default())).unwrap();
             assert_eq!(open.head.header_row, 2, "{text:?}");
             let table = open.read(&[0, 1], None, Some(0), 0).unwrap();
-            let rows = [0, 1, 2].map(|index| table.rows.number(index));
-            assert_eq!((table.rows.len(), rows), (3, [3, 6, 7]), "{text:?}");
+            assert_eq!(table.rows, [3, 6, 7], "{text:?}");
             assert_eq!(table.columns[1].error, Some((7, BadCell::Text("x".to_owned()))));
         }
     }

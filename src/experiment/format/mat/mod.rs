@@ -83,16 +83,15 @@ impl Unread {
         let name = |index: usize| {
             wanted.head.headers.get(index).map(|header| header.name.clone()).unwrap_or_default()
         };
-        let mut first = None;
-        for index in wanted.numeric.iter().chain(&wanted.label).copied() {
-            let Some(found) = self.rows_of(index) else { continue };
-            let (other, expected) = *first.get_or_insert((index, found));
-            if found != expected {
-                let (found, other) = ((name(index), found), (name(other), expected));
-                return Err(ReadError::unequal_columns(found, other));
+        let known = |index: &usize| Some((*index, self.rows_of(*index)?));
+        let mut wanted = wanted.numeric.iter().chain(&wanted.label).filter_map(known);
+        let Some((other, expected)) = wanted.next() else { return Ok(0) };
+        match wanted.find(|(_, found)| *found != expected) {
+            Some((odd, found)) => {
+                Err(ReadError::unequal_columns((name(odd), found), (name(other), expected)))
             }
+            None => Ok(expected),
         }
-        Ok(first.map_or(0, |(_, rows)| rows))
     }
 
     fn place(&self, header: usize) -> Option<(&Variable, usize)> {
@@ -127,7 +126,7 @@ impl Unread {
                 "it holds {found}, not a label per row; save it as numbers or as a cell array of texts, \
                  or read all as one trial with `--trial none`"
             );
-            let error = ReadError::new(ReadErrorKind::Cell, text);
+            let error = ReadError::new(ReadErrorKind::Content, text);
             return Err(error.in_column(&variable.name));
         }
         match &variable.content {

@@ -11,7 +11,7 @@ use flate2::read::ZlibDecoder;
 
 use super::variable::{Content, Variable, damaged, object};
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::{Budget, NUMBER_SIZE};
+use crate::experiment::memory::Budget;
 use crate::experiment::table::LONGEST_NAME;
 
 /// Structures may lie in structures, but not without end.
@@ -30,12 +30,9 @@ const OPAQUE: u32 = 17;
 /// The flag of an array whose numbers have an imaginary part.
 const COMPLEX: u32 = 0x800;
 
-/// Memory of a variable beside its values and its name: itself twice, as a list that grows is copied to one
-/// of twice its size, and what the allocator adds.
-const VARIABLE_SIZE: usize = 2 * size_of::<Variable>() + 2 * 48;
-
-/// Memory of a row of text beside its letters: itself, and what the allocator adds.
-const TEXT_SIZE: usize = size_of::<String>() + 32;
+/// Memory for a byte of a variable, at most: a number of one byte becomes a double twice while its list grows,
+/// and letters and names take less.
+const COPIES: u64 = 16;
 
 /// The variables of a file, their numbers read.
 pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
@@ -45,9 +42,9 @@ pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, R
 fn read(mut file: impl Read, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
     let mut head = [0; 128];
     file.read_exact(&mut head).map_err(damaged)?;
-    let bytes = Bytes { data: &[], big: head.ends_with(b"MI"), budget };
+    let like = Bytes { data: &[], big: head.ends_with(b"MI") };
     let (mut found, mut number) = (Vec::new(), 1);
-    while next(&mut file, bytes, &mut found)
+    while next(&mut file, like, budget, &mut found)
         .map_err(|fault| fault.within(&format!("variable {number}")))?
     {
         number += 1;
@@ -59,9 +56,9 @@ fn read(mut file: impl Read, budget: &Budget) -> Result<Vec<Variable>, ReadError
 fn next(
     file: &mut impl Read,
     like: Bytes<'_>,
+    budget: &Budget,
     found: &mut Vec<Variable>,
 ) -> Result<bool, ReadError> {
-    let budget = like.budget;
     let (mut tag, mut data) = (Vec::new(), Vec::new());
     file.take(8).read_to_end(&mut tag).map_err(damaged)?;
     if tag.is_empty() {
@@ -77,8 +74,7 @@ fn next(
     if is_packed {
         data = unpacked(&data, budget)?;
     }
-    let held = data.capacity() as u64;
-    budget.take(held)?;
+    budget.take(COPIES.saturating_mul(data.len() as u64))?;
     let mut data = Bytes { data: &data, ..like };
     if is_packed {
         (kind, data) = data.element()?;
@@ -86,14 +82,11 @@ fn next(
     if kind == MATRIX {
         array(data, None, 0, found)?;
     }
-    budget.give_back(held);
     Ok(true)
 }
 
 /// The bytes that are packed, as they are found to be: what they say is not asked.
 fn unpacked(packed: &[u8], budget: &Budget) -> Result<Vec<u8>, ReadError> {
-    // A vector that grows is copied to one of twice its size.
-    const COPIES: u64 = 3;
     let mut inside = Vec::new();
     let most = budget.left() / COPIES + 1;
     ZlibDecoder::new(packed).take(most).read_to_end(&mut inside).map_err(damaged)?;
@@ -110,7 +103,6 @@ fn fault<T>(text: &str) -> Result<T, ReadError> {
 struct Bytes<'a> {
     data: &'a [u8],
     big: bool,
-    budget: &'a Budget,
 }
 
 impl Bytes<'_> {
@@ -144,7 +136,7 @@ impl Bytes<'_> {
     /// The numbers of the next element.
     fn numbers(&mut self) -> Result<Vec<f64>, ReadError> {
         let (kind, data) = self.element()?;
-        match kind {
+        Ok(match kind {
             1 => data.each(|[byte]| f64::from(byte.cast_signed())),
             2 | 16 => data.each(|[byte]| f64::from(byte)),
             3 => data.each(|bytes| f64::from(i16::from_le_bytes(bytes))),
@@ -155,8 +147,8 @@ impl Bytes<'_> {
             9 => data.each(f64::from_le_bytes),
             12 => data.each(|bytes| i64::from_le_bytes(bytes) as f64),
             13 => data.each(|bytes| u64::from_le_bytes(bytes) as f64),
-            _ => fault(&format!("numbers of the unknown type {kind}")),
-        }
+            _ => return fault(&format!("numbers of the unknown type {kind}")),
+        })
     }
 
     /// The next element as whole numbers that are not negative.
@@ -170,24 +162,22 @@ impl Bytes<'_> {
     }
 
     /// Each value of `N` bytes, the lowest byte first.
-    fn each<const N: usize, T>(self, value: impl Fn([u8; N]) -> T) -> Result<Vec<T>, ReadError> {
+    fn each<const N: usize, T>(self, value: impl Fn([u8; N]) -> T) -> Vec<T> {
         let (values, _) = self.data.as_chunks::<N>();
-        self.budget.take_values(values.len(), NUMBER_SIZE)?;
         let lowest_first = |mut bytes: [u8; N]| {
             if self.big {
                 bytes.reverse();
             }
             bytes
         };
-        Ok(values.iter().map(|bytes| value(lowest_first(*bytes))).collect())
+        values.iter().map(|bytes| value(lowest_first(*bytes))).collect()
     }
 
     /// The next element as text.
     fn text(&mut self) -> Result<String, ReadError> {
         let (kind, data) = self.element()?;
-        self.budget.take_values(data.data.len(), 4)?;
         Ok(match kind {
-            4 | 17 => String::from_utf16_lossy(&data.each(u16::from_le_bytes)?),
+            4 | 17 => String::from_utf16_lossy(&data.each(u16::from_le_bytes)),
             _ => String::from_utf8_lossy(data.data).into_owned(),
         })
     }
@@ -239,7 +229,6 @@ fn array(
     };
     // What has no name belongs to MATLAB's objects.
     if depth > 0 || !name.is_empty() {
-        data.budget.take_values(1, VARIABLE_SIZE + 2 * name.len())?;
         found.push(Variable { name, dims, content });
     }
     Ok(())
@@ -270,7 +259,6 @@ fn content(
         }
         CHARACTERS => {
             let (text, rows) = (data.text()?, dims.first().copied().unwrap_or(1));
-            data.budget.take_values(rows.min(text.len()), TEXT_SIZE)?;
             Content::Texts(rows_of(&text, rows))
         }
         SPARSE => Content::Other("a sparse matrix".to_owned()),
@@ -399,8 +387,7 @@ mod tests {
     #[test]
     fn a_small_element_stands_in_its_tag() {
         let bytes = [2, 0, 2, 0, 7, 9, 0, 0];
-        let mut data =
-            Bytes { data: &bytes, big: false, budget: &Budget::new(MemoryLimit::default()) };
+        let mut data = Bytes { data: &bytes, big: false };
         let (kind, inside) = data.element().unwrap();
         assert_eq!((kind, inside.data), (2, &[7, 9][..]));
         assert!(data.data.is_empty());

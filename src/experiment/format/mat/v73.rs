@@ -3,7 +3,7 @@
 //! The crate hdf5-pure 0.47 follows hard links in circles and takes memory for what a dataset
 //! says of its size, so both are checked before it is asked. It follows the parts of an object's header that
 //! name further parts, to a depth of 32 and without an end to their number: where each names the next one
-//! twice, a few kilobytes are billions of parts. So much is read for one object, and no more.
+//! twice, a few kilobytes are billions of parts. So often is a file read to list its objects, and no more.
 
 use std::fs;
 use std::path::Path;
@@ -26,13 +26,6 @@ const DEEPEST: usize = 32;
 /// all of them, and no log has so many signals.
 const MOST_BESIDE: usize = 3000;
 
-/// Bytes of a file for each object in it, at the least: where there are more, links lead in
-/// circles.
-const OBJECT_SIZE: u64 = 16;
-
-/// Objects that a file of any size may have.
-const FEW_OBJECTS: u64 = 256;
-
 /// Bytes that a byte of a file may stand for: `gzip`, by which MATLAB packs, makes at most 1032
 /// of one.
 const LARGEST_RATIO: u64 = 1100;
@@ -46,22 +39,16 @@ struct Listing<'a> {
     /// Bytes of the file.
     size: u64,
     budget: &'a Budget,
-    /// Objects that may still be looked at.
-    objects: u64,
-    /// What may still be read for one of them.
-    reads: Reads,
     found: Vec<Variable>,
 }
 
 /// The variables of a file, their numbers still stored.
 pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
     let (file, reads) = open(path)?;
-    let size = file.file_size();
-    let objects = size / OBJECT_SIZE + FEW_OBJECTS;
-    let mut listing = Listing { size, budget, objects, reads, found: Vec::new() };
-    listing.reads.begin();
+    let mut listing = Listing { size: file.file_size(), budget, found: Vec::new() };
     listing.group(&file.root(), "", 0)?;
-    listing.reads.end();
+    // All objects are known: their numbers lie where they were said to.
+    reads.store(u64::MAX, Ordering::Relaxed);
     Ok(listing.found)
 }
 
@@ -111,24 +98,18 @@ impl Listing<'_> {
         let mut groups: Vec<(String, Group)> = group.iter_groups()?.collect();
         groups.sort_by(|a, b| a.0.cmp(&b.0));
         for name in datasets.iter().chain(groups.iter().map(|(name, _)| name)) {
-            let Some(left) = self.objects.checked_sub(1) else {
-                return fault("its groups lie in one another in a circle".to_owned());
-            };
-            self.objects = left;
             if prefix.len() + name.len() > LONGEST_NAME {
                 return fault("a name is too long".to_owned());
             }
             self.budget.take_values(1, size_of::<Variable>() + prefix.len() + name.len())?;
         }
         for name in datasets {
-            self.reads.begin();
             let found = self.variable(format!("{prefix}{name}"), group.dataset(&name)?)?;
             self.found.push(found);
         }
         // A name with a number sign is MATLAB's own: what cells refer to.
         groups.retain(|(name, _)| !name.starts_with('#'));
         for (name, group) in groups.iter().filter(|_| depth < DEEPEST) {
-            self.reads.begin();
             self.group(group, &format!("{prefix}{name}."), depth + 1)?;
         }
         Ok(())
@@ -178,35 +159,17 @@ fn content(class: &str, dataset: Dataset) -> Content {
     Content::Other(kind.to_owned())
 }
 
-/// Reads for one object of a file of any size.
+/// Reads to list the objects of a file of any size.
 const FEW_READS: u64 = 20_000;
 
-/// Bytes of a file for each read for one object, at the least: a group has an entry, a name and a
-/// header for each object in it, which are some ten reads of half a kilobyte.
-const READ_SIZE: u64 = 16;
+/// Bytes of a file for each of these reads, at the least: a group has an entry, a name and a header for each
+/// object in it, and an object its attributes, each a read or more (chosen: some hundred for an object).
+const READ_SIZE: u64 = 4;
 
-/// Reads that are still allowed.
-#[derive(Clone, Debug)]
-struct Reads {
-    left: Arc<AtomicU64>,
-    of_an_object: u64,
-}
-
-impl Reads {
-    /// The next object is begun.
-    fn begin(&self) {
-        self.left.store(self.of_an_object, Ordering::Relaxed);
-    }
-
-    /// All objects are known: their numbers lie where they were said to.
-    fn end(&self) {
-        self.left.store(u64::MAX, Ordering::Relaxed);
-    }
-}
-
+/// A file, and how often it may still be read.
 struct Watched {
     file: ReadSeekSource<fs::File>,
-    reads: Reads,
+    left: Arc<AtomicU64>,
 }
 
 impl Source for Watched {
@@ -216,9 +179,9 @@ impl Source for Watched {
 
     fn read_at(&self, offset: u64, buf: &mut [u8]) -> Result<(), FormatError> {
         let one_less = |left: u64| left.checked_sub(1);
-        let taken = self.reads.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_less);
-        if taken.is_err() {
-            let why = "the header of an object names its own parts without end";
+        if self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_less).is_err() {
+            let why = "its groups lie in one another in a circle, or the header of an object names its own \
+                       parts without end";
             return Err(FormatError::Source(why.to_owned()));
         }
         self.file.read_at(offset, buf)
@@ -226,9 +189,8 @@ impl Source for Watched {
 }
 
 /// Opens a file, whose reads are counted.
-fn open(path: &Path) -> Result<(File, Reads), Error> {
+fn open(path: &Path) -> Result<(File, Arc<AtomicU64>), Error> {
     let file = ReadSeekSource::new(fs::File::open(path).map_err(Error::Io)?)?;
-    let of_an_object = FEW_READS + file.len() / READ_SIZE;
-    let reads = Reads { left: Arc::new(AtomicU64::new(of_an_object)), of_an_object };
-    Ok((File::from_source(Watched { file, reads: reads.clone() })?, reads))
+    let left = Arc::new(AtomicU64::new(FEW_READS + file.len() / READ_SIZE));
+    Ok((File::from_source(Watched { file, left: Arc::clone(&left) })?, left))
 }
