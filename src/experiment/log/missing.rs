@@ -99,7 +99,8 @@ impl Log<'_> {
             }
         }
         let is_short = longest_s <= LONGEST_S && samples <= SAMPLES * output.len() as f64;
-        (any_step && is_short).then(|| to_digits_by(longest_s, 3, f64::ceil))
+        let no_shorter = |digits: f64| (digits * (1.0 - 1e-9)).ceil();
+        (any_step && is_short).then(|| to_digits_by(longest_s, 3, no_shorter))
     }
 
     /// The samples of `whole`, of the trial with this index, in the pauses of its logger.
