@@ -66,8 +66,8 @@ impl Spikes {
 
 /// Samples of `trial` that are spikes.
 pub(crate) fn spike_count(trial: &Trial) -> usize {
-    let spikes = Spikes::of(std::slice::from_ref(trial)).0.into_iter().flatten();
-    let samples: BTreeSet<usize> = spikes.flatten().collect();
+    let spikes = spikes(trial.output(), noise(std::slice::from_ref(trial)));
+    let samples: BTreeSet<usize> = spikes.into_iter().flatten().collect();
     samples.len()
 }
 
