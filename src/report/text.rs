@@ -111,16 +111,23 @@ pub(crate) fn onset_sentence(model: &OnsetModel) -> String {
                 value("time_constant_s")
             )
         }
-        "bend_lag2" => format!(
-            "the speed follows through two lags with time constants {} and {} s",
-            value("time_constant_s"),
-            value("second_time_constant_s")
-        ),
-        "oscillation" => format!(
-            "the speed follows with an oscillation, period {} s and damping {}",
-            value("period_s"),
-            value("damping")
-        ),
+        "bend_lag2" => {
+            let lags: Vec<String> = parameters.iter().map(|(_, lag)| rounded(*lag)).collect();
+            format!("the speed follows through lags with time constants {} s", lags.join(", "))
+        }
+        "oscillation" => {
+            let lag = value("time_constant_s");
+            let behind = if lag.is_empty() {
+                lag
+            } else {
+                format!(", behind a lag with time constant {lag} s")
+            };
+            format!(
+                "the speed follows with an oscillation, period {} s and damping {}{behind}",
+                value("period_s"),
+                value("damping")
+            )
+        }
         "settling" => {
             format!("the output settles with time constant {} s", value("time_constant_s"))
         }

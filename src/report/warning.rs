@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::EstimatedJoint;
 use crate::delay::{AgainstState, Obstacle, ResponseOfKind, Verdict};
 use crate::numerics::{chi_square_tail, median, quantile};
-use crate::wording::{measure, number, percent};
+use crate::wording::{measure, number, p_text, percent};
 
 /// A warning on the delays of a joint.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -46,8 +46,9 @@ impl EstimatedJoint<'_> {
                 "output_unrelated_to_input",
                 format!(
                     "the output does not follow its input, whose steps explain {} of the changes in \
-                     its motion",
-                    percent(model.follows_input_r2())
+                     its motion ({} for no relation)",
+                    percent(model.follows_input_r2()),
+                    p_text(model.follows_input_p_value())
                 ),
                 &format!(
                     ". Check that both columns belong to this joint and that nothing else moves it; \

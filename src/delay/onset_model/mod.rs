@@ -15,12 +15,16 @@
 //! - [`from_rest`]: the onset of a joint that gathers speed from rest
 //! - [`follows`]: whether the output follows this input at all
 //! - [`uncertainty`]: what an interval is made of
+//! - [`excerpt`]: what of a record is searched
+//! - [`kinds`]: shapes by kind of step, where one for all fails
 //! - [`model`]: all of it
 
 mod alignment;
 mod dynamics;
+mod excerpt;
 mod follows;
 mod from_rest;
+mod kinds;
 mod model;
 mod reaction;
 mod residual;

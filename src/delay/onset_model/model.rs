@@ -5,21 +5,21 @@
 //! motion is nearly a bend: of some reaches the one whose intervals are the shortest is taken,
 //! among those whose onsets answer the input as well.
 
+use super::excerpt::{Origin, beginning, holds, reach_of, run_of};
 use super::follows::Follows;
+use super::kinds::{KINDS, Left, PASSES};
 use super::reaction::p_value;
-use super::residual::{Residual, sensor_noise};
-use super::search::{Candidate, FEW, Search};
+use super::residual::Residual;
+use super::search::{FEW, Search};
 use super::shape::{Family, Shapes};
 use super::uncertainty::Choice;
-use super::windows::{Onset, Onsets, Pass, Run, Step, all};
+use super::windows::{Onset, Onsets, Pass, Run, all};
 use crate::delay::interval::FineDelay;
-use crate::delay::motion::StepMotion;
 use crate::delay::neutral::{Neutral, Transition};
 use crate::delay::prepared::Prepared;
 use crate::delay::settings::{FirstLast, Settings};
-use crate::delay::steps::InputStep;
-use crate::numerics::{limits, median, student_quantile};
-use crate::units::{SamplePeriod, ceil_to_index, floor_to_index};
+use crate::numerics::{median, student_quantile};
+use crate::units::{SamplePeriod, ceil_to_index};
 
 /// Samples from which the shape is found, and those from which its misfit is (chosen: more change
 /// nothing but the time).
@@ -29,13 +29,6 @@ const ENOUGH_FOR_MISFIT: usize = 10_000;
 /// Samples of a hold that are looked at: of longer ones every second, third … sample.
 const SAMPLES_OF_HOLD: f64 = 500.0;
 
-/// What is looked at to each side of an onset, in holds and in samples. Of a record with few steps,
-/// as a bump test, more.
-const REACH: f64 = 1.5;
-const REACHES: (f64, f64) = (60.0, 750.0);
-const REACH_OF_FEW: f64 = 2000.0;
-const LEAST_REACH: f64 = 16.0;
-
 /// The part of the reach that is looked at where nothing fits all of it: what the step before left has
 /// died away there, and the next one has done nothing.
 const NEAR: f64 = 0.25;
@@ -44,19 +37,10 @@ const NEAR: f64 = 0.25;
 const PLAIN: f64 = 0.7;
 const WORSE: f64 = 0.03;
 
-/// Rounding of sums over windows, in parts of an output's range.
-const ROUNDING: f64 = 1e-7;
-
-/// Steps of a kind from which its own residuals say something, and may have a shape of their own.
-const FEWEST_OF_KIND: usize = 6;
-
 /// Standard deviations from which a pattern in the residuals is none of noise: once in a million of the
 /// fourteen squares that it is made of; and where one was found already.
 const PLAIN_AT_FIRST: f64 = 8.0;
 const PLAIN_AGAIN: f64 = 4.0;
-
-/// Passes over the windows of a record once its shape is known.
-const PASSES: usize = 3;
 
 /// The response that all steps of a joint share behind the dead time that each has of its own.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,6 +61,8 @@ pub struct OnsetModel {
     /// Of all steps, and of those of each kind.
     residual: Residual,
     kinds: [OfKind; KINDS],
+    /// Of the steps down and up.
+    directions: [Residual; 2],
     /// Standard deviations of noise from which a pattern in what is left is one.
     plain: f64,
     follows: Follows,
@@ -89,8 +75,6 @@ pub struct OnsetModel {
     /// Whether the output comes to rest where its input says, or at stops.
     comes_to_rest: bool,
 }
-
-const KINDS: usize = Transition::ALL.len();
 
 /// What is known of the steps of one kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -231,7 +215,7 @@ impl OnsetModel {
             let own = some(ENOUGH_FOR_MISFIT, every)?.by_kind(chosen);
             (left, choices) = left.with_own((own, common), (&search, factor), plain);
         }
-        let Left { pass, found, residual, kinds, .. } = left;
+        let Left { pass, found, residual, kinds, directions, .. } = left;
         let kinds = Transition::ALL.map(|kind| {
             let residual = kinds[kind as usize];
             let shared = choices[kind as usize].deviation(residual.memory) * factor;
@@ -247,6 +231,7 @@ impl OnsetModel {
             noise: search.noise,
             residual,
             kinds,
+            directions,
             plain,
             follows: Follows::of(&search.runs, &found),
             width: f64::INFINITY,
@@ -305,15 +290,17 @@ impl OnsetModel {
     ) -> (f64, f64) {
         /// Samples of all windows that count beside those of one.
         const POOLED: f64 = 20.0;
-        let kind = run.steps[index].kind;
+        let step = &run.steps[index];
+        let kind = step.kind;
         let OfKind { residual, shared, .. } = &self.kinds[kind as usize];
+        let pattern = residual.pattern.energy.max(self.directions[step.direction()].pattern.energy);
         let parameters = pass.response(kind).parameters() as f64;
         let freedom = (onset.samples() as f64 - parameters).max(1.0);
         let all = residual.deviation.max(self.noise).powi(2);
         let variance = (onset.sse + POOLED * all) / (freedom + POOLED);
         let t = student_quantile(f64::midpoint(1.0, confidence), freedom + POOLED);
-        let limit = onset.sse
-            + variance.max(f64::MIN_POSITIVE) * residual.memory * (t * t + residual.pattern.energy);
+        let limit =
+            onset.sse + variance.max(f64::MIN_POSITIVE) * residual.memory * (t * t + pattern);
         let (low, high) = pass.extent(run, index, onset, limit);
         (low.hypot(t * shared), high.hypot(t * shared))
     }
@@ -414,13 +401,18 @@ impl OnsetModel {
         self.follows.r2
     }
 
+    /// How often sizes of onsets that have nothing to do with the input go with it as much.
+    pub fn follows_input_p_value(&self) -> f64 {
+        self.follows.p_value
+    }
+
     /// Whether the joint answers in another way than any shape: what is left of the steps of some kind
     /// has more in common than noise has.
     pub fn is_misfit(&self) -> bool {
         /// What is left over in parts of the noise that needs nothing in common.
         const LARGE: f64 = 3.0;
-        let kinds = self.kinds.iter().map(|kind| &kind.residual);
-        let is_left = kinds.chain([&self.residual]).any(|it| it.pattern.is_plain(self.plain));
+        let parts = self.kinds.iter().map(|kind| &kind.residual).chain(&self.directions);
+        let is_left = parts.chain([&self.residual]).any(|it| it.pattern.is_plain(self.plain));
         is_left || self.has_own_shapes() || self.misfit() > LARGE
     }
 
@@ -446,123 +438,6 @@ impl OnsetModel {
     }
 }
 
-/// What shapes leave over, in all windows and in those of each kind of step.
-struct Left {
-    /// The delay from which onsets were found.
-    typical: f64,
-    pass: Pass,
-    found: Vec<Onsets>,
-    residual: Residual,
-    kinds: [Residual; KINDS],
-}
-
-impl Left {
-    fn of(search: &Search, shapes: Shapes, typical: f64) -> Self {
-        let mut pass = search.pass(shapes, typical);
-        let found = search.found(&mut pass, search.starting(typical), PASSES);
-        let residual = Residual::of(&search.runs, &found, &pass, None);
-        let kinds = Transition::ALL.map(|kind| {
-            let own = || Residual::of(&search.runs, &found, &pass, Some(kind));
-            if search.steps_of(kind) < FEWEST_OF_KIND { residual } else { own() }
-        });
-        Self { typical, pass, found, residual, kinds }
-    }
-
-    fn is_misfit(&self, plain: f64) -> bool {
-        self.kinds.iter().chain([&self.residual]).any(|it| it.pattern.is_plain(plain))
-    }
-
-    /// These with the shapes that kinds of steps have of their own, found in samples `factor` times as
-    /// long, where these fit; and the choice for each kind.
-    fn with_own(
-        self,
-        (own, common): ([Option<Choice>; KINDS], Choice),
-        (search, factor): (&Search, f64),
-        plain: f64,
-    ) -> (Self, [Choice; KINDS]) {
-        let mut shapes = self.pass.shapes;
-        for (kind, choice) in Transition::ALL.into_iter().zip(&own) {
-            shapes.set(kind, choice.as_ref().map_or(shapes.of(kind), |it| it.shape.scaled(factor)));
-        }
-        let all = Self::of(search, shapes, self.typical);
-        let fits = |kind: Transition| !all.kinds[kind as usize].pattern.is_plain(plain);
-        // A kind that no shape fits keeps that of all.
-        let choices = Transition::ALL.map(|kind| {
-            let own = own[kind as usize].clone().filter(|_| fits(kind));
-            if own.is_none() {
-                shapes.set(kind, self.pass.shapes.of(kind));
-            }
-            own.unwrap_or_else(|| common.clone())
-        });
-        let left =
-            if shapes == all.pass.shapes { all } else { Self::of(search, shapes, self.typical) };
-        (left, choices)
-    }
-}
-
-/// Where the runs of a joint are from.
-struct Origin {
-    period: SamplePeriod,
-    neutral: Option<Neutral>,
-    families: &'static [Family],
-}
-
-impl Search {
-    fn steps_of(&self, kind: Transition) -> usize {
-        self.runs.iter().flat_map(|run| &run.steps).filter(|step| step.kind == kind).count()
-    }
-
-    /// The choice among shapes for the steps of each kind by themselves, where there are enough. What one
-    /// kind needs beyond the simplest of them may be no lag: it is unsure by how much that moves onsets.
-    fn by_kind(&self, chosen: &Candidate) -> [Option<Choice>; KINDS] {
-        let all =
-            self.evaluate(chosen.shape, self.starting(chosen.typical), chosen.typical, PASSES);
-        let enough = |kind: &Transition| self.steps_of(*kind) >= FEWEST_OF_KIND;
-        let own = Transition::ALL
-            .map(|kind| Some(kind).filter(enough).map(|_| self.select_within(&all, Some(kind))));
-        let shapes = own.iter().flatten().filter_map(|(_, it)| Some(it.first()?.shape));
-        let simplest = shapes.min_by_key(|shape| (shape.order(), shape.curved));
-        own.map(|own| {
-            let (search, candidates) = own?;
-            let choice = Choice::of(&search, &candidates)?;
-            Some(choice.or_behind(simplest?, &search, candidates.first()?))
-        })
-    }
-
-    /// Samples to each side of an onset that are looked at at most.
-    fn longest_reach(&self) -> f64 {
-        if self.has_few_steps() { REACH_OF_FEW } else { REACHES.1 }
-    }
-
-    /// Every so many samples of runs, about a part of the reach.
-    fn of(
-        mut runs: Vec<Run>,
-        (every, part): (usize, f64),
-        families: &'static [Family],
-    ) -> Option<Self> {
-        if every > 1 {
-            runs = runs.iter().map(|run| thinned(run, every)).collect();
-        }
-        let hold = median(&runs.iter().flat_map(holds).collect::<Vec<f64>>())?;
-        let outputs = runs.iter().map(|run| run.output.as_slice());
-        let (low, high) = limits(outputs.clone().flatten().copied());
-        // An output that was computed has no noise but its rounding.
-        let noise = sensor_noise(&outputs).max(ROUNDING * (high - low));
-        let changes = runs.iter().flat_map(|run| &run.steps).map(|step| step.change().abs());
-        let change = median(&changes.collect::<Vec<f64>>())?;
-        let mut search = Self { runs, reach: 0, noise, hold, change, families };
-        search.reach = reach_of(hold, 1, part, search.longest_reach());
-        Some(search)
-    }
-}
-
-/// Samples to each side of an onset that are looked at, where every so many of a hold are.
-fn reach_of(hold: f64, every: usize, part: f64, most: f64) -> usize {
-    let (least, _) = REACHES;
-    let reach = (REACH * hold / every as f64).clamp(least, most) * part;
-    ceil_to_index(reach.max(LEAST_REACH)) * every
-}
-
 /// Whether most steps find the joint at rest: those of strokes.
 fn rests(trials: &[Prepared<'_>]) -> bool {
     let rests = |trial: &Prepared<'_>| {
@@ -571,79 +446,4 @@ fn rests(trials: &[Prepared<'_>]) -> bool {
     };
     let steps: usize = trials.iter().map(|trial| trial.steps.len()).sum();
     2 * trials.iter().map(rests).sum::<usize>() > steps
-}
-
-/// Samples from each step to the next.
-fn holds(run: &Run) -> Vec<f64> {
-    let ends = run.steps.iter().skip(1).map(|step| step.at).chain([run.output.len() as f64]);
-    run.steps.iter().zip(ends).map(|(step, end)| end - step.at).collect()
-}
-
-/// Every so many samples of a run.
-fn thinned(run: &Run, every: usize) -> Run {
-    let factor = every as f64;
-    let step = |step: &Step| Step {
-        at: step.at / factor,
-        first: step.first / factor,
-        end: step.end / factor,
-        latest: step.latest / factor,
-        ..*step
-    };
-    Run {
-        output: run.output.iter().step_by(every).copied().collect(),
-        steps: run.steps.iter().map(step).collect(),
-        is_window: false,
-    }
-}
-
-/// The first runs of so many samples together, the last of them up to one of its steps.
-fn beginning(runs: &[Run], enough: usize) -> Vec<Run> {
-    /// Steps of a run that is cut.
-    const FEWEST: usize = 2;
-    let mut left = enough as f64;
-    let mut taken = Vec::new();
-    for run in runs {
-        if left <= 0.0 {
-            break;
-        }
-        let within = run.steps.iter().filter(|step| step.at < left).count();
-        let steps = within.max(FEWEST).min(run.steps.len());
-        let end = run.steps.get(steps).map_or(run.output.len(), |step| floor_to_index(step.at));
-        let (output, steps) = (run.output[..end].to_vec(), run.steps[..steps].to_vec());
-        taken.push(Run { output, steps, is_window: false });
-        left -= end as f64;
-    }
-    taken
-}
-
-/// A trial as it is fitted: its output as it was measured, and its steps with what bounds the reaction to
-/// each.
-fn run_of(trial: &Prepared<'_>, longest: Option<usize>, origin: &Origin) -> Run {
-    let samples = trial.raw.len();
-    // A bump test of an output that settles is its way to a level.
-    let is_bounded = trial.steps.len() > FEW || !origin.families.contains(&Family::Settling);
-    let step = |(step, motion): (&InputStep, &Option<Box<StepMotion>>)| {
-        let at = step.sample - 1;
-        // What was filled in while nothing was logged says nothing.
-        let before = trial.unlogged.iter().rev().find(|gap| gap.end <= at);
-        let behind = trial.unlogged.iter().find(|gap| gap.start > at);
-        let bounds = motion.as_ref().filter(|_| is_bounded);
-        let first = before.map_or(0, |gap| gap.end).max(bounds.map_or(0, |it| it.first));
-        let end = behind.map_or(samples, |gap| gap.start);
-        let end = end.min(bounds.map_or(samples, |it| it.end));
-        let asked = longest.map_or(usize::MAX, |longest| at.saturating_add(longest));
-        let latest = motion.as_ref().map_or(samples, |motion| motion.latest).min(asked);
-        Step {
-            kind: Transition::of(step, origin.neutral.as_ref()),
-            at: at as f64,
-            before: step.before,
-            after: step.after,
-            first: first as f64,
-            end: end as f64,
-            latest: latest as f64,
-            rests: motion.as_ref().and_then(|motion| motion.rest).is_some_and(|rest| rest.lasts()),
-        }
-    };
-    let steps = trial.steps.iter().zip(&trial.motions).map(step).collect();
-    Run { output: trial.raw.to_vec(), steps, is_window: false }
 }

@@ -9,8 +9,7 @@
 //! # References
 //! M. S. Bartlett's weights as in W. K. Newey and K. D. West, Econometrica 55 (1987).
 
-use super::windows::{Onset, Onsets, Pass, Run, all};
-use crate::delay::neutral::Transition;
+use super::windows::{Onset, Onsets, Pass, Run, Step, all};
 use crate::numerics::{median, noise_of_bends, quantile};
 use crate::units::ceil_to_index;
 
@@ -55,12 +54,12 @@ pub(super) fn sensor_noise<'a>(outputs: &(impl Iterator<Item = &'a [f64]> + Clon
 }
 
 impl Residual {
-    /// Of the windows of the onsets, those of one kind of steps or of all.
+    /// Of the windows of the onsets of some steps.
     pub(super) fn of(
         runs: &[Run],
         onsets: &[Onsets],
         pass: &Pass,
-        kind: Option<Transition>,
+        is_one: impl Fn(&Step) -> bool,
     ) -> Self {
         let left = |(run, index, onset): (&Run, usize, &Onset)| {
             let fitted = pass.fitted(run, index, onset);
@@ -71,9 +70,8 @@ impl Residual {
             let variance = onset.sse / (left.len() as f64 - parameters as f64).max(1.0);
             Some((*onset, variance, left))
         };
-        let same = |run: &Run, index: usize| kind.is_none_or(|kind| run.steps[index].kind == kind);
         let windows: Vec<(Onset, f64, Vec<f64>)> = all(runs, onsets)
-            .filter(|(run, index, _)| same(run, *index))
+            .filter(|(run, index, _)| is_one(&run.steps[*index]))
             .filter_map(left)
             .collect();
         // A window that something else disturbed is no measure of the others.

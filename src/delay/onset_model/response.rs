@@ -9,7 +9,7 @@ use super::shape::{Family, Shape};
 /// time within, which keeps its numbers alike in size.
 pub(super) fn response_of(shape: &Shape, unit: f64, longest: usize) -> Box<dyn Response> {
     let h = unit.recip();
-    let [t, zeta] = shape.logs.map(f64::exp);
+    let [t, zeta, third] = shape.logs.map(f64::exp);
     match (shape.family, shape.curved) {
         (Family::Bend, false) | (Family::Slew, _) => Box::new(bend(unit, longest)),
         (Family::Settling, _) => {
@@ -26,6 +26,8 @@ pub(super) fn response_of(shape: &Shape, unit: f64, longest: usize) -> Box<dyn R
         (Family::Lag, true) => Box::new(dynamics(chain::<4>(h, &[t]), 1..2, longest)),
         (Family::Pair, false) => Box::new(dynamics(pair::<4>(h, t, zeta), 1..3, longest)),
         (Family::Pair, true) => Box::new(dynamics(pair::<5>(h, t, zeta), 1..3, longest)),
+        (Family::Triple, false) => Box::new(triple::<5>(h, (t, zeta, third), longest)),
+        (Family::Triple, true) => Box::new(triple::<6>(h, (t, zeta, third), longest)),
     }
 }
 
@@ -67,6 +69,20 @@ fn chain<const N: usize>(h: f64, lags: &[f64]) -> Square<N> {
         a[(N - 2, N - 1)] = h;
     }
     a
+}
+
+/// An integrator behind a pair of poles and a third one.
+fn triple<const N: usize>(
+    h: f64,
+    (omega, zeta, lag): (f64, f64, f64),
+    longest: usize,
+) -> Dynamics<N> {
+    let mut a = pair::<N>(h, omega, zeta);
+    (a[(3, 3)], a[(3, 4)]) = (-lag.recip(), lag.recip());
+    if N > 5 {
+        a[(4, 5)] = h;
+    }
+    dynamics(a, 1..4, longest)
 }
 
 /// An integrator behind a pair of poles.

@@ -20,11 +20,11 @@
 //! "Estimating the dimension of a model", Annals of Statistics 6 (1978).
 
 use super::alignment::{LONGEST, alignments};
-use super::dynamics::Before;
+use super::dynamics::{Before, Square, State};
 use super::follows::Follows;
 use super::residual::Residual;
 use super::response::response_of;
-use super::shape::{Family, Shape, Shapes};
+use super::shape::{Family, MOST, Shape, Shapes};
 use super::windows::{Onset, Onsets, Pass, Run, Step, all};
 use crate::delay::neutral::Transition;
 use crate::numerics::median;
@@ -209,11 +209,24 @@ impl Search {
 
     /// What Schwarz's criterion adds for the parameters of a shape.
     pub(super) fn of_parameters(&self, candidate: &Candidate) -> f64 {
+        let (times, distinct) = self.samples_of(candidate);
+        candidate.shape.order() as f64 / 2.0 * times * distinct.ln()
+    }
+
+    /// In how many windows a sample of a candidate stands at the mean, since between two onsets each is
+    /// in both, and how many samples there are.
+    fn samples_of(&self, candidate: &Candidate) -> (f64, f64) {
         let samples: f64 = candidate.found().map(|onset| onset.samples() as f64).sum();
-        // Between two onsets each sample stands in both windows.
         let distinct: f64 = self.runs.iter().map(|run| run.output.len() as f64).sum();
         let distinct = distinct.min(samples).max(1.0);
-        candidate.shape.order() as f64 / 2.0 * samples / distinct * distinct.ln()
+        (samples / distinct, distinct)
+    }
+
+    /// Akaike's criterion of a candidate, each sample counted once.
+    pub(super) fn akaike(&self, candidate: &Candidate) -> f64 {
+        let (times, _) = self.samples_of(candidate);
+        let order = candidate.shape.order() as f64;
+        (candidate.score - self.of_parameters(candidate)) / times.max(1.0) + order
     }
 
     /// The candidate with the parameters of least error near its own, its windows held and weighted
@@ -253,7 +266,7 @@ impl Search {
         };
         let mut best = (value(*shape), *shape);
         let here = best.0;
-        let mut at = |by: [f64; 2]| {
+        let mut at = |by: [f64; MOST]| {
             let moved = shape.moved(by);
             if !moved.is_allowed(self.hold, self.change) {
                 return f64::INFINITY;
@@ -264,23 +277,31 @@ impl Search {
             }
             value
         };
-        let near: Vec<f64> = near(shape.order(), h).map(&mut at).collect();
+        let order = shape.order();
+        let near: Vec<f64> = near(order, h).into_iter().map(&mut at).collect();
         if near.iter().all(|value| value.is_finite()) {
-            let (gradient, curvature) = (slopes(&near), Curvature::of(here, &near));
-            let downhill = || gradient.map(|slope| if slope > 0.0 { -2.0 } else { 2.0 });
-            let newton = curvature.solve(gradient).map(|step| step.map(|by| -by));
-            let mut step = newton.unwrap_or_else(downhill).map(|by| h * by.clamp(-3.0, 3.0));
-            if shape.order() == 1 {
-                step[1] = 0.0;
-            }
-            at(step);
+            let gradient = slopes(order, &near);
+            let newton = newton(&curvature(order, here, &near), &gradient);
+            let downhill =
+                || gradient.map(|slope| if slope == 0.0 { 0.0 } else { -2.0 * slope.signum() });
+            let step = newton.map_or_else(downhill, |step| -step);
+            at(step.map(|by| h * by.clamp(-3.0, 3.0)).into());
         }
         best.1
     }
 
     /// The shapes that the record supports, the best one first.
     pub(super) fn select(&self) -> Vec<Candidate> {
-        self.select_near(&self.first())
+        let mut all = self.select_near(&self.first());
+        let fewer = if self.has_few_steps() {
+            all.iter().find(|it| it.shape.family == Family::Settling)
+        } else {
+            all.first()
+        };
+        let more = fewer.and_then(|it| self.with_pole_more(it));
+        all.extend(more);
+        all.sort_by(|a, b| a.score.total_cmp(&b.score));
+        all
     }
 
     /// The shapes that it supports about the onsets of broken lines, the best one first.
@@ -311,36 +332,34 @@ impl Search {
             self.keep_those_that_follow(&mut all);
         }
         all.sort_by(|a, b| a.score.total_cmp(&b.score));
-        let mut all = self.restarted_at_best(all);
-        if self.has_few_steps() {
-            let settling = all.iter().find(|it| it.shape.family == Family::Settling);
-            let pair = settling.and_then(|it| self.with_second_pole(it));
-            all.extend(pair);
-            all.sort_by(|a, b| a.score.total_cmp(&b.score));
-        }
-        all
+        self.restarted_at_best(all)
     }
 
-    /// A candidate that settles with a second pole.
-    fn with_second_pole(&self, one: &Candidate) -> Option<Candidate> {
-        let shapes = one.shape.with_second_pole().into_iter();
-        let found = shapes.filter(|it| it.is_allowed(self.hold, self.change)).flat_map(|shape| {
-            // The dead time takes the second pole's part in a fit with one.
-            let [_, fast] = shape.real_lags().unwrap_or_default();
-            [0.0, -fast].map(|later| {
+    /// A candidate with a pole more.
+    fn with_pole_more(&self, one: &Candidate) -> Option<Candidate> {
+        let shapes = one.shape.with_pole_more().into_iter();
+        let shapes = shapes.filter(|it| it.is_allowed(self.hold, self.change));
+        let starts = shapes.flat_map(|shape| {
+            // The dead time takes the part of a pole that a fit is without.
+            let earlier = match shape.real_lags() {
+                Some([_, fast]) if shape.family == Family::SettlingPair => vec![0.0, -fast],
+                _ => vec![one.shape.mean() - shape.mean()],
+            };
+            earlier.into_iter().map(move |later| {
                 let onsets = one.onsets.iter().map(|of_run| of_run.later(later)).collect();
-                let start = self.evaluate(shape, onsets, one.typical + later, 2);
-                self.refined(start, ROUNDS)
+                self.evaluate(shape, onsets, one.typical + later, 2)
             })
         });
-        let mut two = found.min_by(|a, b| a.score.total_cmp(&b.score))?;
+        let near = starts.map(|start| self.refined(start, NEAR));
+        let mut more = near.min_by(|a, b| a.score.total_cmp(&b.score))?;
+        more = self.refined(more, ROUNDS);
         // Samples whose residuals go together are fewer than they look: those of a coarse sensor, say.
-        let pass = self.pass(Shapes::shared(two.shape), two.typical);
-        let memory = Residual::of(&self.runs, &two.onsets, &pass, None).memory;
-        let gained = one.score - two.score;
-        let parameters = self.steps() as f64 + self.of_parameters(&two) - self.of_parameters(one);
-        two.score = one.score - (gained + parameters) / memory + parameters;
-        Some(two)
+        let pass = self.pass(Shapes::shared(more.shape), more.typical);
+        let memory = Residual::of(&self.runs, &more.onsets, &pass, |_| true).memory;
+        let gained = one.score - more.score;
+        let parameters = self.steps() as f64 + self.of_parameters(&more) - self.of_parameters(one);
+        more.score = one.score - (gained + parameters) / memory + parameters;
+        Some(more)
     }
 
     /// Each candidate also from where the best has its onsets: which reaction is whose does not hang on
@@ -361,8 +380,6 @@ impl Search {
 
     /// Refines the candidates that are not plainly worse than the best once they are near their least.
     fn narrowed(&self, all: Vec<Candidate>) -> Vec<Candidate> {
-        /// Rounds behind which a candidate is near its least.
-        const NEAR: usize = 5;
         /// A criterion that is larger by this for each sample is plainly worse: an error 2.7 times
         /// as large.
         const WORSE: f64 = 1.0;
@@ -464,7 +481,7 @@ impl Search {
         let held = self.held(candidate);
         let samples: f64 = candidate.found().map(|onset| onset.samples() as f64).sum();
         let variance = candidate.found().map(|onset| onset.sse).sum::<f64>() / samples.max(1.0);
-        let at = |by: [f64; 2]| {
+        let at = |by: [f64; MOST]| {
             let pairs = self.moved(&held, shape.moved(by), *typical);
             let moves: Vec<f64> =
                 pairs.iter().map(|(was, now)| now.position - was.position).collect();
@@ -472,11 +489,11 @@ impl Search {
             // Each sample stands in two windows.
             (sse / (4.0 * variance), median(&moves).unwrap_or(0.0))
         };
-        let (errors, moves): (Vec<f64>, Vec<f64>) = near(shape.order(), H).map(at).unzip();
-        let gradient = slopes(&moves);
-        let solved = Curvature::of(at([0.0; 2]).0, &errors).solve(gradient);
-        let variance = solved.map(|[x, y]| x * gradient[0] + y * gradient[1]);
-        variance.unwrap_or(0.0).max(0.0)
+        let order = shape.order();
+        let (errors, moves): (Vec<f64>, Vec<f64>) = near(order, H).into_iter().map(at).unzip();
+        let gradient = slopes(order, &moves);
+        let solved = newton(&curvature(order, at([0.0; MOST]).0, &errors), &gradient);
+        solved.map_or(0.0, |solved| solved.dot(&gradient).max(0.0))
     }
 }
 
@@ -494,47 +511,47 @@ fn alone((run, index, onset): (&Run, usize, &Onset)) -> (Run, Onsets) {
     (Run { output, steps: vec![step], is_window: true }, Onsets::at(vec![onset.position - start]))
 }
 
-/// Rounds of Newton's method at most.
+/// Rounds of Newton's method at most, and those behind which a candidate is near its least.
 const ROUNDS: usize = 12;
+const NEAR: usize = 5;
 
-/// Where a function of one or two parameters is evaluated for its derivatives: at `(−h, 0)`, `(h, 0)`
-/// and, of two, at `(0, −h)`, `(0, h)` and `(h, h)`.
-fn near(order: usize, h: f64) -> impl Iterator<Item = [f64; 2]> {
-    let all = [[-h, 0.0], [h, 0.0], [0.0, -h], [0.0, h], [h, h]];
-    all.into_iter().take(if order == 1 { 2 } else { all.len() })
+/// Where a function of some parameters is evaluated for its derivatives: at `−h` and `h` of each, and
+/// at `h` of each two.
+fn near(order: usize, h: f64) -> Vec<[f64; MOST]> {
+    let point = |of: &[(usize, f64)]| {
+        let mut point = [0.0; MOST];
+        of.iter().for_each(|(index, value)| point[*index] = *value);
+        point
+    };
+    let axes = (0..order).flat_map(|i| [point(&[(i, -h)]), point(&[(i, h)])]);
+    axes.chain(pairs(order).map(|(i, j)| point(&[(i, h), (j, h)]))).collect()
 }
 
-/// The gradient, in units of `h`, from the values [`near`].
-fn slopes(near: &[f64]) -> [f64; 2] {
-    let slope =
-        |from: usize| near.get(from..from + 2).map_or(0.0, |pair| (pair[1] - pair[0]) / 2.0);
-    [slope(0), slope(2)]
+/// Each two of so many parameters.
+fn pairs(order: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..order).flat_map(move |i| (i + 1..order).map(move |j| (i, j)))
 }
 
-/// The second derivatives, in units of `h`; of one parameter 1 for the other.
-struct Curvature {
-    xx: f64,
-    yy: f64,
-    xy: f64,
+/// The gradient, in units of `h`, from the values [`near`]; 0 for parameters that there are not.
+fn slopes(order: usize, near: &[f64]) -> State<MOST> {
+    let slope = |i: usize| if i < order { (near[2 * i + 1] - near[2 * i]) / 2.0 } else { 0.0 };
+    State::from_fn(|i, _| slope(i))
 }
 
-impl Curvature {
-    /// From the value `here` and those [`near`].
-    fn of(here: f64, near: &[f64]) -> Self {
-        match *near {
-            [left, right, under, over, both] => Self {
-                xx: left - 2.0 * here + right,
-                yy: under - 2.0 * here + over,
-                xy: both - right - over + here,
-            },
-            _ => Self { xx: near.iter().sum::<f64>() - 2.0 * here, yy: 1.0, xy: 0.0 },
-        }
+/// The second derivatives, in units of `h`, from the value `here` and those [`near`].
+fn curvature(order: usize, here: f64, near: &[f64]) -> Square<MOST> {
+    let mut found = Square::identity();
+    for i in 0..order {
+        found[(i, i)] = near[2 * i] - 2.0 * here + near[2 * i + 1];
     }
-
-    /// `H⁻¹ g`; none where the function is not convex.
-    fn solve(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
-        let Self { xx, yy, xy } = *self;
-        let det = xx * yy - xy * xy;
-        (xx > 0.0 && det > 0.0).then(|| [(yy * x - xy * y) / det, (xx * y - xy * x) / det])
+    for ((i, j), both) in pairs(order).zip(&near[2 * order..]) {
+        let cross = both - near[2 * i + 1] - near[2 * j + 1] + here;
+        (found[(i, j)], found[(j, i)]) = (cross, cross);
     }
+    found
+}
+
+/// `H⁻¹ g`; none where the function is not convex.
+fn newton(curvature: &Square<MOST>, gradient: &State<MOST>) -> Option<State<MOST>> {
+    Some(curvature.cholesky()?.solve(gradient))
 }

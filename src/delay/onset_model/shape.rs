@@ -8,6 +8,8 @@
 //! bend_lag     y' = v,  T v' = s − v              first-order lag
 //! bend_lag2    y' = v,  v'' = ω²(s − v) − 2ζω v'  ζ ≥ 1: two real poles
 //! oscillation  the same, ζ < 1
+//!              v'' = ω²(x − v) − 2ζω v',          either with a third pole
+//!              T x' = s − x
 //! settling     T y' = s − y                       first order: a bump test is one step of it
 //!              y'' = ω²(s − y) − 2ζω y'           the same with a second pole, ζ ≥ 1
 //! slew         y' = s from the onset on for r·|Δu| samples: a constant rate into a level
@@ -24,17 +26,26 @@ pub(in crate::delay) enum Family {
     Bend,
     Lag,
     Pair,
+    Triple,
     Settling,
     SettlingPair,
     Slew,
 }
 
 impl Family {
-    pub(in crate::delay) const ALL: [Self; 6] =
-        [Self::Bend, Self::Lag, Self::Pair, Self::Settling, Self::SettlingPair, Self::Slew];
+    pub(in crate::delay) const ALL: [Self; 7] = [
+        Self::Bend,
+        Self::Lag,
+        Self::Pair,
+        Self::Triple,
+        Self::Settling,
+        Self::SettlingPair,
+        Self::Slew,
+    ];
 
     /// Those whose output goes on moving.
-    pub(in crate::delay) const MOVING: [Self; 3] = [Self::Bend, Self::Lag, Self::Pair];
+    pub(in crate::delay) const MOVING: [Self; 4] =
+        [Self::Bend, Self::Lag, Self::Pair, Self::Triple];
 
     /// Whether holds may be curved: the others come to rest.
     pub(super) fn may_be_curved(self) -> bool {
@@ -42,14 +53,18 @@ impl Family {
     }
 }
 
+/// Parameters of a response at most.
+pub(super) const MOST: usize = 3;
+
 /// A response with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shape {
     pub(super) family: Family,
     /// Whether the speed changes within holds.
     pub(super) curved: bool,
-    /// `ln T`, or `ln ω` and `ln ζ`, or `ln r`; times in samples.
-    pub(super) logs: [f64; 2],
+    /// `ln T`, or `ln ω` and `ln ζ`, with `ln T` behind them where there is a third pole, or `ln r`;
+    /// times in samples.
+    pub(super) logs: [f64; MOST],
 }
 
 /// The responses to the kinds of steps, in the order of [`Transition::ALL`].
@@ -90,7 +105,7 @@ impl Shapes {
 const CRITICAL: f64 = 1.0;
 
 impl Shape {
-    pub(super) const BEND: Self = Self { family: Family::Bend, curved: false, logs: [0.0; 2] };
+    pub(super) const BEND: Self = Self { family: Family::Bend, curved: false, logs: [0.0; MOST] };
 
     /// Number of its parameters.
     pub(super) fn order(&self) -> usize {
@@ -98,6 +113,7 @@ impl Shape {
             Family::Bend => 0,
             Family::Lag | Family::Settling | Family::Slew => 1,
             Family::Pair | Family::SettlingPair => 2,
+            Family::Triple => 3,
         }
     }
 
@@ -106,8 +122,8 @@ impl Shape {
         match self.family {
             Family::Bend => "bend",
             Family::Lag => "bend_lag",
-            Family::Pair if self.logs[1].exp() < CRITICAL => "oscillation",
-            Family::Pair => "bend_lag2",
+            Family::Pair | Family::Triple if self.logs[1].exp() < CRITICAL => "oscillation",
+            Family::Pair | Family::Triple => "bend_lag2",
             Family::Settling | Family::SettlingPair => "settling",
             Family::Slew => "slew",
         }
@@ -118,8 +134,14 @@ impl Shape {
         match self.family {
             Family::Bend | Family::Settling | Family::SettlingPair | Family::Slew => 0.0,
             Family::Lag => self.logs[0].exp(),
-            Family::Pair => 2.0 * (self.logs[1] - self.logs[0]).exp(),
+            Family::Pair => self.pair_mean(),
+            Family::Triple => self.pair_mean() + self.logs[2].exp(),
         }
+    }
+
+    /// How late a steady motion is behind a pair of poles.
+    fn pair_mean(&self) -> f64 {
+        2.0 * (self.logs[1] - self.logs[0]).exp()
     }
 
     /// Samples for which the motion lasts that a step of the input by `change` starts.
@@ -136,19 +158,24 @@ impl Shape {
             Family::Bend => {}
             Family::Pair | Family::SettlingPair => self.logs[0] -= factor.ln(),
             Family::Lag | Family::Settling | Family::Slew => self.logs[0] += factor.ln(),
+            Family::Triple => {
+                self.logs[0] -= factor.ln();
+                self.logs[2] += factor.ln();
+            }
         }
         self
     }
 
     /// This response with its parameters changed: an overdamped pair by the mean of its lag and by its
     /// damping, which are nearly independent, all others by their logarithms.
-    pub(super) fn moved(mut self, by: [f64; 2]) -> Self {
+    pub(super) fn moved(mut self, by: [f64; MOST]) -> Self {
         /// Damping from which the mean of the lag is what is known best.
         const DAMPED: f64 = 0.7;
-        let is_pair = matches!(self.family, Family::Pair | Family::SettlingPair);
+        let is_pair = matches!(self.family, Family::Pair | Family::SettlingPair | Family::Triple);
         let is_damped = is_pair && self.logs[1] > DAMPED.ln();
         self.logs[0] += if is_damped { by[1] - by[0] } else { by[0] };
         self.logs[1] += by[1];
+        self.logs[2] += by[2];
         self
     }
 
@@ -156,17 +183,18 @@ impl Shape {
     /// `change`. A lag of less than 0.7 samples
     /// moves the corner between samples, as a later onset does.
     pub(super) fn is_allowed(&self, hold: f64, change: f64) -> bool {
-        let [first, second] = self.logs;
+        let [first, second, third] = self.logs;
         let time = 0.7_f64.ln()..=(8.0 * hold).ln();
         match self.family {
             Family::Bend => true,
             Family::Lag | Family::Settling => time.contains(&first),
             // One that outlasts holds is a bend.
             Family::Slew => self.lasts(change) < hold,
-            Family::Pair => {
+            Family::Pair | Family::Triple => {
                 (-(4.0 * hold).ln()..=0.9).contains(&first)
                     && (0.02_f64.ln()..=3.0_f64.ln()).contains(&second)
                     && self.real_lags().is_none_or(|[_, fast]| time.contains(&fast.ln()))
+                    && (self.family == Family::Pair || time.contains(&third))
             }
             Family::SettlingPair => {
                 second <= 3.0_f64.ln()
@@ -183,7 +211,7 @@ impl Shape {
         let shape = |first: f64, second: f64| Self {
             family,
             curved: false,
-            logs: [first.ln(), second.ln()],
+            logs: [first.ln(), second.ln(), 0.0],
         };
         let times = |from: f64, factor: f64, to: f64| {
             std::iter::successors(Some(from), move |t| Some(t * factor))
@@ -196,8 +224,8 @@ impl Shape {
             Family::Slew => {
                 times(0.02, 2.0, 1.0).map(|part| shape(part * hold / change, 1.0)).collect()
             }
-            // Found from that with one pole.
-            Family::SettlingPair => Vec::new(),
+            // Found from those with a pole less.
+            Family::SettlingPair | Family::Triple => Vec::new(),
             Family::Pair => times(10.0, 2.4, 2.0 * hold)
                 .flat_map(|t| [0.15, 0.5, 1.2].map(|zeta| shape(std::f64::consts::TAU / t, zeta)))
                 .collect(),
@@ -206,37 +234,56 @@ impl Shape {
 
     /// Its parameters in seconds, with the names that they have in files.
     pub(super) fn parameters(&self, period_s: f64) -> Vec<(&'static str, f64)> {
-        let [first, second] = self.logs.map(f64::exp);
+        let [first, second, third] = self.logs.map(f64::exp);
         match self.family {
             Family::Bend => Vec::new(),
             Family::Lag | Family::Settling => vec![("time_constant_s", first * period_s)],
             Family::Slew => vec![("duration_s_per_unit", first * period_s)],
-            Family::Pair if second < CRITICAL => {
-                vec![("period_s", std::f64::consts::TAU / first * period_s), ("damping", second)]
+            Family::Pair | Family::Triple if second < CRITICAL => {
+                let period = std::f64::consts::TAU / first * period_s;
+                let mut found = vec![("period_s", period), ("damping", second)];
+                if self.family == Family::Triple {
+                    found.push(("time_constant_s", third * period_s));
+                }
+                found
             }
-            Family::Pair | Family::SettlingPair => {
-                let [slow, fast] = self.real_lags().unwrap_or_default().map(|t| t * period_s);
-                vec![("time_constant_s", slow), ("second_time_constant_s", fast)]
+            Family::Pair | Family::SettlingPair | Family::Triple => {
+                const NAMES: [&str; MOST] =
+                    ["time_constant_s", "second_time_constant_s", "third_time_constant_s"];
+                let mut lags = self.real_lags().unwrap_or_default().to_vec();
+                lags.extend((self.family == Family::Triple).then_some(third));
+                lags.sort_by(|a, b| b.total_cmp(a));
+                NAMES.into_iter().zip(lags.into_iter().map(|lag| lag * period_s)).collect()
             }
         }
     }
 
-    /// Responses with a second pole like this one that settles with one: their means are the same, and
-    /// that of the second pole is so large a part of the first.
-    pub(super) fn with_second_pole(&self) -> Vec<Self> {
-        let of_ratio = |ratio: f64| {
+    /// Responses like this one with a pole more, which is so large a part of the others. One that settles
+    /// has the same mean; one that goes on moving the same spread, as far as its pair is damped:
+    /// `2/ω² = 2/ω'² + T²` with `T = r/ω'`.
+    pub(super) fn with_pole_more(&self) -> Vec<Self> {
+        let settling = |ratio: f64| {
             // ω² = 1/(T₁T₂) and 2ζω = (T₁ + T₂)/(T₁T₂).
             let first = self.logs[0].exp() / (1.0 + ratio);
             let omega = (first * first * ratio).sqrt().recip();
             let zeta = (1.0 + ratio) * first * omega / 2.0;
-            Self { family: Family::SettlingPair, logs: [omega.ln(), zeta.ln()], ..*self }
+            Self { family: Family::SettlingPair, logs: [omega.ln(), zeta.ln(), 0.0], ..*self }
         };
-        [0.1, 0.4].map(of_ratio).to_vec()
+        let moving = |ratio: f64| {
+            let omega = self.logs[0] + (ratio * ratio / 2.0).ln_1p() / 2.0;
+            let logs = [omega, self.logs[1], ratio.ln() - omega];
+            Self { family: Family::Triple, logs, ..*self }
+        };
+        match self.family {
+            Family::Settling => [0.1, 0.4].map(settling).to_vec(),
+            Family::Pair => [0.3, 1.0].map(moving).to_vec(),
+            _ => Vec::new(),
+        }
     }
 
     /// The time constants of an overdamped pair, the longer one first: the poles of `s² + 2ζωs + ω²`.
     pub(super) fn real_lags(&self) -> Option<[f64; 2]> {
-        let [omega, zeta] = self.logs.map(f64::exp);
+        let [omega, zeta, _] = self.logs.map(f64::exp);
         let root = (zeta * zeta - 1.0).sqrt();
         (zeta >= CRITICAL).then(|| [zeta + root, zeta - root].map(|p| p / omega))
     }

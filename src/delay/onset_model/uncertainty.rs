@@ -28,7 +28,7 @@ impl Choice {
     /// Of the `candidates` of a search, the best one first.
     pub(super) fn of(search: &Search, candidates: &[Candidate]) -> Option<Self> {
         let chosen = candidates.first()?;
-        let among = candidates.iter().map(|it| (it.score, it.typical)).collect();
+        let among = candidates.iter().map(|it| (search.akaike(it), it.typical)).collect();
         let (shape, variance) = (chosen.shape, search.shared_variance(chosen));
         Some(Self { shape, variance, among, apart: 0.0 })
     }

@@ -45,6 +45,11 @@ impl Step {
     pub(super) fn change(&self) -> f64 {
         self.after - self.before
     }
+
+    /// 0 down, 1 up.
+    pub(super) fn direction(&self) -> usize {
+        usize::from(self.change() > 0.0)
+    }
 }
 
 /// A trial as it is fitted.
