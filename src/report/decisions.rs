@@ -171,7 +171,7 @@ impl Doubted<'_> {
         self.decision.fine.map(|fine| format!("{} … {}", number(fine.low), number(fine.high)))
     }
 
-    /// The same in words.
+    /// The interval in samples and in seconds, with its confidence.
     fn bounds(&self) -> Option<String> {
         let (fine, period_s) = (self.decision.fine?, self.trial.period().seconds());
         let [low, high] = [fine.low, fine.high].map(|end| end * period_s);

@@ -20,14 +20,14 @@
 //! "Estimating the dimension of a model", Annals of Statistics 6 (1978).
 
 use super::alignment::{LONGEST, alignments};
-use super::dynamics::{Before, Square, State};
+use super::dynamics::Before;
 use super::follows::Follows;
 use super::residual::Residual;
 use super::response::response_of;
 use super::shape::{Family, MOST, Shape, Shapes};
 use super::windows::{Onset, Onsets, Pass, Run, Step, all};
 use crate::delay::neutral::Transition;
-use crate::numerics::median;
+use crate::numerics::{Differences, median};
 
 /// Steps up to which a record is taken as a whole: a disturbed window is then no small part of it,
 /// and a curved hold cannot be told from a response.
@@ -278,13 +278,9 @@ impl Search {
             value
         };
         let order = shape.order();
-        let near: Vec<f64> = near(order, h).into_iter().map(&mut at).collect();
+        let near: Vec<f64> = Differences::places(order, h).into_iter().map(&mut at).collect();
         if near.iter().all(|value| value.is_finite()) {
-            let gradient = slopes(order, &near);
-            let newton = newton(&curvature(order, here, &near), &gradient);
-            let downhill =
-                || gradient.map(|slope| if slope == 0.0 { 0.0 } else { -2.0 * slope.signum() });
-            let step = newton.map_or_else(downhill, |step| -step);
+            let step = Differences::<MOST>::of(order, here, &near).step();
             at(step.map(|by| h * by.clamp(-3.0, 3.0)).into());
         }
         best.1
@@ -490,9 +486,10 @@ impl Search {
             (sse / (4.0 * variance), median(&moves).unwrap_or(0.0))
         };
         let order = shape.order();
-        let (errors, moves): (Vec<f64>, Vec<f64>) = near(order, H).into_iter().map(at).unzip();
-        let gradient = slopes(order, &moves);
-        let solved = newton(&curvature(order, at([0.0; MOST]).0, &errors), &gradient);
+        let places = Differences::places(order, H).into_iter();
+        let (errors, moves): (Vec<f64>, Vec<f64>) = places.map(at).unzip();
+        let gradient = Differences::<MOST>::of(order, 0.0, &moves).gradient;
+        let solved = Differences::of(order, at([0.0; MOST]).0, &errors).solved(&gradient);
         solved.map_or(0.0, |solved| solved.dot(&gradient).max(0.0))
     }
 }
@@ -514,44 +511,3 @@ fn alone((run, index, onset): (&Run, usize, &Onset)) -> (Run, Onsets) {
 /// Rounds of Newton's method at most, and those behind which a candidate is near its least.
 const ROUNDS: usize = 12;
 const NEAR: usize = 5;
-
-/// Where a function of some parameters is evaluated for its derivatives: at `−h` and `h` of each, and
-/// at `h` of each two.
-fn near(order: usize, h: f64) -> Vec<[f64; MOST]> {
-    let point = |of: &[(usize, f64)]| {
-        let mut point = [0.0; MOST];
-        of.iter().for_each(|(index, value)| point[*index] = *value);
-        point
-    };
-    let axes = (0..order).flat_map(|i| [point(&[(i, -h)]), point(&[(i, h)])]);
-    axes.chain(pairs(order).map(|(i, j)| point(&[(i, h), (j, h)]))).collect()
-}
-
-/// Each two of so many parameters.
-fn pairs(order: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..order).flat_map(move |i| (i + 1..order).map(move |j| (i, j)))
-}
-
-/// The gradient, in units of `h`, from the values [`near`]; 0 for parameters that there are not.
-fn slopes(order: usize, near: &[f64]) -> State<MOST> {
-    let slope = |i: usize| if i < order { (near[2 * i + 1] - near[2 * i]) / 2.0 } else { 0.0 };
-    State::from_fn(|i, _| slope(i))
-}
-
-/// The second derivatives, in units of `h`, from the value `here` and those [`near`].
-fn curvature(order: usize, here: f64, near: &[f64]) -> Square<MOST> {
-    let mut found = Square::identity();
-    for i in 0..order {
-        found[(i, i)] = near[2 * i] - 2.0 * here + near[2 * i + 1];
-    }
-    for ((i, j), both) in pairs(order).zip(&near[2 * order..]) {
-        let cross = both - near[2 * i + 1] - near[2 * j + 1] + here;
-        (found[(i, j)], found[(j, i)]) = (cross, cross);
-    }
-    found
-}
-
-/// `H⁻¹ g`; none where the function is not convex.
-fn newton(curvature: &Square<MOST>, gradient: &State<MOST>) -> Option<State<MOST>> {
-    Some(curvature.cholesky()?.solve(gradient))
-}
