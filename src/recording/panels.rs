@@ -68,9 +68,9 @@ impl Placed {
         let name = (palette::BORDER, name.collect::<Vec<_>>().join(" over "));
         let names: Vec<(Rgb, String)> = [name].into_iter().chain(named).collect();
         let whole: f32 = names.iter().map(|(_, text)| width(text)).sum();
-        // As far to the right as nothing is cut at the side of the sheet.
-        let end = plot.x(x.span.high) + 15.0;
-        let mut left = (plot.x(plot.middle()) - 0.5 * whole).min(end - whole);
+        // Nothing is cut at the sides of the sheet.
+        let (start, end) = (plot.x(x.span.low) - 100.0, plot.x(x.span.high) + 15.0);
+        let mut left = (plot.x(plot.middle()) - 0.5 * whole).min(end - whole).max(start);
         for (rgb, text) in names {
             let half = 0.5 * width(&text);
             texts.put_in(rgb, Vec2D::new(left + half, plot.top - LINE), text);

@@ -39,7 +39,9 @@ pub(super) fn add(
     let place = |(place, pairs): (usize, Pairs)| {
         let of_each = all.iter().map(|all| all.get(place));
         let left = 400.0 * place as f32;
-        Placed::new(panel(&pairs, of_each, unit), (left + 105.0, left + 385.0), 48.0..=226.0)
+        // There is room for one name above each plot; the residual is named above the first.
+        let y = if place == 0 { bracketed("residual", unit) } else { String::new() };
+        Placed::new(panel(&pairs, of_each, y), (left + 105.0, left + 385.0), 48.0..=226.0)
     };
     let placed = quantities(judged).into_iter().enumerate().map(place).collect();
     panels::add(&mut Layers::fixed(chunks, paths::SCATTER), &[placed])
@@ -50,7 +52,7 @@ pub(super) fn add(
 fn panel<'p>(
     pairs: &Pairs,
     of_each: impl Iterator<Item = Option<&'p Pairs>>,
-    unit: Option<&str>,
+    name: String,
 ) -> Panel {
     let x = Span::around(most_of(&pairs.x), 0.03);
     let y = Span::around(most_of(&pairs.residual), 0.05);
@@ -62,7 +64,7 @@ fn panel<'p>(
         let curve = own.map_or_else(Vec::new, curve).into_iter().filter(is_drawn).collect();
         Mark::new(Role::of_revision(number), Shape::Lines(vec![curve], 2.4))
     }));
-    let y = Axis::new(y, bracketed("residual", unit), 3.0);
+    let y = Axis::new(y, name, 3.0);
     Panel { x: Axis::new(x, pairs.name.clone(), 4.0), y, height: 190, marks }
 }
 

@@ -54,7 +54,7 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     format!("{table}\n{}\n\n{models}\n{residuals}{failures}", errors_note(&horizon))
 }
 
-/// The errors of models of one joint.
+/// The errors of models of one joint, a column each: beside a page of pictures there is no room for a row.
 pub(crate) fn model_table(models: &[ComparedJoint<'_>]) -> TextTable {
     let header = ["model", "training", "validation", "raw", "free run", "fit", "lack of fit"];
     let row = |of: &ComparedJoint<'_>| {
@@ -62,7 +62,7 @@ pub(crate) fn model_table(models: &[ComparedJoint<'_>]) -> TextTable {
             figures(of.joint, &errors_of(of.comparison));
         [of.model.to_owned(), training, validation, raw, free, fit, lack]
     };
-    TextTable::of(header, &[], models.iter().map(row))
+    TextTable::of(header, &[], models.iter().map(row)).turned()
 }
 
 /// The first model of a joint beside another one.

@@ -33,6 +33,16 @@ impl TextTable {
         Self { rows, ..Self::new(header, numbers) }
     }
 
+    /// Its rows as columns; the first of them is the header.
+    pub(super) fn turned(self) -> Self {
+        let cell = |row: &Vec<String>, column: usize| row.get(column).cloned().unwrap_or_default();
+        let turned = |column: usize| {
+            std::iter::once(&self.header).chain(&self.rows).map(|row| cell(row, column)).collect()
+        };
+        let mut rows = (0..self.header.len()).map(turned);
+        Self { header: rows.next().unwrap_or_default(), rows: rows.collect(), numbers: Vec::new() }
+    }
+
     /// Whether a column holds numbers.
     pub(super) fn is_number(&self, column: usize) -> bool {
         self.numbers.contains(&column)
@@ -76,5 +86,17 @@ mod tests {
         table.row(["boom".to_owned(), "7".to_owned()]);
         let lines: Vec<String> = table.to_string().lines().map(str::to_owned).collect();
         assert_eq!(lines[1..4], ["│ joint   steps │", "╞═══════════════╡", "│ boom        7 │"]);
+    }
+
+    #[test]
+    fn rows_are_turned_into_columns() {
+        let table = TextTable::of(
+            ["model", "raw"],
+            &[1],
+            [["a", "1"], ["b", "2"]].map(|row| row.map(str::to_owned)),
+        );
+        let turned = table.turned();
+        assert_eq!(turned.header, ["model", "a", "b"]);
+        assert_eq!(turned.rows, [["raw", "1", "2"]]);
     }
 }
