@@ -420,8 +420,8 @@ class DesignOptions(ReadOptions, total=False):
     output: File | None
     """Where the input goes: `time_s`, and `<joint>.input` of each joint."""
     preview: File | None
-    """Where the input goes with what is expected of it: a table (.csv), or a recording for the
-    Rerun viewer (.rrd)."""
+    """Where the input goes with what is expected of it: a table (.csv), or a page with figures
+    (.html)."""
     threads: int | None
     """Threads to use [default: all processors]."""
 
