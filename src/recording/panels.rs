@@ -50,7 +50,7 @@ impl Placed {
         grid.push(plot.frame());
         grid.extend(x.ticks.iter().map(|(x, _)| plot.vertical(*x).to_vec()));
         grid.extend(y.ticks.iter().map(|(y, _)| plot.level(*y).to_vec()));
-        for (x, text) in apart(x, |x| plot.x(x), |text| width(text)) {
+        for (x, text) in apart(x, |x| plot.x(x), width) {
             texts.put_in(palette::BORDER, plot.below(x, 2.0), text);
         }
         for (y, text) in apart(y, |y| plot.y(y), |_| LINE) {
