@@ -20,6 +20,8 @@ enum Plant {
     Lag(f64),
     /// The speed through a pair of poles with this period in seconds and damping.
     Oscillation(f64, f64),
+    /// The speed through a lag of this time constant where it grows, of this where it falls.
+    LagByDirection(f64, f64),
     /// The output itself through a first-order lag.
     FirstOrder(f64),
     /// The output at a constant rate into its level.
@@ -77,6 +79,10 @@ fn response(
                 v += h * w;
                 w += h * (omega * omega * (speed - v) - 2.0 * damping * omega * w);
             }
+            Plant::LagByDirection(up, down) => {
+                y += h * v;
+                v += h * (speed - v) / if speed > v { up } else { down };
+            }
             Plant::FirstOrder(t) => y += h * (u - y) / t,
             Plant::Play(t, width) => {
                 w += h * v;
@@ -131,6 +137,15 @@ fn each_shape_is_found_with_its_delay() {
         assert!(covered > 0.7 && accepted >= 18, "{shape}: {covered} of {accepted}");
         assert_eq!(model.obstacle(), None, "{shape}");
         assert!(model.follows_input_r2() > least, "{shape}");
+    }
+}
+
+#[test]
+fn a_lag_that_hangs_on_the_direction_is_said() {
+    for seed in 51..54 {
+        let trial = trial(Plant::LagByDirection(0.03, 0.15), 0.1, 60, 150.0, seed);
+        let found = found(&trial);
+        assert!(found.onset_model.unwrap().is_misfit(), "{seed}");
     }
 }
 

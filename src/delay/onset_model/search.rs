@@ -222,7 +222,7 @@ impl Search {
         (samples / distinct, distinct)
     }
 
-    /// Akaike's criterion of a candidate, each sample counted once.
+    /// Half of Akaike's criterion of a candidate, each sample counted once.
     pub(super) fn akaike(&self, candidate: &Candidate) -> f64 {
         let (times, _) = self.samples_of(candidate);
         let order = candidate.shape.order() as f64;

@@ -4,10 +4,14 @@
 //!   the window and from all windows of the joint, and `t` Student's quantile.
 //! - *The memory of what is left*, and *its pattern*: see [`super::residual`].
 //! - *The shared parameters*, by the delta method.
-//! - *The choice of the shape.* Other shapes count by `e^(−ΔS/θ)`, with `ΔS` the difference of
-//!   their criteria and `θ` the memory, by which the samples are fewer than they look.
+//! - *The choice of the shape.* Other shapes count by `e^(−ΔA/θ)`, with `ΔA` half the difference of
+//!   their criteria by Akaike and `θ` the memory, by which the samples are fewer than they look.
 //!
 //! The last two move all onsets of a joint together.
+//!
+//! # References
+//! K. P. Burnham and D. R. Anderson, "Model Selection and Multimodel Inference", 2002 (weights of
+//! models by Akaike's criterion).
 
 use super::search::{Candidate, Search};
 use super::shape::Shape;
