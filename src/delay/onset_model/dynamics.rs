@@ -38,8 +38,9 @@ use crate::units::ceil_to_index;
 pub(super) type Square<const N: usize> = SMatrix<f64, N, N>;
 pub(super) type State<const N: usize> = SVector<f64, N>;
 
-/// A part of the square of a column below which it depends on the others.
-const DEPENDENT: f64 = 1e-10;
+/// A part of the square of a column below which it depends on the others: half of the digits, since the
+/// inverse of an information matrix has no more where a window begins just before its onset.
+const DEPENDENT: f64 = 1.5e-8;
 
 /// What is fitted to windows, whatever the size of its state.
 pub(super) trait Response {
@@ -274,10 +275,11 @@ impl<const N: usize> Fit for Window<'_, N> {
         };
         let second = self.column(second, position);
         let its = self.products(&second);
-        let own = second.beta.dot(&its.w) - its.v.dot(&(self.inverse * its.v));
+        let its_square = second.beta.dot(&its.w);
+        let own = its_square - its.v.dot(&(self.inverse * its.v));
         let cross = second.beta.dot(&w) - its.v.dot(&solved);
         let det = d * own - cross * cross;
-        if det <= DEPENDENT * d * own {
+        if own <= DEPENDENT * its_square || det <= DEPENDENT * square * own {
             return nothing;
         }
         let size = (g * own - its.g * cross) / det;
@@ -344,6 +346,8 @@ fn inverse<const N: usize>(information: &Square<N>) -> Option<Square<N>> {
 mod tests {
     use nalgebra::{DMatrix, DVector};
 
+    use super::super::response::response_of;
+    use super::super::shape::{Family, Shape};
     use super::*;
     use crate::numerics::testing::uniform;
 
@@ -353,20 +357,20 @@ mod tests {
         Dynamics::new(a, State::<3>::new(0.0, 0.0, 1.0), None, Steady::any(), 100)
     }
 
-    fn response(t: f64) -> f64 {
+    fn response_at(t: f64) -> f64 {
         if t <= 0.0 { 0.0 } else { t - 4.0 * (1.0 - (-t / 4.0).exp()) }
     }
 
     #[test]
     fn the_error_is_that_of_the_regression_on_all_columns() {
         let mut white = uniform(3);
-        let y: Vec<f64> = (0..60).map(|k| response(f64::from(k) - 23.4) + white()).collect();
+        let y: Vec<f64> = (0..60).map(|k| response_at(f64::from(k) - 23.4) + white()).collect();
         let dynamics = lagged();
         let window = dynamics.window(&y, f64::INFINITY, Before::Any).unwrap();
         for position in [9.0, 17.25, 23.4, 40.9] {
             let columns = DMatrix::from_fn(60, 4, |j, column| {
                 let t = j as f64;
-                [1.0, t, (-t / 4.0).exp(), response(t - position)][column]
+                [1.0, t, (-t / 4.0).exp(), response_at(t - position)][column]
             });
             let y = DVector::from_column_slice(&y);
             let solved = columns.clone().svd(true, true).solve(&y, 1e-12).unwrap();
@@ -399,5 +403,22 @@ mod tests {
     fn a_window_that_is_too_short_has_no_onset() {
         assert!(lagged().window(&[0.0; 5], f64::INFINITY, Before::Any).is_none());
         assert!(lagged().window(&[0.0; 200], f64::INFINITY, Before::Any).is_none());
+    }
+
+    #[test]
+    fn an_onset_where_the_window_begins_explains_no_noise() {
+        // What it adds there is the motion before it in all samples but the first.
+        let shape = Shape { family: Family::Pair, curved: true, logs: [0.346_f64.ln(), 0.66, 0.0] };
+        let response = response_of(&shape, 145.0, 600);
+        let mut white = uniform(7);
+        let value = |k: i32| 200.0 + 3.0 * response_at(f64::from(k) - 330.2) + white();
+        let y: Vec<f64> = (0..541).map(value).collect();
+        let window = response.window(&y, f64::INFINITY, Before::Any).unwrap();
+        // Variance of uniform noise, a third of it taken at most.
+        let least = 541.0 / 12.0 * 2.0 / 3.0;
+        for position in (4..1076).map(|half| f64::from(half) / 2.0) {
+            let sse = window.at(position).sse;
+            assert!(sse > least, "{position}: {sse}");
+        }
     }
 }
