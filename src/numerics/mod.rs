@@ -25,7 +25,7 @@ pub use filter::{FilterError, LowPass, MAX_ORDER};
 pub use line::Line;
 pub(crate) use line::{PairSums, RunningLine};
 pub(crate) use moments::{autocovariances, column_products, dot};
-pub(crate) use newton::Differences;
+pub(crate) use newton::{Axes, Differences};
 pub(crate) use noise::NoiseModel;
 pub(crate) use normal_equations::NormalEquations;
 pub(crate) use projection::Basis;

@@ -20,6 +20,8 @@ enum Plant {
     Lag(f64),
     /// The speed through a pair of poles with this period in seconds and damping.
     Oscillation(f64, f64),
+    /// The same behind a first-order lag with this time constant.
+    LagOscillation(f64, f64, f64),
     /// The speed through a lag of this time constant where it grows, of this where it falls.
     LagByDirection(f64, f64),
     /// The output itself through a first-order lag.
@@ -56,7 +58,7 @@ fn response(
     noise: f64,
 ) -> Vec<f64> {
     let h = PERIOD_S / FINER as f64;
-    let (mut y, mut v, mut w) = (0.0, 0.0, 0.0);
+    let (mut y, mut v, mut w, mut x) = (0.0, 0.0, 0.0, 0.0);
     let mut output = Vec::new();
     for k in 0..input.len() * FINER {
         if k % FINER == 0 {
@@ -78,6 +80,13 @@ fn response(
                 y += h * v;
                 v += h * w;
                 w += h * (omega * omega * (speed - v) - 2.0 * damping * omega * w);
+            }
+            Plant::LagOscillation(t, period, damping) => {
+                let omega = std::f64::consts::TAU / period;
+                y += h * v;
+                v += h * w;
+                w += h * (omega * omega * (x - v) - 2.0 * damping * omega * w);
+                x += h * (speed - x) / t;
             }
             Plant::LagByDirection(up, down) => {
                 y += h * v;
@@ -177,6 +186,22 @@ fn joints_that_fit_are_not_warned_of() {
         let found = found(&trial(plant, 0.11, 50, 130.0, seed));
         let model = found.onset_model.as_deref().unwrap();
         assert!(!model.is_misfit() && !model.has_own_shapes(), "{seed}: {model:?}");
+    }
+}
+
+#[test]
+fn a_lag_before_an_oscillation_has_its_delay() {
+    // Holds of 0.6 to 1.4 s.
+    let plants = [(0.05, 0.25, 0.4), (0.11, 0.24, 0.2), (0.09, 0.27, 0.45), (0.1, 0.3, 0.6)];
+    for ((t, period, damping), seed) in plants.into_iter().zip(61..) {
+        let trial = trial(Plant::LagOscillation(t, period, damping), 0.1, 60, 100.0, seed);
+        let found = found(&trial);
+        let model = found.onset_model.as_deref().unwrap();
+        let (error, covered, accepted) = against(&found, 0.1);
+        assert!(!model.is_misfit() && model.shape() == "oscillation", "{t} s: {model:?}");
+        assert!(error < 0.3 && covered > 0.8, "{t} s: {error} {covered}");
+        assert!(accepted > 50, "{t} s: {accepted}");
+        assert!(model.parameters().iter().any(|(_, constant)| (constant / t - 1.0).abs() < 0.1));
     }
 }
 

@@ -11,6 +11,7 @@
 //! - [`windows`]: the windows of a joint's steps, and one pass over them
 //! - [`alignment`]: about which delay all onsets have
 //! - [`search`]: the shape and its parameters, by evidence over all steps
+//! - [`pole_more`]: where the search for a shape with a pole more begins
 //! - [`reaction`]: whether anything happened in one window
 //! - [`from_rest`]: the onset of a joint that gathers speed from rest
 //! - [`follows`]: whether the output follows this input at all
@@ -26,6 +27,7 @@ mod follows;
 mod from_rest;
 mod kinds;
 mod model;
+mod pole_more;
 mod reaction;
 mod residual;
 mod response;

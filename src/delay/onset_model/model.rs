@@ -9,7 +9,7 @@ use super::excerpt::{Origin, beginning, holds, reach_of, run_of};
 use super::follows::Follows;
 use super::kinds::{KINDS, Left, PASSES};
 use super::reaction::p_value;
-use super::residual::Residual;
+use super::residual::{PLAIN_AGAIN, PLAIN_AT_FIRST, Residual};
 use super::search::{FEW, Search};
 use super::shape::{Family, Shapes};
 use super::uncertainty::Choice;
@@ -36,11 +36,6 @@ const NEAR: f64 = 0.25;
 /// A part of what is explained below which it matters how much it is, and by how much less it may be.
 const PLAIN: f64 = 0.7;
 const WORSE: f64 = 0.03;
-
-/// Standard deviations from which a pattern in the residuals is none of noise: once in a million of the
-/// fourteen squares that it is made of; and where one was found already.
-const PLAIN_AT_FIRST: f64 = 8.0;
-const PLAIN_AGAIN: f64 = 4.0;
 
 /// The response that all steps of a joint share behind the dead time that each has of its own.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,6 +13,11 @@ use super::windows::{Onset, Onsets, Pass, Run, Step, all};
 use crate::numerics::{median, noise_of_bends, quantile};
 use crate::units::ceil_to_index;
 
+/// Standard deviations from which a pattern in the residuals is none of noise: once in a million of the
+/// fourteen squares that it is made of; and where one was found already.
+pub(super) const PLAIN_AT_FIRST: f64 = 8.0;
+pub(super) const PLAIN_AGAIN: f64 = 4.0;
+
 /// What the residuals of all windows of a joint say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Residual {

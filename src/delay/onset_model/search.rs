@@ -6,12 +6,15 @@
 //! the likelihood over the samples of all windows,
 //!
 //! ```text
-//! Σ_i (n_i/2 ln(SSE_i/n_i) + k) + (parameters of the shape)/2 · ln n
+//! Σ_i n_i/2 ln(SSE_i/n_i) + m (N/2 + 2 √(N/2)) + 2 N [curved] + (parameters of the shape)/2 · ln n
 //! ```
 //!
-//! with Akaike's count of the `k` parameters that each window has for itself, and Schwarz's of those of
-//! the shape; in which a window that something else disturbed
-//! counts by the logarithm of its error alone.
+//! with Schwarz's count of the parameters of the shape. A window that something else disturbed counts
+//! by the logarithm of its error alone. Each of the `m` states that follow takes from the errors of the
+//! `N` windows half of a chi-square variable of `N` degrees of freedom where it is not needed, `N/2 ± √(N/2)`:
+//! what it is at the start of a window is left by the step before and no choice, so that noise is all
+//! that it must be told from, by two standard deviations. The two sizes of a curved hold are chosen for
+//! each window and count as in Akaike's criterion.
 //! Shapes whose onsets go far less with the input than those of others have missed them.
 //!
 //! # References
@@ -22,12 +25,11 @@
 use super::alignment::{LONGEST, alignments};
 use super::dynamics::Before;
 use super::follows::Follows;
-use super::residual::Residual;
 use super::response::response_of;
 use super::shape::{Family, MOST, Shape, Shapes};
 use super::windows::{Onset, Onsets, Pass, Run, Step, all};
 use crate::delay::neutral::Transition;
-use crate::numerics::{Differences, median};
+use crate::numerics::{Axes, Differences, median};
 
 /// Steps up to which a record is taken as a whole: a disturbed window is then no small part of it,
 /// and a curved hold cannot be told from a response.
@@ -62,6 +64,17 @@ pub(super) struct Candidate {
     pub(super) typical: f64,
     /// Schwarz's criterion; less is better.
     pub(super) score: f64,
+}
+
+/// A round of Newton's method; errors in variances of what is left.
+struct Round {
+    shape: Shape,
+    /// By how much its error is less than before.
+    gained: f64,
+    /// By how much the error rises to the ends of the axes at most.
+    rises: f64,
+    /// Those of the next round.
+    axes: Axes<MOST>,
 }
 
 impl Candidate {
@@ -117,7 +130,8 @@ impl Search {
         let onsets = self.found(&mut pass, onsets, passes);
         let (typical, score) = (pass.typical, f64::INFINITY);
         let mut candidate = Candidate { shape, onsets, typical, score };
-        candidate.score = self.score(&candidate, pass.responses[0].1.parameters())
+        candidate.score = self.of_error(&candidate)
+            + self.of_windows(&candidate)
             + self.of_parameters(&candidate);
         candidate
     }
@@ -187,12 +201,12 @@ impl Search {
         self.runs.iter().zip(held).flat_map::<Vec<_>, _>(of_run).collect()
     }
 
-    /// What is left over in all windows: the negative logarithm of its likelihood, and one for each
-    /// parameter that windows have for themselves, as Akaike's criterion counts those.
-    fn score(&self, candidate: &Candidate, parameters: usize) -> f64 {
+    /// What is left over in all windows, in units of the noise: the negative logarithm of its likelihood.
+    fn of_error(&self, candidate: &Candidate) -> f64 {
         /// Of the noise: what is left where there is none.
         const FLOOR: f64 = 0.1;
-        let floor = (FLOOR * self.noise).powi(2).max(f64::MIN_POSITIVE);
+        let variance = self.noise.powi(2).max(f64::MIN_POSITIVE);
+        let log = |mean_square: f64| (mean_square / variance).max(FLOOR * FLOOR).ln();
         let found = || candidate.found();
         let samples = found().map(|onset| onset.samples() as f64).sum::<f64>();
         let windows = found().count();
@@ -200,11 +214,21 @@ impl Search {
             return f64::INFINITY;
         }
         let error = if windows <= FEW_FOR_WEIGHTS {
-            samples * (found().map(|onset| onset.sse).sum::<f64>() / samples).max(floor).ln()
+            samples * log(found().map(|onset| onset.sse).sum::<f64>() / samples)
         } else {
-            found().map(|onset| onset.samples() as f64 * onset.mean_square().max(floor).ln()).sum()
+            found().map(|onset| onset.samples() as f64 * log(onset.mean_square())).sum()
         };
-        error / 2.0 + (parameters * windows) as f64
+        error / 2.0
+    }
+
+    /// What windows have for themselves beyond the onset, its size and the motion before it: states that
+    /// follow, and sizes of a curved hold.
+    pub(super) fn of_windows(&self, candidate: &Candidate) -> f64 {
+        const DEVIATIONS: f64 = 2.0;
+        let windows = candidate.found().count() as f64;
+        let by_noise = windows / 2.0 + DEVIATIONS * (windows / 2.0).sqrt();
+        let curved = if candidate.shape.curved { 2.0 * windows } else { 0.0 };
+        candidate.shape.followers() as f64 * by_noise + curved
     }
 
     /// What Schwarz's criterion adds for the parameters of a shape.
@@ -222,7 +246,8 @@ impl Search {
         (samples / distinct, distinct)
     }
 
-    /// Half of Akaike's criterion of a candidate, each sample counted once.
+    /// Half of Akaike's criterion of a candidate, each sample counted once, and what windows have for
+    /// themselves as in its score.
     pub(super) fn akaike(&self, candidate: &Candidate) -> f64 {
         let (times, _) = self.samples_of(candidate);
         let order = candidate.shape.order() as f64;
@@ -231,31 +256,30 @@ impl Search {
 
     /// The candidate with the parameters of least error near its own, its windows held and weighted
     /// by what is left in each; at most so many rounds of Newton's method.
-    fn refined(&self, candidate: Candidate, rounds: usize) -> Candidate {
-        /// The first distance of the differences, in a logarithm, and where the search ends.
-        const FIRST: f64 = 0.15;
-        const LAST: f64 = 2e-4;
+    pub(super) fn refined(&self, candidate: Candidate, rounds: usize) -> Candidate {
+        /// Less of the error than this is no gain: a small part of a parameter's standard error.
+        const LITTLE: f64 = 0.01;
+        /// Axes along which it rises by less show where its least is (chosen).
+        const SEEN: f64 = 10.0;
         let mut candidate = candidate;
         if candidate.shape.order() == 0 {
             return candidate;
         }
-        let mut h = FIRST;
+        let (mut axes, mut before) = (Axes::identity() * DISTANCES.1, f64::INFINITY);
         for _ in 0..rounds {
-            let shape = self.newton_step(&candidate, h);
-            let pairs = shape.logs.iter().zip(&candidate.shape.logs);
-            let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let round = self.newton_step(&candidate, &axes);
             let Candidate { onsets, typical, .. } = candidate;
-            candidate = self.evaluate(shape, onsets, typical, 1);
-            h = change.clamp(h / 6.0, h);
-            if change < LAST && h < 10.0 * LAST {
+            candidate = self.evaluate(round.shape, onsets, typical, 1);
+            if round.gained < LITTLE && (round.rises < SEEN || before < LITTLE) {
                 break;
             }
+            (axes, before) = (round.axes, round.gained);
         }
         candidate
     }
 
-    /// The best of the points at a distance `h` in the parameters, and of Newton's.
-    fn newton_step(&self, candidate: &Candidate, h: f64) -> Shape {
+    /// The best of the points at the ends of axes in the parameters and of Newton's.
+    fn newton_step(&self, candidate: &Candidate, axes: &Axes<MOST>) -> Round {
         let Candidate { shape, typical, .. } = candidate;
         let held = self.held(candidate);
         let middle = candidate.found().map(Onset::mean_square).collect::<Vec<f64>>();
@@ -264,8 +288,8 @@ impl Search {
         let value = |shape: Shape| -> f64 {
             self.moved(&held, shape, *typical).into_iter().map(weighted).sum()
         };
-        let mut best = (value(*shape), *shape);
-        let here = best.0;
+        let here = value(*shape);
+        let mut best = (here, *shape, 0.0);
         let mut at = |by: [f64; MOST]| {
             let moved = shape.moved(by);
             if !moved.is_allowed(self.hold, self.change) {
@@ -273,29 +297,32 @@ impl Search {
             }
             let value = value(moved);
             if value < best.0 {
-                best = (value, moved);
+                best = (value, moved, by.into_iter().map(f64::abs).fold(0.0, f64::max));
             }
             value
         };
         let order = shape.order();
-        let near: Vec<f64> = Differences::places(order, h).into_iter().map(&mut at).collect();
+        let near: Vec<f64> = Differences::places(order, axes).into_iter().map(&mut at).collect();
+        let mut next = *axes;
         if near.iter().all(|value| value.is_finite()) {
-            let step = Differences::<MOST>::of(order, here, &near).step();
-            at(step.map(|by| h * by.clamp(-3.0, 3.0)).into());
+            let differences = Differences::<MOST>::of(order, here, &near);
+            for farthest in FARTHEST {
+                at(differences.step(axes, farthest));
+            }
+            // Far from the least, what is next to a point says little.
+            let (least, most) = DISTANCES;
+            next = differences.axes(axes, (least.max(best.2 / 3.0).min(most), most));
+        } else {
+            next /= 3.0;
         }
-        best.1
+        let rises = near.into_iter().fold(0.0, |most, value| f64::max(most, value - here));
+        Round { shape: best.1, gained: here - best.0, rises, axes: next }
     }
 
     /// The shapes that the record supports, the best one first.
     pub(super) fn select(&self) -> Vec<Candidate> {
         let mut all = self.select_near(&self.first());
-        let fewer = if self.has_few_steps() {
-            all.iter().find(|it| it.shape.family == Family::Settling)
-        } else {
-            all.first()
-        };
-        let more = fewer.and_then(|it| self.with_pole_more(it));
-        all.extend(more);
+        all.extend(self.with_pole_more(&all));
         all.sort_by(|a, b| a.score.total_cmp(&b.score));
         all
     }
@@ -329,33 +356,6 @@ impl Search {
         }
         all.sort_by(|a, b| a.score.total_cmp(&b.score));
         self.restarted_at_best(all)
-    }
-
-    /// A candidate with a pole more.
-    fn with_pole_more(&self, one: &Candidate) -> Option<Candidate> {
-        let shapes = one.shape.with_pole_more().into_iter();
-        let shapes = shapes.filter(|it| it.is_allowed(self.hold, self.change));
-        let starts = shapes.flat_map(|shape| {
-            // The dead time takes the part of a pole that a fit is without.
-            let earlier = match shape.real_lags() {
-                Some([_, fast]) if shape.family == Family::SettlingPair => vec![0.0, -fast],
-                _ => vec![one.shape.mean() - shape.mean()],
-            };
-            earlier.into_iter().map(move |later| {
-                let onsets = one.onsets.iter().map(|of_run| of_run.later(later)).collect();
-                self.evaluate(shape, onsets, one.typical + later, 2)
-            })
-        });
-        let near = starts.map(|start| self.refined(start, NEAR));
-        let mut more = near.min_by(|a, b| a.score.total_cmp(&b.score))?;
-        more = self.refined(more, ROUNDS);
-        // Samples whose residuals go together are fewer than they look: those of a coarse sensor, say.
-        let pass = self.pass(Shapes::shared(more.shape), more.typical);
-        let memory = Residual::of(&self.runs, &more.onsets, &pass, |_| true).memory;
-        let gained = one.score - more.score;
-        let parameters = self.steps() as f64 + self.of_parameters(&more) - self.of_parameters(one);
-        more.score = one.score - (gained + parameters) / memory + parameters;
-        Some(more)
     }
 
     /// Each candidate also from where the best has its onsets: which reaction is whose does not hang on
@@ -469,9 +469,11 @@ impl Search {
     /// by the delta method, `gᵀ H⁻¹ g`, with `g` how far the onsets move and `H` the curvature of
     /// the error in units of its variance; samples squared.
     pub(super) fn shared_variance(&self, candidate: &Candidate) -> f64 {
-        const H: f64 = 0.02;
+        /// Rounds in which the axes of the differences are found.
+        const ROUNDS: usize = 3;
         let Candidate { shape, typical, .. } = candidate;
-        if shape.order() == 0 {
+        let order = shape.order();
+        if order == 0 {
             return 0.0;
         }
         let held = self.held(candidate);
@@ -485,12 +487,18 @@ impl Search {
             // Each sample stands in two windows.
             (sse / (4.0 * variance), median(&moves).unwrap_or(0.0))
         };
-        let order = shape.order();
-        let places = Differences::places(order, H).into_iter();
-        let (errors, moves): (Vec<f64>, Vec<f64>) = places.map(at).unzip();
-        let gradient = Differences::<MOST>::of(order, 0.0, &moves).gradient;
-        let solved = Differences::of(order, at([0.0; MOST]).0, &errors).solved(&gradient);
-        solved.map_or(0.0, |solved| solved.dot(&gradient).max(0.0))
+        let here = at([0.0; MOST]).0;
+        let (mut axes, mut found) = (Axes::identity() * DISTANCES.1 / 3.0, 0.0);
+        for _ in 0..ROUNDS {
+            let places = Differences::places(order, &axes).into_iter();
+            let (errors, moves): (Vec<f64>, Vec<f64>) = places.map(at).unzip();
+            let gradient = Differences::<MOST>::of(order, 0.0, &moves).gradient;
+            let differences = Differences::of(order, here, &errors);
+            let solved = differences.solved(&gradient);
+            found = solved.map_or(found, |solved| solved.dot(&gradient).max(0.0));
+            axes = differences.axes(&axes, DISTANCES);
+        }
+        found
     }
 }
 
@@ -508,6 +516,13 @@ fn alone((run, index, onset): (&Run, usize, &Onset)) -> (Run, Onsets) {
     (Run { output, steps: vec![step], is_window: true }, Onsets::at(vec![onset.position - start]))
 }
 
+/// The least and the first distance of differences in a parameter.
+const DISTANCES: (f64, f64) = (1e-3, 0.15);
+
+/// How far Newton's method goes in one round: where the function is as its differences say, and where
+/// it is so only near them.
+const FARTHEST: [f64; 2] = [0.45, 0.05];
+
 /// Rounds of Newton's method at most, and those behind which a candidate is near its least.
-const ROUNDS: usize = 12;
-const NEAR: usize = 5;
+pub(super) const ROUNDS: usize = 12;
+pub(super) const NEAR: usize = 5;

@@ -117,6 +117,16 @@ impl Shape {
         }
     }
 
+    /// States between the speed, or the level, that a step sets and what the output does.
+    pub(super) fn followers(&self) -> usize {
+        match self.family {
+            Family::Bend | Family::Settling | Family::Slew => 0,
+            Family::Lag | Family::SettlingPair => 1,
+            Family::Pair => 2,
+            Family::Triple => 3,
+        }
+    }
+
     /// Its name in files.
     pub(super) fn id(&self) -> &'static str {
         match self.family {
@@ -167,16 +177,41 @@ impl Shape {
     }
 
     /// This response with its parameters changed: an overdamped pair by the mean of its lag and by its
-    /// damping, which are nearly independent, all others by their logarithms.
+    /// damping, which are nearly independent, three poles by what they have in common, all others by
+    /// their logarithms.
     pub(super) fn moved(mut self, by: [f64; MOST]) -> Self {
         /// Damping from which the mean of the lag is what is known best.
         const DAMPED: f64 = 0.7;
         let is_pair = matches!(self.family, Family::Pair | Family::SettlingPair | Family::Triple);
         let is_damped = is_pair && self.logs[1] > DAMPED.ln();
+        if is_damped && self.family == Family::Triple {
+            return self.moved_in_common(by);
+        }
         self.logs[0] += if is_damped { by[1] - by[0] } else { by[0] };
         self.logs[1] += by[1];
         self.logs[2] += by[2];
         self
+    }
+
+    /// Three poles changed by the logarithms of the coefficients of their polynomial `1 + a s + b s² + c s³`
+    /// in units of their mean `a`, and of this mean. Which of them is the third one is no matter to these;
+    /// where it is the same as one of the others, its time constant and theirs have one effect.
+    fn moved_in_common(&self, [mean, second, third]: [f64; MOST]) -> Self {
+        let [omega, zeta, lag] = self.logs.map(f64::exp);
+        let (pair, square) = (2.0 * zeta / omega, omega.powi(-2));
+        let a = (pair + lag) * mean.exp();
+        let b = (square + pair * lag) * (2.0 * mean + second).exp();
+        let c = square * lag * (3.0 * mean + third).exp();
+        // Time constants are the roots of x³ − a x² + b x − c; there is one from 0 to a of stable poles.
+        let value = |x: f64| ((x - a) * x + b) * x - c;
+        let (mut low, mut high) = (0.0, a);
+        for _ in 0..60 {
+            let middle = f64::midpoint(low, high);
+            *(if value(middle) < 0.0 { &mut low } else { &mut high }) = middle;
+        }
+        let omega = (high / c).sqrt();
+        let logs = [omega.ln(), (omega * (a - high) / 2.0).ln(), high.ln()];
+        Self { logs, ..*self }
     }
 
     /// Whether samples can show it where holds last `hold` samples and steps of the input are by
@@ -258,33 +293,42 @@ impl Shape {
         }
     }
 
-    /// Responses like this one with a pole more, which is so large a part of the others. One that settles
-    /// has the same mean; one that goes on moving the same spread, as far as its pair is damped:
-    /// `2/ω² = 2/ω'² + T²` with `T = r/ω'`.
-    pub(super) fn with_pole_more(&self) -> Vec<Self> {
-        let settling = |ratio: f64| {
-            // ω² = 1/(T₁T₂) and 2ζω = (T₁ + T₂)/(T₁T₂).
-            let first = self.logs[0].exp() / (1.0 + ratio);
-            let omega = (first * first * ratio).sqrt().recip();
-            let zeta = (1.0 + ratio) * first * omega / 2.0;
-            Self { family: Family::SettlingPair, logs: [omega.ln(), zeta.ln(), 0.0], ..*self }
-        };
-        let moving = |ratio: f64| {
-            let omega = self.logs[0] + (ratio * ratio / 2.0).ln_1p() / 2.0;
-            let logs = [omega, self.logs[1], ratio.ln() - omega];
-            Self { family: Family::Triple, logs, ..*self }
-        };
-        match self.family {
-            Family::Settling => [0.1, 0.4].map(settling).to_vec(),
-            Family::Pair => [0.3, 1.0].map(moving).to_vec(),
-            _ => Vec::new(),
-        }
-    }
-
     /// The time constants of an overdamped pair, the longer one first: the poles of `s² + 2ζωs + ω²`.
     pub(super) fn real_lags(&self) -> Option<[f64; 2]> {
         let [omega, zeta, _] = self.logs.map(f64::exp);
         let root = (zeta * zeta - 1.0).sqrt();
         (zeta >= CRITICAL).then(|| [zeta + root, zeta - root].map(|p| p / omega))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three real poles, of which the last is the third one.
+    fn lags([one, other, third]: [f64; 3]) -> Shape {
+        let omega = (one * other).sqrt().recip();
+        let zeta = (one + other) * omega / 2.0;
+        Shape { family: Family::Triple, curved: false, logs: [omega.ln(), zeta.ln(), third.ln()] }
+    }
+
+    fn polynomial(shape: &Shape) -> [f64; 3] {
+        let [omega, zeta, lag] = shape.logs.map(f64::exp);
+        let (pair, square) = (2.0 * zeta / omega, omega.powi(-2));
+        [pair + lag, square + pair * lag, square * lag]
+    }
+
+    #[test]
+    fn three_poles_move_alike_whichever_is_the_third_one() {
+        for by in [[0.0; 3], [0.1, -0.02, 0.05], [-0.2, 0.01, -0.1]] {
+            let moved = [[4.0, 7.0, 3.0], [3.0, 7.0, 4.0], [4.0, 3.0, 7.0]]
+                .map(|of| polynomial(&lags(of).moved(by)));
+            let [one, other, third] = &moved;
+            for k in 0..3 {
+                let apart = (one[k] / other[k]).ln().abs() + (one[k] / third[k]).ln().abs();
+                assert!(apart < 1e-9, "{by:?}: {moved:?}");
+            }
+            assert!((one[0].ln() - 14.0_f64.ln() - by[0]).abs() < 1e-9, "{moved:?}");
+        }
     }
 }

@@ -19,7 +19,7 @@ pub(super) const MARGIN: usize = 2;
 const SEEN: f64 = 10.0;
 
 /// How finely an onset is found, samples.
-const FINE: f64 = 0.01;
+const FINE: f64 = 0.002;
 
 /// Positions over a window that are looked at before the best one is searched finely.
 const COARSE: usize = 100;
