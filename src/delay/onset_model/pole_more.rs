@@ -77,7 +77,7 @@ impl Search {
     fn by_memory(&self, mut more: Candidate, fewer: &Candidate) -> Candidate {
         let memory = self.residual(&more).memory;
         let gained = fewer.score - more.score;
-        let of = |it: &Candidate| self.of_windows(it) + self.of_parameters(it);
+        let of = |it: &Candidate| it.of_windows() + self.of_parameters(it);
         let parameters = of(&more) - of(fewer);
         more.score = fewer.score - (gained + parameters) / memory + parameters;
         more

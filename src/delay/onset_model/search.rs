@@ -46,6 +46,8 @@ pub(super) struct Search {
     pub(super) reach: usize,
     /// Standard deviation of the sensor's noise.
     pub(super) noise: f64,
+    /// Standard deviation below which nothing is left but rounding.
+    pub(super) floor: f64,
     /// Median hold, samples.
     pub(super) hold: f64,
     /// Median size of the steps of the input.
@@ -80,6 +82,16 @@ struct Round {
 impl Candidate {
     pub(super) fn found(&self) -> impl Iterator<Item = &Onset> + Clone {
         self.onsets.iter().flat_map(|of_run| of_run.found.iter().flatten())
+    }
+
+    /// What windows have for themselves beyond the onset, its size and the motion before it: states that
+    /// follow, and sizes of a curved hold.
+    pub(super) fn of_windows(&self) -> f64 {
+        const DEVIATIONS: f64 = 2.0;
+        let windows = self.found().count() as f64;
+        let by_noise = windows / 2.0 + DEVIATIONS * (windows / 2.0).sqrt();
+        let curved = if self.shape.curved { 2.0 * windows } else { 0.0 };
+        self.shape.followers() as f64 * by_noise + curved
     }
 }
 
@@ -130,9 +142,8 @@ impl Search {
         let onsets = self.found(&mut pass, onsets, passes);
         let (typical, score) = (pass.typical, f64::INFINITY);
         let mut candidate = Candidate { shape, onsets, typical, score };
-        candidate.score = self.of_error(&candidate)
-            + self.of_windows(&candidate)
-            + self.of_parameters(&candidate);
+        candidate.score =
+            self.of_error(&candidate) + candidate.of_windows() + self.of_parameters(&candidate);
         candidate
     }
 
@@ -203,10 +214,8 @@ impl Search {
 
     /// What is left over in all windows, in units of the noise: the negative logarithm of its likelihood.
     fn of_error(&self, candidate: &Candidate) -> f64 {
-        /// Of the noise: what is left where there is none.
-        const FLOOR: f64 = 0.1;
-        let variance = self.noise.powi(2).max(f64::MIN_POSITIVE);
-        let log = |mean_square: f64| (mean_square / variance).max(FLOOR * FLOOR).ln();
+        let [variance, floor] = [self.noise.max(self.floor), self.floor].map(|it| it * it);
+        let log = |mean_square: f64| (mean_square.max(floor) / variance).ln();
         let found = || candidate.found();
         let samples = found().map(|onset| onset.samples() as f64).sum::<f64>();
         let windows = found().count();
@@ -219,16 +228,6 @@ impl Search {
             found().map(|onset| onset.samples() as f64 * log(onset.mean_square())).sum()
         };
         error / 2.0
-    }
-
-    /// What windows have for themselves beyond the onset, its size and the motion before it: states that
-    /// follow, and sizes of a curved hold.
-    pub(super) fn of_windows(&self, candidate: &Candidate) -> f64 {
-        const DEVIATIONS: f64 = 2.0;
-        let windows = candidate.found().count() as f64;
-        let by_noise = windows / 2.0 + DEVIATIONS * (windows / 2.0).sqrt();
-        let curved = if candidate.shape.curved { 2.0 * windows } else { 0.0 };
-        candidate.shape.followers() as f64 * by_noise + curved
     }
 
     /// What Schwarz's criterion adds for the parameters of a shape.
