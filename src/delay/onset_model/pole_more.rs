@@ -9,8 +9,16 @@ use super::search::{Candidate, NEAR, ROUNDS, Search};
 use super::shape::{Family, Shape, Shapes};
 
 impl Search {
+    /// The shapes that the record supports, the best one first.
+    pub(super) fn select(&self) -> Vec<Candidate> {
+        let mut all = self.select_near(&self.first());
+        all.extend(self.with_pole_more(&all));
+        all.sort_by(|a, b| a.score.total_cmp(&b.score));
+        all
+    }
+
     /// The shapes with a pole more than the best of `all`.
-    pub(super) fn with_pole_more(&self, all: &[Candidate]) -> Vec<Candidate> {
+    fn with_pole_more(&self, all: &[Candidate]) -> Vec<Candidate> {
         let fewer = if self.has_few_steps() {
             all.iter().find(|it| it.shape.family == Family::Settling)
         } else {

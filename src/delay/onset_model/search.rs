@@ -318,16 +318,8 @@ impl Search {
         Round { shape: best.1, gained: here - best.0, rises, axes: next }
     }
 
-    /// The shapes that the record supports, the best one first.
-    pub(super) fn select(&self) -> Vec<Candidate> {
-        let mut all = self.select_near(&self.first());
-        all.extend(self.with_pole_more(&all));
-        all.sort_by(|a, b| a.score.total_cmp(&b.score));
-        all
-    }
-
     /// The shapes that it supports about the onsets of broken lines, the best one first.
-    fn select_near(&self, bend: &Candidate) -> Vec<Candidate> {
+    pub(super) fn select_near(&self, bend: &Candidate) -> Vec<Candidate> {
         let mut all = vec![bend.clone()];
         let others = Family::ALL.into_iter().skip(1).filter(|it| self.may_be(*it));
         for family in others {
@@ -399,7 +391,7 @@ impl Search {
 
     /// Broken lines about the common delay that shows best, or whose onsets go best with the input
     /// where several show.
-    fn first(&self) -> Candidate {
+    pub(super) fn first(&self) -> Candidate {
         /// Tops that are tried, and how well they must show beside the best.
         const TOPS: usize = 6;
         const SHOWS: f64 = 0.2;
