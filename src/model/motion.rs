@@ -78,6 +78,45 @@ impl Input<'_> {
     }
 }
 
+/// Asks for `above`, which rises with its argument, until last at a place where it is zero, or as near to
+/// that as anywhere.
+///
+/// A secant within a bracket, where the value at an end that stays is halved (Illinois algorithm: M. Dowell
+/// and P. Jarratt, "A modified regula falsi method for computing the root of an equation", BIT 11, 1971).
+fn settle_at_root(mut above: impl FnMut(f64) -> f64) {
+    /// Doublings of the bracket, and secants within it, at most.
+    const STEPS: usize = 50;
+    /// What is left of the rise over the bracket.
+    const LEFT: f64 = 1e-14;
+    let mut at = |place: f64| (place, above(place));
+    let (mut low, mut high) = (at(-1.0), at(1.0));
+    for _ in 0..STEPS {
+        if low.1 > 0.0 {
+            (low, high) = (at(2.0 * low.0), low);
+        } else if high.1 < 0.0 {
+            (low, high) = (high, at(2.0 * high.0));
+        }
+    }
+    let rise = high.1 - low.1;
+    let mut rose = None;
+    for _ in 0..STEPS {
+        let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        if !(low.0..=high.0).contains(&secant) {
+            break;
+        }
+        let found = at(secant);
+        if found.1.abs() <= LEFT * rise {
+            break;
+        }
+        let is_below = found.1 < 0.0;
+        let (moved, stays) = if is_below { (&mut low, &mut high) } else { (&mut high, &mut low) };
+        if rose == Some(is_below) {
+            stays.1 *= 0.5;
+        }
+        (*moved, rose) = (found, Some(is_below));
+    }
+}
+
 /// An effect with its values and its memory, ready to run.
 #[derive(Clone)]
 struct Running<'a> {
@@ -216,34 +255,15 @@ impl<'a> Joint<'a> {
         }
     }
 
-    /// Puts the dynamics into the state of a held signal that makes `speed` here; the signal is
-    /// found by bisection. What is before them and remembers the turns of the input, as a play,
-    /// stays as it is.
+    /// Puts the dynamics into the state of a held signal that makes `speed` here. What is before them and
+    /// remembers the turns of the input, as a play, stays as it is.
     ///
     /// The speed rises with the signal, or falls if the gain is negative; where it can not be
     /// reached the nearest one is taken.
     fn settle_at_speed(&mut self, speed: f64, time_s: f64, period_s: f64) {
-        /// Doublings and halvings: from and to a part of 1e-15.
-        const HALVINGS: usize = 50;
         let sign = self.gain.signum();
-        let mut is_below =
-            |signal: f64| sign * self.steady_speed(signal, time_s, period_s) < sign * speed;
-        let mut reach = 1.0;
-        for _ in 0..HALVINGS {
-            if !is_below(reach) && is_below(-reach) {
-                break;
-            }
-            reach *= 2.0;
-        }
-        let (mut low, mut high) = (-reach, reach);
-        for _ in 0..HALVINGS {
-            let middle = f64::midpoint(low, high);
-            if is_below(middle) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
+        let above = |signal: f64| sign * (self.steady_speed(signal, time_s, period_s) - speed);
+        settle_at_root(above);
         self.velocity = speed;
     }
 
@@ -356,4 +376,38 @@ fn through(effects: &mut [Running<'_>], mut at: Moment) -> f64 {
         at.signal = running.step(&at);
     }
     at.signal
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where the search ends, and how often it asked.
+    fn root(above: impl Fn(f64) -> f64) -> (f64, usize) {
+        let (mut last, mut count) = (f64::NAN, 0);
+        settle_at_root(|place| {
+            (last, count) = (place, count + 1);
+            above(place)
+        });
+        (last, count)
+    }
+
+    #[test]
+    fn a_root_is_found_in_a_few_steps() {
+        let (place, count) = root(|x| 3.0 * x - 1.5);
+        assert!((place - 0.5).abs() < 1e-12 && count <= 4, "{place} after {count}");
+        let (place, count) = root(|x: f64| x.cbrt() - 4.0);
+        assert!((place - 64.0).abs() < 1e-6 && count < 60, "{place} after {count}");
+        // Where it jumps over zero, the place of the jump.
+        let (place, _) = root(|x| if x < -0.3 { -1.0 } else { 2.0 });
+        assert!((place + 0.3).abs() < 1e-6, "{place}");
+    }
+
+    #[test]
+    fn what_has_no_root_ends_where_it_is_nearest() {
+        let (place, _) = root(|x: f64| x.tanh() - 2.0);
+        assert!(place > 20.0, "{place}");
+        let (place, _) = root(|x: f64| x.tanh() + 2.0);
+        assert!(place < -20.0, "{place}");
+    }
 }
