@@ -168,6 +168,16 @@ impl Trial {
         (samples > 0).then_some(cut)
     }
 
+    /// One of so many samples of it, from the first on.
+    pub(crate) fn every(&self, stride: usize) -> Option<Self> {
+        let period = SamplePeriod::from_seconds(stride as f64 * self.period.seconds())?;
+        let kept = |signal: &[f64]| signal.iter().step_by(stride).copied().collect::<Vec<_>>();
+        let (input, output) = (kept(&self.input), kept(&self.output));
+        let covariates = self.covariates.iter().map(|signal| kept(signal)).collect();
+        let part = Self::new(self.label(), self.start_s, period, input, output).ok()?;
+        Some(Self { origin_s: self.origin_s, covariates, ..part })
+    }
+
     /// Name of the trial.
     pub fn label(&self) -> &str {
         &self.label

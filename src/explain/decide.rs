@@ -106,9 +106,17 @@ impl<'a, 'r> Judge<'a, 'r> {
     }
 }
 
-/// A ranking as it is shown: by what each effect leaves on the part that was not fitted.
+/// A ranking as it is shown: by what each effect leaves on the part that was not fitted; of those that
+/// leave as much, the one that is added comes first.
 pub(super) fn in_order(mut ranking: Vec<Candidate>) -> Vec<Candidate> {
+    /// What an error may be larger by and still be as much: a digit that is hardly printed.
+    const AS_MUCH: f64 = 1.001;
     ranking.sort_by(|a, b| a.rmse().total_cmp(&b.rmse()));
+    if let Some(added) = ranking.iter().position(|one| one.judgement.is_added()) {
+        let least = ranking[added].rmse() / AS_MUCH;
+        let first = ranking[..added].partition_point(|one| one.rmse() < least);
+        ranking[first..=added].rotate_right(1);
+    }
     ranking
 }
 

@@ -1,12 +1,12 @@
 //! Many models, of which the most promising are fitted.
 //!
-//! A survey, which is a rough descent in short windows of a part of the record, is cheap; a
-//! fit is not.
+//! A survey, which is a fit to some samples of a part of the record, is cheap; one to all samples is
+//! not.
 
 use super::outcome::FitOutcome;
 use super::workers::Workers;
 use crate::effect::RecordRange;
-use crate::fit::{FitRecord, Survey, fit_to_compare_beside, survey};
+use crate::fit::{FitRecord, Survey, fit_surveyed, survey};
 use crate::model::JointModel;
 
 /// Surveys `models` on `surveyed` and fits the best of them to `record`; `kept` says how many,
@@ -33,7 +33,7 @@ pub(super) fn fit_best<K: Copy + PartialEq + Send + Sync>(
     let costs: Vec<f64> = surveys.iter().map(|(_, survey)| survey.cost).collect();
     surveys.truncate(kept(&costs));
     let fit = |((key, model), survey): &(&(K, JointModel), Survey)| {
-        let fit = fit_to_compare_beside(record, &survey.model, model, range).ok()?;
+        let fit = fit_surveyed(record, survey, model, range).ok()?;
         Some((*key, FitOutcome::of(record, fit)))
     };
     workers.map(&surveys, fit).into_iter().flatten().collect()

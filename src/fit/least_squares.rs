@@ -27,7 +27,8 @@ use crate::model::JointModel;
 ///
 /// Parameters of an effect that are neutral start from each of the effect's own starts. Those
 /// that promise most are followed until it is seen where they lead, in short windows, where an
-/// error does not add up and there are fewer valleys; the best two go on to the end. The model as it was given
+/// error does not add up and there are fewer valleys, and in one of some samples; the best two go on in whole
+/// windows, and the better of them on all samples. The model as it was given
 /// is a start, too: the error is never larger than its own, so an effect that was added where
 /// it is neutral never makes it larger.
 ///
@@ -43,9 +44,7 @@ pub fn fit(
     model: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Fit, FitError> {
-    let fit = fit_to(record, (model, model), range, whole(record.training_samples()))?;
-    check_numbers(&fit.assessment)?;
-    Ok(fit)
+    fit_to(record, model, range, whole(record.training_samples()))
 }
 
 /// Whether a model gives numbers on the whole record that double precision can compute with.
@@ -66,66 +65,96 @@ pub fn fit_to_compare(
     model: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Fit, FitError> {
-    fit_to_compare_beside(record, model, model, range)
-}
-
-/// Fits as [`fit_to_compare`] does; the error is not larger than that of `other`, either, which
-/// is the same structure at other values: those of a simpler model, and neutral ones.
-///
-/// # Errors
-/// As [`fit`].
-pub fn fit_to_compare_beside(
-    record: &FitRecord<'_>,
-    model: &JointModel,
-    other: &JointModel,
-    range: &RecordRange<'_>,
-) -> Result<Fit, FitError> {
-    let fit = fit_to(record, (model, other), range, comparing(record.training_samples()))?;
-    check_numbers(&fit.assessment)?;
-    Ok(fit)
+    fit_to(record, model, range, comparing(record.training_samples()))
 }
 
 fn fit_to(
     record: &FitRecord<'_>,
-    (model, other): (&JointModel, &JointModel),
+    model: &JointModel,
     range: &RecordRange<'_>,
     limits: Limits,
 ) -> Result<Fit, FitError> {
-    let space = Space::of(model, range);
-    check_record(record, &space)?;
+    check_record(record, &Space::of(model, range))?;
     check_changes(record)?;
-    let slopes = record.training_samples() * space.free.len();
-    let _turn = turn::wait_for(slopes);
-    let (training, short) = (record.for_training(), record.shortened());
-    let searches = rough(&short, Some(&training), model, &space, range).into_iter();
-    let finished = searches.map(|s| s.across_flats().onto(&training).descended(limits));
-    let best = finished.min_by(|a, b| a.cost.total_cmp(&b.cost));
+    let surveyed = survey(record, model, range)?;
+    descended(record, (&surveyed.model, model), range, limits)
+}
+
+/// The fit of a model that was [surveyed](survey), as far as [`fit_to_compare`] goes. The error is not
+/// larger than that of `other`, the same structure at other values: those of a simpler model, and neutral
+/// ones.
+///
+/// # Errors
+/// As [`fit`].
+pub fn fit_surveyed(
+    record: &FitRecord<'_>,
+    surveyed: &Survey,
+    other: &JointModel,
+    range: &RecordRange<'_>,
+) -> Result<Fit, FitError> {
+    let limits = comparing(record.training_samples());
+    descended(record, (&surveyed.model, other), range, limits)
+}
+
+/// The fit on all samples from the values of `surveyed`, or from those of `other` where these are better
+/// than what it leads to.
+fn descended(
+    record: &FitRecord<'_>,
+    (surveyed, other): (&JointModel, &JointModel),
+    range: &RecordRange<'_>,
+    limits: Limits,
+) -> Result<Fit, FitError> {
+    let space = Space::of(surveyed, range);
+    let _turn = turn::wait_for(record.training_samples() * space.free.len());
+    let training = record.for_training();
+    let found = Search::new(&training, surveyed, &space, plain(surveyed)).descended(limits);
     // A value that does nothing may lie outside of the bounds.
     let given = plain(other);
     let held = space.holding(&given);
     let given = Search::new(&training, other, &held, given);
-    let is_less = |best: &Search<'_, '_>| best.cost <= given.problem.cost();
-    let best = match best.filter(is_less) {
-        Some(best) => best,
-        None => given.descended(limits),
+    let is_less = found.cost <= given.problem.cost();
+    let best = if is_less { found } else { given.descended(limits) };
+    let fit = best.into_fit(record);
+    check_numbers(&fit.assessment)?;
+    Ok(fit)
+}
+
+/// Surveys the free parameters of `model`, from the starts of [`fit`]: fits them to one of some samples of
+/// the training windows.
+///
+/// # Errors
+/// As [`fit`].
+pub fn survey(
+    record: &FitRecord<'_>,
+    model: &JointModel,
+    range: &RecordRange<'_>,
+) -> Result<Survey, FitError> {
+    let space = Space::of(model, range);
+    check_record(record, &space)?;
+    let coarse = record.for_training().coarser_for(model);
+    let samples = coarse.training_samples();
+    let _turn = turn::wait_for(samples * space.free.len());
+    let short = coarse.shortened();
+    let searches = rough(&short, &coarse, model, &space, range).into_iter();
+    let ended = |search: Search<'_, '_>| {
+        let search = search.across_flats().onto(&coarse).descended(comparing(samples));
+        Survey { model: search.problem.model_now(), cost: search.cost }
     };
-    Ok(best.into_fit(record))
+    let found = searches.map(ended).min_by(|a, b| a.cost.total_cmp(&b.cost));
+    Ok(found.unwrap_or_else(|| Survey { model: model.clone(), cost: f64::MAX }))
 }
 
 /// A rough descent from each of the most promising starts: the best of these. Slopes are kept for
 /// descents that go on in the windows of `next`, where these are the same.
 fn rough<'p, 'r>(
     short: &'p FitRecord<'r>,
-    next: Option<&FitRecord<'_>>,
+    next: &FitRecord<'_>,
     model: &'p JointModel,
     space: &'p Space,
     range: &RecordRange<'_>,
 ) -> Vec<Search<'p, 'r>> {
-    let is_kept = |next: &FitRecord<'_>| {
-        let slopes = short.training_samples() * space.free.len();
-        !turn::is_large(slopes) && next.windows() == short.windows()
-    };
-    let keeps_slopes = next.is_some_and(is_kept);
+    let slopes = short.training_samples() * space.free.len();
+    let keeps_slopes = !turn::is_large(slopes) && next.windows() == short.windows();
     let descended = |search: Search<'p, 'r>| {
         let mut search = search.descended(ROUGH);
         search.slopes.take_if(|_| !keeps_slopes);
@@ -161,26 +190,6 @@ fn nearer(given: &[f64], start: &[f64]) -> Vec<f64> {
     /// condition then end at a thirtieth of the squared error at which they had ended, or less.
     const PART: f64 = 0.25;
     given.iter().zip(start).map(|(given, start)| given + PART * (start - given)).collect()
-}
-
-/// Surveys the free parameters of `model`, from the same starts as [`fit`].
-///
-/// # Errors
-/// As [`fit`].
-pub fn survey(
-    record: &FitRecord<'_>,
-    model: &JointModel,
-    range: &RecordRange<'_>,
-) -> Result<Survey, FitError> {
-    let space = Space::of(model, range);
-    check_record(record, &space)?;
-    let short = record.shortened();
-    let best = rough(&short, None, model, &space, range)
-        .into_iter()
-        .min_by(|a, b| a.cost.total_cmp(&b.cost));
-    let best = best.map(Search::across_flats);
-    let found = best.map(|search| Survey { model: search.problem.model_now(), cost: search.cost });
-    Ok(found.unwrap_or_else(|| Survey { model: model.clone(), cost: f64::MAX }))
 }
 
 /// The model as it is, with the standard errors its free parameters would have if they

@@ -8,6 +8,7 @@
 
 mod beginning;
 mod bounds;
+mod coarse;
 mod covariance;
 mod descent;
 mod evaluation;
@@ -35,7 +36,7 @@ pub use evaluation::Evaluation;
 pub(crate) use excerpt::Excerpt;
 pub(crate) use extent::starts_s;
 pub(crate) use first_order::{follows_input, makes_first_order, time_constant_s};
-pub use least_squares::{assess, fit, fit_to_compare, fit_to_compare_beside, survey};
+pub use least_squares::{assess, fit, fit_surveyed, fit_to_compare, survey};
 pub(crate) use mended::Mended;
 pub use record::FitRecord;
 pub(crate) use record::is_rounding;

@@ -4,13 +4,14 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::DVector;
 
+use super::coarse::Coarse;
 use super::evaluation::Evaluation;
 use super::excerpt::Excerpt;
 use super::extent::Extent;
 use super::first_order::Follower;
 use super::mended::Mended;
 use super::ripple::RipplePeriod;
-use super::run::{Run, best_starts, raw_residuals, residuals_from, simulated_from};
+use super::run::{Run, Speeds, best_starts, raw_residuals, residuals_from, simulated_from};
 use super::speed;
 use super::thin::thinned;
 use super::unlogged::commands;
@@ -27,11 +28,13 @@ pub struct FitRecord<'a> {
     measured: &'a Joint,
     /// The joint without spikes and without noise of its input, where it has any.
     mended: Option<Joint>,
+    /// The joint with fewer samples, where that will do.
+    pub(super) coarse: Option<Coarse>,
     split: Split,
     horizon: Horizon,
-    windows: Vec<Window>,
+    pub(super) windows: Vec<Window>,
     /// Activity of the other joints, per trial; empty where there are none.
-    others: Arc<Vec<Vec<f64>>>,
+    pub(super) others: Arc<Vec<Vec<f64>>>,
     /// Delay of each change of the input in seconds, per trial, where it is known; measured
     /// when a model first asks for it.
     delays: Arc<OnceLock<Delays>>,
@@ -39,12 +42,12 @@ pub struct FitRecord<'a> {
     /// Windows start at the measured speed.
     speeds_measured: bool,
     /// Changes of the input, per trial.
-    commands: Arc<Vec<Commands>>,
+    pub(super) commands: Arc<Vec<Commands>>,
     extent: Arc<Extent>,
     /// Ranges of the further signals that were measured.
     signals: Arc<Vec<SignalRange<'a>>>,
     /// Which samples count.
-    seen: Arc<Mended>,
+    pub(super) seen: Arc<Mended>,
 }
 
 /// Delay of each change of the input in seconds, per trial, where it is known.
@@ -86,6 +89,7 @@ impl<'a> FitRecord<'a> {
         Self {
             measured,
             mended,
+            coarse: None,
             split,
             horizon,
             windows,
@@ -181,6 +185,11 @@ impl<'a> FitRecord<'a> {
     /// The joint, with lines in the place of spikes of its output, and the levels that its input holds where
     /// that was measured with noise.
     pub fn joint(&self) -> &Joint {
+        self.coarse.as_ref().map_or(self.fine(), |coarse| &coarse.joint)
+    }
+
+    /// The joint with all its samples.
+    fn fine(&self) -> &Joint {
         self.mended.as_ref().unwrap_or(self.measured)
     }
 
@@ -339,6 +348,8 @@ impl<'a> FitRecord<'a> {
     /// The model on one trial.
     fn run<'m>(&'m self, model: &'m JointModel, index: usize) -> Option<Run<'m>> {
         let trial = self.joint().trials.get(index)?;
+        let stride = self.coarse.as_ref().map_or(1, |coarse| coarse.stride);
+        let speeds = self.fine().trials.get(index).map(|trial| Speeds { trial, stride });
         let surroundings = Surroundings {
             others: self.others.get(index).map_or(&[], Vec::as_slice),
             radians_per_output_unit: self.radians_per_output_unit,
@@ -361,7 +372,7 @@ impl<'a> FitRecord<'a> {
             windows,
             weights: self.weights_of(index),
             span: self.extent.spans[index],
-            speeds_measured: self.speeds_measured && model.has_dynamics(),
+            speeds: speeds.filter(|_| self.speeds_measured && model.has_dynamics()),
             model,
         })
     }

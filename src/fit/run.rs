@@ -26,7 +26,15 @@ pub(super) struct Run<'a> {
     pub(super) weights: Option<&'a [f64]>,
     /// Highest minus lowest output of the trial.
     pub(super) span: f64,
-    pub(super) speeds_measured: bool,
+    /// Where the speed at a restart is measured, if it is.
+    pub(super) speeds: Option<Speeds<'a>>,
+}
+
+/// A trial with all samples, of which a run has one in `stride`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Speeds<'a> {
+    pub(super) trial: &'a Trial,
+    pub(super) stride: usize,
 }
 
 impl Run<'_> {
@@ -98,10 +106,7 @@ impl Run<'_> {
         let restart = |(window, output): (&Window, &f64)| Restart {
             sample: window.start,
             output: *output,
-            speed: self
-                .speeds_measured
-                .then(|| speed::measured(self.trial, window.start))
-                .flatten(),
+            speed: self.speeds.and_then(|of| speed::measured(of.trial, of.stride * window.start)),
         };
         self.first_windows().zip(starts).map(restart).collect()
     }

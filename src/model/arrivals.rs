@@ -72,6 +72,33 @@ impl Commands {
         self
     }
 
+    /// These changes where no more than one is within `block_s` seconds, counted from the first sample; of
+    /// several the mean level over the block acts from its start, and the last one behind it.
+    #[must_use]
+    pub(crate) fn in_blocks(&self, block_s: f64) -> Self {
+        /// Part of a block by which times are rounded, at most.
+        const ROUNDED: f64 = 1e-9;
+        let block_of = |change: &Command| (change.time_s / block_s + ROUNDED).floor();
+        let mut changes: Vec<Command> = Vec::with_capacity(self.changes.len());
+        let mut before = self.initial;
+        for own in self.changes.chunk_by(|one, next| block_of(one) == block_of(next)) {
+            let (Some(first), Some(last)) = (own.first(), own.last()) else { continue };
+            if own.len() == 1 {
+                changes.push(*first);
+            } else {
+                let [start_s, end_s] =
+                    [0.0, 1.0].map(|blocks| (block_of(first) + blocks) * block_s);
+                let level = mean_level(before, own, (start_s, end_s));
+                // What follows the last block is overtaken where this one begins.
+                changes.pop_if(|change| change.time_s >= start_s);
+                changes.push(Command { time_s: start_s, level, ..*first });
+                changes.push(Command { time_s: end_s, ..*last });
+            }
+            before = last.level;
+        }
+        Self { initial: self.initial, changes }
+    }
+
     /// The changes as they arrive at the joint: change `i` at `t_i + delay + extra_i`.
     ///
     /// `extra` comes from the effects of the transport stage. `per_step` holds delays in
@@ -115,6 +142,15 @@ impl Commands {
     }
 }
 
+/// The mean from one time to another of what is `before` the first of `changes` and then as they say.
+fn mean_level(before: f64, changes: &[Command], (start_s, end_s): (f64, f64)) -> f64 {
+    let levels = std::iter::once(before).chain(changes.iter().map(|change| change.level));
+    let times = changes.iter().map(|change| change.time_s);
+    let borders: Vec<f64> = [start_s].into_iter().chain(times).chain([end_s]).collect();
+    let lasts = borders.windows(2).map(|pair| pair[1] - pair[0]);
+    levels.zip(lasts).map(|(level, seconds)| level * seconds).sum::<f64>() / (end_s - start_s)
+}
+
 impl Arrivals {
     /// What arrives from `from_s` on, which is then time zero, up to `to_s`.
     pub(crate) fn between(&self, from_s: f64, to_s: f64) -> Self {
@@ -149,6 +185,19 @@ mod tests {
         let Arrivals { initial, changes } = commands.arriving(&model, 0.0, Some(&[Some(0.5)]));
         let found: Vec<(f64, f64)> = changes.iter().map(|a| (a.time_s, a.level)).collect();
         assert_eq!((initial, found), (0.0, vec![(0.25, 1.0), (2.25, 0.0), (3.5, -1.0)]));
+    }
+
+    #[test]
+    fn of_several_changes_in_a_block_the_mean_acts() {
+        // Blocks of two seconds; those of the second change in each of them, and then one in a block.
+        let commands = Commands::new(&[1.0, 1.0, 3.0, 4.0, 6.0, 8.0, 8.0, 8.0, 8.0, 5.0], 1.0);
+        let model = JointModel::integrator(1.0, 0.5);
+        let Arrivals { initial, changes } = commands.in_blocks(2.0).arriving(&model, 0.0, None);
+        let found: Vec<(f64, f64)> = changes.iter().map(|a| (a.time_s, a.level)).collect();
+        assert!((initial - 1.0).abs() < 1e-12);
+        assert_eq!(found, [(2.5, 3.5), (4.5, 7.0), (6.5, 8.0), (9.5, 5.0)]);
+        // What changes once in a block stays as it is.
+        assert_eq!(commands.in_blocks(1.0), commands);
     }
 
     #[test]
