@@ -10,13 +10,9 @@
 //! S. G. Nash, "A multigrid approach to discretized optimization problems", Optimization Methods and
 //! Software 14 (2000), 99-116.
 
-use std::sync::Arc;
-
-use super::mended::Mended;
-use super::record::FitRecord;
 use super::window::Window;
 use crate::experiment::{Joint, Property, Record, Trial};
-use crate::model::JointModel;
+use crate::model::Commands;
 
 /// One of so many samples is kept.
 #[derive(Debug)]
@@ -63,44 +59,44 @@ fn squares(values: impl Iterator<Item = f64>, mean: f64) -> f64 {
     values.map(|value| (value - mean).powi(2)).sum()
 }
 
-/// Every so many of `values`.
-fn every<T: Copy>(values: &[T], stride: usize) -> Vec<T> {
-    values.iter().step_by(stride).copied().collect()
-}
+impl Coarse {
+    /// One of some samples of each trial of `joint`; none where all are kept.
+    pub(super) fn of(joint: &Joint) -> Option<Self> {
+        let stride = joint.trials.property::<Stride>().0;
+        if stride == 1 {
+            return None;
+        }
+        let trials: Record =
+            joint.trials.iter().map(|trial| trial.every(stride)).collect::<Option<_>>()?;
+        Some(Self { joint: Joint { trials, ..joint.clone() }, stride })
+    }
 
-impl FitRecord<'_> {
-    /// This record with one of some samples of each trial, for fits of `model`.
-    pub(super) fn coarser_for(&self, model: &JointModel) -> Self {
-        let stride = self.joint().trials.property::<Stride>().0;
-        let trials = self.joint().trials.iter().map(|trial| trial.every(stride));
-        let is_whole = stride == 1 || model.takes_measured_delays();
-        let trials: Option<Record> = if is_whole { None } else { trials.collect() };
-        let Some(trials) = trials else { return self.clone() };
-        let joint = Joint { trials, ..self.joint().clone() };
-        let window = |window: &Window| {
-            let (start, end) = (window.start.div_ceil(stride), window.end.div_ceil(stride));
+    /// Those of `windows` in which samples are kept.
+    pub(super) fn windows(&self, windows: &[Window]) -> Vec<Window> {
+        let kept = |window: &Window| {
+            let [start, end] = [window.start, window.end].map(|end| end.div_ceil(self.stride));
             (start < end).then_some(Window { start, end, ..*window })
         };
-        let periods = joint.trials.iter().map(|trial| trial.period().seconds());
-        let commands = self.commands.iter().zip(periods);
-        let weights = self.seen.weights.as_ref();
-        let weights = weights.map(|all| all.iter().map(|own| every(own, stride)).collect());
-        let seen = Mended { record: None, weights, has_noisy_input: self.seen.has_noisy_input };
-        let mut coarse = self.clone();
-        coarse.windows = self.windows.iter().filter_map(window).collect();
-        coarse.others = Arc::new(self.others.iter().map(|own| every(own, stride)).collect());
-        coarse.commands =
-            Arc::new(commands.map(|(own, period_s)| own.in_blocks(period_s)).collect());
-        coarse.seen = Arc::new(seen);
-        coarse.coarse = Some(Coarse { joint, stride });
-        coarse
+        windows.iter().filter_map(kept).collect()
+    }
+
+    /// What is kept of values of each trial and sample.
+    pub(super) fn kept(&self, values: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        values.iter().map(|own| own.iter().step_by(self.stride).copied().collect()).collect()
+    }
+
+    /// The changes of the input of each trial.
+    pub(super) fn commands(&self, commands: &[Commands]) -> Vec<Commands> {
+        let periods = self.joint.trials.iter().map(|trial| trial.period().seconds());
+        commands.iter().zip(periods).map(|(own, period_s)| own.in_blocks(period_s)).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::{Horizon, Split, fit, survey};
+    use crate::fit::{FitRecord, Horizon, Split, fit, survey};
+    use crate::model::JointModel;
     use crate::numerics::testing::normals;
     use crate::units::SamplePeriod;
 

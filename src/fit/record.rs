@@ -29,12 +29,12 @@ pub struct FitRecord<'a> {
     /// The joint without spikes and without noise of its input, where it has any.
     mended: Option<Joint>,
     /// The joint with fewer samples, where that will do.
-    pub(super) coarse: Option<Coarse>,
+    coarse: Option<Coarse>,
     split: Split,
     horizon: Horizon,
-    pub(super) windows: Vec<Window>,
+    windows: Vec<Window>,
     /// Activity of the other joints, per trial; empty where there are none.
-    pub(super) others: Arc<Vec<Vec<f64>>>,
+    others: Arc<Vec<Vec<f64>>>,
     /// Delay of each change of the input in seconds, per trial, where it is known; measured
     /// when a model first asks for it.
     delays: Arc<OnceLock<Delays>>,
@@ -42,12 +42,12 @@ pub struct FitRecord<'a> {
     /// Windows start at the measured speed.
     speeds_measured: bool,
     /// Changes of the input, per trial.
-    pub(super) commands: Arc<Vec<Commands>>,
+    commands: Arc<Vec<Commands>>,
     extent: Arc<Extent>,
     /// Ranges of the further signals that were measured.
     signals: Arc<Vec<SignalRange<'a>>>,
     /// Which samples count.
-    pub(super) seen: Arc<Mended>,
+    seen: Arc<Mended>,
 }
 
 /// Delay of each change of the input in seconds, per trial, where it is known.
@@ -286,6 +286,23 @@ impl<'a> FitRecord<'a> {
         let mut windows = thinned(&windows);
         windows.sort_by_key(|window| (window.trial, window.start));
         Self { windows, ..self.clone() }
+    }
+
+    /// This record with one of some samples of each trial, for fits of `model`.
+    pub(super) fn coarser_for(&self, model: &JointModel) -> Self {
+        // Delays that were measured are those of steps in all samples.
+        let coarse = if model.takes_measured_delays() { None } else { Coarse::of(self.joint()) };
+        let Some(coarse) = coarse else { return self.clone() };
+        let weights = self.seen.weights.as_ref().map(|weights| coarse.kept(weights));
+        let seen = Mended { record: None, weights, has_noisy_input: self.seen.has_noisy_input };
+        Self {
+            windows: coarse.windows(&self.windows),
+            others: Arc::new(coarse.kept(&self.others)),
+            commands: Arc::new(coarse.commands(&self.commands)),
+            seen: Arc::new(seen),
+            coarse: Some(coarse),
+            ..self.clone()
+        }
     }
 
     /// This record with training windows of no more than a few steps of the input.

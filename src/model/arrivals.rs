@@ -2,6 +2,7 @@
 
 use super::JointModel;
 use crate::effect::InputChange;
+use crate::units::floor_to_index;
 
 /// A level of the input and the time from which it acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +79,7 @@ impl Commands {
     pub(crate) fn in_blocks(&self, block_s: f64) -> Self {
         /// Part of a block by which times are rounded, at most.
         const ROUNDED: f64 = 1e-9;
-        let block_of = |change: &Command| (change.time_s / block_s + ROUNDED).floor();
+        let block_of = |change: &Command| floor_to_index(change.time_s / block_s + ROUNDED);
         let mut changes: Vec<Command> = Vec::with_capacity(self.changes.len());
         let mut before = self.initial;
         for own in self.changes.chunk_by(|one, next| block_of(one) == block_of(next)) {
@@ -86,8 +87,8 @@ impl Commands {
             if own.len() == 1 {
                 changes.push(*first);
             } else {
-                let [start_s, end_s] =
-                    [0.0, 1.0].map(|blocks| (block_of(first) + blocks) * block_s);
+                let block = block_of(first);
+                let [start_s, end_s] = [block, block + 1].map(|blocks| blocks as f64 * block_s);
                 let level = mean_level(before, own, (start_s, end_s));
                 // What follows the last block is overtaken where this one begins.
                 changes.pop_if(|change| change.time_s >= start_s);
