@@ -28,13 +28,12 @@ pub(super) fn pairs(
     range: &RecordRange<'_>,
     workers: &impl Workers,
 ) -> Vec<Extension> {
-    let surveyed = record.thinned();
-    let scored = best_scored(&surveyed, base, effects, range, workers);
+    let scored = best_scored(record, base, effects, range, workers);
     let with = |pair: &[&'static dyn Effect; 2]| {
         Some((pair.map(|effect| effect.spec().id), with_both(record, &base.model, *pair)?))
     };
     let models: Vec<_> = scored.iter().filter_map(with).collect();
-    let fits = fit_best(record, &surveyed, &models, range, |_| FINALISTS, workers);
+    let fits = fit_best(record, &models, range, |_| FINALISTS, workers);
     fits.into_iter().map(|(ids, fit)| Extension { effects: ids.to_vec(), fit }).collect()
 }
 

@@ -12,7 +12,7 @@ use super::screening::fit_best;
 use super::workers::Workers;
 use crate::diagnosis::NEAR_NOISE;
 use crate::effect::{Effect, RecordRange};
-use crate::fit::{Fit, FitRecord, Part};
+use crate::fit::{Fit, FitRecord};
 use crate::model::{Component, JointModel};
 
 /// What is tried.
@@ -36,8 +36,7 @@ const HOPELESS: f64 = 3.0;
 /// Ranks the effects of `options` by how well the model of `base` with each of them, fitted,
 /// explains the record, best first.
 ///
-/// A long record is surveyed in part first, and as a whole where that shows nothing. Of a residual
-/// that is rounding nothing is left to explain.
+/// Of a residual that is rounding nothing is left to explain.
 pub(super) fn rank(
     record: &FitRecord<'_>,
     base: &Fit,
@@ -51,16 +50,8 @@ pub(super) fn rank(
     }
     let range = record.range_for(&base.model);
     let search = Search::new(record, base, noise_floor, options, &range);
-    let [thinned, training] = [record.thinned(), record.for_training()];
-    let fitted = record.part(Part::Training).count();
-    let ranking = search.singles(&thinned, scope, workers);
-    let is_whole = thinned.windows().len() == fitted;
+    let ranking = search.singles(scope, workers);
     let shows = |ranking: &[Candidate]| ranking.iter().any(Candidate::is_significant);
-    let ranking = if is_whole || shows(&ranking) {
-        ranking
-    } else {
-        search.singles(&training, scope, workers)
-    };
     if scope == Scope::SingleEffects || shows(&ranking) {
         return ranking;
     }
@@ -109,12 +100,7 @@ impl<'a, 'r> Search<'a, 'r> {
     }
 
     /// The base with each effect by itself, ranked.
-    fn singles(
-        &self,
-        surveyed: &FitRecord<'_>,
-        scope: Scope,
-        workers: &impl Workers,
-    ) -> Vec<Candidate> {
+    fn singles(&self, scope: Scope, workers: &impl Workers) -> Vec<Candidate> {
         let with = |effect: &&'static dyn Effect| {
             let id = effect.spec().id;
             let models = self.base.model.placements(&Component::neutral(*effect));
@@ -126,7 +112,7 @@ impl<'a, 'r> Search<'a, 'r> {
             let limit = costs.first().map_or(0.0, |best| HOPELESS * best);
             costs.iter().filter(|cost| **cost <= limit).count().clamp(least, most)
         };
-        let fits = fit_best(self.record, surveyed, &models, self.range, kept, workers);
+        let fits = fit_best(self.record, &models, self.range, kept, workers);
         let extension = |(id, fit)| Extension { effects: vec![id], fit };
         let mut extensions: Vec<Extension> = fits.into_iter().map(extension).collect();
         if let Some(other) = self.as_first_order() {

@@ -215,12 +215,11 @@ fn fitted_after<K: Copy + PartialEq + Send + Sync>(
         return Vec::new();
     }
     let range = record.range_for(&whole.model);
-    let thinned = record.thinned();
-    let Ok(of_whole) = survey(&thinned, &whole.model, &range) else { return Vec::new() };
+    let Ok(of_whole) = survey(record, &whole.model, &range) else { return Vec::new() };
     let kept = |costs: &[f64]| {
         costs.iter().filter(|cost| **cost < WORSE * of_whole.cost).count().min(FINALISTS)
     };
-    fit_best(record, &thinned, models, &range, kept, workers)
+    fit_best(record, models, &range, kept, workers)
 }
 
 /// `model` after a change: with a new effect at its neutral values, and, in another's place, at those

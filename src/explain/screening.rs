@@ -1,7 +1,6 @@
 //! Many models, of which the most promising are fitted.
 //!
-//! A survey, which is a fit to some samples of a part of the record, is cheap; one to all samples is
-//! not.
+//! A survey, which is a fit to one of some samples, is cheap; a fit to all of them is not.
 
 use super::outcome::FitOutcome;
 use super::workers::Workers;
@@ -9,18 +8,16 @@ use crate::effect::RecordRange;
 use crate::fit::{FitRecord, Survey, fit_surveyed, survey};
 use crate::model::JointModel;
 
-/// Surveys `models` on `surveyed` and fits the best of them to `record`; `kept` says how many,
-/// of the ascending costs of all surveys. Of several with one key the best by its survey counts.
+/// Surveys `models` and fits the best of them to `record`; `kept` says how many, of the ascending costs of all surveys. Of several with one key the best by its survey counts.
 pub(super) fn fit_best<K: Copy + PartialEq + Send + Sync>(
     record: &FitRecord<'_>,
-    surveyed: &FitRecord<'_>,
     models: &[(K, JointModel)],
     range: &RecordRange<'_>,
     kept: impl FnOnce(&[f64]) -> usize,
     workers: &impl Workers,
 ) -> Vec<(K, FitOutcome)> {
     let surveyed: Vec<Option<Survey>> =
-        workers.map(models, |(_, model)| survey(surveyed, model, range).ok());
+        workers.map(models, |(_, model)| survey(record, model, range).ok());
     let mut surveys: Vec<_> =
         models.iter().zip(surveyed).filter_map(|(of, survey)| Some((of, survey?))).collect();
     surveys.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));

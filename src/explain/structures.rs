@@ -53,8 +53,7 @@ pub(super) fn structured(
         let allowed = structure.iter().filter(is_allowed).copied();
         allowed.take(options.max_effects).collect::<Vec<_>>()
     });
-    let thinned = record.thinned();
-    let surveyed = workers.map(&allowed, |effects| surveyed(&thinned, &first.fit.model, effects));
+    let surveyed = workers.map(&allowed, |effects| surveyed(record, &first.fit.model, effects));
     let costs =
         surveyed.into_iter().zip(allowed).filter_map(|(cost, effects)| Some((cost?, effects)));
     let best = costs.min_by(|a, b| a.0.total_cmp(&b.0));

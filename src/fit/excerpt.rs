@@ -1,6 +1,5 @@
 //! The part of a very long record on which a test is made.
 
-use super::thin::spread;
 use super::window::Window;
 
 /// Samples on which a test with dozens of columns finds what has any consequence; of more it would
@@ -50,6 +49,37 @@ fn pieces(window: Window) -> impl Iterator<Item = Window> {
     let parts = samples.div_ceil(PIECE).max(1);
     let border = move |part: usize| window.start + samples * part / parts;
     (0..parts).map(move |part| Window { start: border(part), end: border(part + 1), ..window })
+}
+
+/// Samples of a block: several windows, so that one level is seen to follow another.
+const BLOCK: usize = 500;
+
+/// Blocks of `windows` that are spread evenly over them, with about so many samples of all.
+fn spread(windows: &[Window], kept: usize) -> Vec<Window> {
+    let all: usize = windows.iter().map(samples).sum();
+    let blocks = blocks(windows);
+    let is_kept = |index: &usize| (index + 1) * kept / all > index * kept / all;
+    let chosen = blocks.iter().enumerate().filter(|(index, _)| is_kept(index));
+    chosen.flat_map(|(_, block)| block.iter().copied()).collect()
+}
+
+fn samples(window: &Window) -> usize {
+    window.end - window.start
+}
+
+/// Windows that follow one another in the same trial, each block about as long.
+fn blocks(windows: &[Window]) -> Vec<&[Window]> {
+    let mut blocks = Vec::new();
+    let (mut first, mut length) = (0, 0);
+    for (index, window) in windows.iter().enumerate() {
+        length += samples(window);
+        let follows = windows.get(index + 1).is_some_and(|next| next.trial == window.trial);
+        if length >= BLOCK || !follows {
+            blocks.extend(windows.get(first..=index));
+            (first, length) = (index + 1, 0);
+        }
+    }
+    blocks
 }
 
 #[cfg(test)]

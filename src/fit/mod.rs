@@ -27,7 +27,6 @@ mod search;
 mod space;
 mod speed;
 mod starts;
-mod thin;
 mod turn;
 mod unlogged;
 mod window;

@@ -13,7 +13,6 @@ use super::mended::Mended;
 use super::ripple::RipplePeriod;
 use super::run::{Run, Speeds, best_starts, raw_residuals, residuals_from, simulated_from};
 use super::speed;
-use super::thin::thinned;
 use super::unlogged::commands;
 use super::window::{Horizon, Part, Split, Window, changes, cut, places, shorter};
 use crate::delay::{StepDelay, step_delays};
@@ -274,18 +273,6 @@ impl<'a> FitRecord<'a> {
             residuals[index % models.len()].push(own);
         }
         residuals.iter().map(|residuals| self.training(residuals)).collect()
-    }
-
-    /// This record with a part of the training windows, where they are many: enough to see which
-    /// models are worth a fit.
-    pub(crate) fn thinned(&self) -> Self {
-        // In the order of the labels: that of the rows says nothing of a joint.
-        let places = places(&self.joint().trials);
-        let mut windows: Vec<Window> = self.part(Part::Training).copied().collect();
-        windows.sort_by_key(|window| places[window.trial]);
-        let mut windows = thinned(&windows);
-        windows.sort_by_key(|window| (window.trial, window.start));
-        Self { windows, ..self.clone() }
     }
 
     /// This record with one of some samples of each trial, for fits of `model`.

@@ -51,7 +51,7 @@ impl<'r> Score<'r> {
     /// The residual of `model` on the training windows of `record`; `None` where there is none
     /// to speak of.
     pub fn of(record: &FitRecord<'r>, model: &JointModel, range: &RecordRange<'_>) -> Option<Self> {
-        let record = record.shortened();
+        let record = record.for_training().coarser_for(model).shortened();
         let space = Space::of(model, range);
         let start = model.values().iter().map(|value| value.value).collect();
         let search = Search::new(&record, model, &space, start);
