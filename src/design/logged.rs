@@ -5,7 +5,6 @@ use crate::delay::FirstOrder;
 use crate::delay::{Neutral, level_tolerance};
 use crate::experiment::{Joint, Record, Trial};
 use crate::numerics::{median, quantile};
-use crate::units::SamplePeriod;
 
 /// What was played on a joint, and where it went.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,10 +128,7 @@ impl Logged {
             let wanted = wanted.max(SHORTEST_S / period_s).round().max(1.0);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
             let every = wanted as usize;
-            let period = SamplePeriod::from_seconds(period_s * wanted)?;
-            let thin = |values: &[f64]| values.iter().copied().step_by(every).collect();
-            let (input, output) = (thin(trial.input()), thin(trial.output()));
-            Trial::new(trial.label(), trial.time_s(1), period, input, output).ok()
+            trial.every(every)
         };
         let trials: Vec<Trial> = centred.trials.iter().filter_map(thinned).collect();
         if trials.len() < centred.trials.len() {

@@ -8,7 +8,8 @@ use crate::effect::RecordRange;
 use crate::fit::{FitRecord, Survey, fit_surveyed, survey};
 use crate::model::JointModel;
 
-/// Surveys `models` and fits the best of them to `record`; `kept` says how many, of the ascending costs of all surveys. Of several with one key the best by its survey counts.
+/// Surveys `models` and fits the best of them to `record`; `kept` says how many, of the ascending costs
+/// of all surveys. Of several with one key the best by its survey counts.
 pub(super) fn fit_best<K: Copy + PartialEq + Send + Sync>(
     record: &FitRecord<'_>,
     models: &[(K, JointModel)],
