@@ -32,9 +32,12 @@ static SPEC: Spec = Spec::new(
 .equations(Equations::new(&["count = floor(abs(signal) / step + 0.5)
              out = if(step > 0 && is_finite(count), sign(signal) * step * count, signal)"]));
 
-/// Steps that a fit tries, in parts of the largest input: between two of them few levels of the
-/// input come to another multiple.
-const TRIED: usize = 14;
+/// Multiples of the step within the largest input, at most. Chosen: a finer one moves no command by more
+/// than a fortieth of the largest.
+const FINEST: f64 = 20.0;
+
+/// Levels whose jumps are told apart: where more are met, the error hardly jumps at any one.
+const TOLD_APART: usize = 100;
 
 /// Neighbouring levels with the same multiple that show a step: one pair may be a flat piece of a
 /// curve.
@@ -64,11 +67,27 @@ impl Effect for InputQuantization {
         vec![(0.0, record.size(Dimension::Input).min(UNLIMITED))]
     }
 
-    /// From a twentieth of the largest input on, each a fifth larger.
+    /// Half a multiple of the largest input apart: with the next but one a half of all levels comes to
+    /// another multiple.
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
-        let least = 0.05 * record.size(Dimension::Input);
-        let steps = std::iter::successors(Some(least), |step| Some(1.2 * step));
-        steps.take(TRIED).map(|step| vec![step]).collect()
+        let largest = record.size(Dimension::Input);
+        let halves = (3..).map(|halves| 0.5 * f64::from(halves));
+        halves.take_while(|count| *count <= FINEST).map(|count| vec![largest / count]).collect()
+    }
+
+    /// At `level / (n + 1/2)` a level comes to another multiple.
+    fn jumps(&self, _parameter: usize, record: &RecordRange<'_>) -> Vec<f64> {
+        let least = record.size(Dimension::Input) / FINEST;
+        let of_level = |level: &f64| {
+            let level = *level;
+            let counts = (0..).map(|count| f64::from(count) + 0.5);
+            counts.map(move |count| level / count).take_while(move |step| *step > least)
+        };
+        let some = record.input_levels.len().div_ceil(TOLD_APART).max(1);
+        let levels = record.input_levels.iter().step_by(some);
+        let mut jumps: Vec<f64> = levels.flat_map(of_level).collect();
+        jumps.sort_by(f64::total_cmp);
+        jumps.windows(2).map(|pair| f64::midpoint(pair[0], pair[1])).collect()
     }
 }
 
@@ -82,6 +101,19 @@ mod tests {
         let inputs = [0.0, 0.2, 0.3, -0.7, -0.8, 2.1];
         let outputs = [0.0, 0.0, 0.5, -0.5, -1.0, 2.0];
         assert_close(&run(&InputQuantization, &[0.5], &inputs), &outputs);
+    }
+
+    #[test]
+    fn between_two_jumps_all_levels_keep_their_multiples() {
+        let levels = [0.7, 1.0];
+        let record =
+            RecordRange { input_levels: &levels, input_abs_max: 1.0, ..RecordRange::default() };
+        let between = InputQuantization.jumps(0, &record);
+        let multiples = |step: &f64| levels.map(|level| (level / step + 0.5).floor());
+        let met: Vec<_> = between.iter().map(multiples).collect();
+        assert!(met.windows(2).all(|pair| pair[0] != pair[1]), "{met:?}");
+        let least = between.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(least > 0.05 && between.contains(&f64::midpoint(2.0, 1.4)));
     }
 
     #[test]

@@ -151,6 +151,13 @@ pub trait Effect: Debug + Send + Sync {
         vec![self.spec().parameters.iter().map(|parameter| parameter.start(record)).collect()]
     }
 
+    /// Values of one of its parameters, ascending, one between each two at which it does something else
+    /// at a level of the input, where the error does depend on it between them too; none where it does
+    /// not jump so. A descent comes to none of them but the next.
+    fn jumps(&self, _parameter: usize, _record: &RecordRange<'_>) -> Vec<f64> {
+        Vec::new()
+    }
+
     /// Parameters with which it does about what the effect `other` does with `values`, in whose
     /// place a fit then tries it from there, too; `None` where they have nothing in common.
     fn in_place_of(&self, _other: &Spec, _values: &[f64]) -> Option<Vec<f64>> {

@@ -93,8 +93,8 @@ impl Problem<'_, '_> {
         self.here.take();
     }
 
-    /// Moves a variable on whose small changes the error does not depend to the best of the values
-    /// between which it matters; whether that is another one.
+    /// Moves a variable to the best of the values between which an effect switches with it; whether that
+    /// is another one.
     pub(super) fn cross_flat(&mut self, variable: usize) -> bool {
         let values = self.space.flats.get(variable).map_or(&[][..], Vec::as_slice);
         let Some(index) = self.best_within(variable, values) else { return false };
@@ -151,8 +151,8 @@ impl Problem<'_, '_> {
         Some((cost, *all.get(index)?))
     }
 
-    /// The index of about the best of `values` for a variable: some of them are tried, then those near the
-    /// best of these, ever closer.
+    /// The index of about the best of `values` for a variable: some of them and the one next to where it
+    /// is are tried, then those near the best of these, ever closer.
     fn best_within(&self, variable: usize, values: &[f64]) -> Option<usize> {
         /// Values that are tried at a time.
         const COARSE: usize = 24;
@@ -162,7 +162,9 @@ impl Problem<'_, '_> {
             indices.get(self.least_of(&tried)?.1).copied()
         };
         let mut stride = values.len().div_ceil(COARSE).max(1);
-        let mut best = best_of((0..values.len()).step_by(stride).collect())?;
+        let here = values.partition_point(|value| *value < self.free[variable]);
+        let here = here.min(values.len().checked_sub(1)?);
+        let mut best = best_of((0..values.len()).step_by(stride).chain([here]).collect())?;
         while stride > 1 {
             let near = best.saturating_sub(stride)..(best + stride).min(values.len());
             stride = (2 * stride).div_ceil(COARSE);

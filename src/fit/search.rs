@@ -66,12 +66,12 @@ impl<'p, 'r> Search<'p, 'r> {
         Self { cost, termination, slopes, ..self }
     }
 
-    /// Moves the parameters on which the error depends only in jumps to their best.
+    /// Moves the parameters with which an effect switches at levels of the input to their best.
     pub(super) fn across_flats(mut self) -> Self {
         /// One may have to wait for another.
         const PASSES: usize = 3;
         for _ in 0..PASSES {
-            let flats = self.flat_variables();
+            let flats = self.switched_variables();
             let crossed = flats.iter().filter(|index| self.problem.cross_flat(**index)).count();
             if crossed == 0 && !self.problem.cross_two_flats(&flats) {
                 break;
@@ -82,13 +82,15 @@ impl<'p, 'r> Search<'p, 'r> {
         self
     }
 
-    /// The variables on which the error depends only in jumps.
-    fn flat_variables(&self) -> Vec<usize> {
+    /// The variables with which an effect switches, of thresholds those on which nothing else depends.
+    fn switched_variables(&self) -> Vec<usize> {
+        let space = self.problem.space;
+        let all = (0..self.problem.free.len()).filter(|index| space.is_switched(*index));
+        let (sloped, levels): (Vec<_>, Vec<_>) = all.partition(|index| space.slopes(*index));
         let residuals = self.problem.residuals();
-        let free = self.problem.free.len();
-        let levels: Vec<usize> = (0..free).filter(|i| self.problem.space.is_level(*i)).collect();
-        let mut slopes = DMatrix::zeros(residuals.len(), free);
+        let mut slopes = DMatrix::zeros(residuals.len(), self.problem.free.len());
         self.problem.put_slopes(&mut slopes, &levels, &residuals);
-        levels.into_iter().filter(|index| slopes.column(*index).amax() <= 0.0).collect()
+        let flat = levels.into_iter().filter(|index| slopes.column(*index).amax() <= 0.0);
+        flat.chain(sloped).collect()
     }
 }

@@ -13,9 +13,11 @@ pub(super) struct Space {
     /// Index in [`JointModel::values`] of each free parameter.
     pub(super) free: Vec<usize>,
     pub(super) bounds: Vec<Bounds>,
-    /// For each of them the values, one for each gap between levels of the input, between
-    /// which an effect may do nothing but switch; none for what is not a level.
+    /// For each of them the values between which an effect switches at a level of the input; none for
+    /// what does not.
     pub(super) flats: Vec<Vec<f64>>,
+    /// Whether the error depends on a value between those, too, and not in jumps alone.
+    slopes: Vec<bool>,
     /// For each of them the values that the record reaches, where it is a level of the input or
     /// a limit of the output.
     reach: Vec<Bounds>,
@@ -52,20 +54,22 @@ impl Space {
             })
             .unzip();
         let flats = free.iter().zip(&bounds).map(|(index, bounds)| {
-            if is_level(model, *index) {
-                bounds.within(&range.thresholds(usize::MAX))
-            } else {
-                Vec::new()
-            }
+            let (flats, slopes) = switches(model, *index, range);
+            (bounds.within(&flats), slopes)
         });
+        let (flats, slopes) = flats.unzip();
         let reach = free.iter().map(|index| reach(model, *index, range)).collect();
-        Self { flats: flats.collect(), free, bounds, reach }
+        Self { flats, slopes, free, bounds, reach }
     }
 
-    /// Whether a free parameter is a level of the input, between values of which the error may
-    /// depend on it in jumps.
-    pub(super) fn is_level(&self, free: usize) -> bool {
+    /// Whether an effect switches with a free parameter between some of its values.
+    pub(super) fn is_switched(&self, free: usize) -> bool {
         self.flats.get(free).is_some_and(|flats| !flats.is_empty())
+    }
+
+    /// Whether the error depends on such a parameter between these values, too.
+    pub(super) fn slopes(&self, free: usize) -> bool {
+        self.slopes.get(free).is_some_and(|slopes| *slopes)
     }
 
     /// What a fit could do with a free parameter, which it left at `value`.
@@ -83,8 +87,9 @@ impl Space {
     pub(super) fn holding(&self, values: &[f64]) -> Self {
         let pairs = self.free.iter().zip(&self.bounds);
         let bounds = pairs.map(|(index, bounds)| bounds.holding(values[*index]));
-        let (free, flats, reach) = (self.free.clone(), self.flats.clone(), self.reach.clone());
-        Self { free, bounds: bounds.collect(), flats, reach }
+        let (free, bounds) = (self.free.clone(), bounds.collect());
+        let (flats, slopes) = (self.flats.clone(), self.slopes.clone());
+        Self { free, bounds, flats, slopes, reach: self.reach.clone() }
     }
 
     /// The free ones of all `values`, within their bounds.
@@ -125,12 +130,19 @@ fn reach(model: &JointModel, index: usize, range: &RecordRange<'_>) -> Bounds {
     }
 }
 
-/// Whether a parameter of `model` is a level of the input.
-fn is_level(model: &JointModel, index: usize) -> bool {
-    place(model, index).is_some_and(|(component, parameter)| {
-        let stage = component.effect().spec().stage;
-        parameter.dimension == Dimension::Input && stage != Stage::Spool
-    })
+/// The values between which an effect of `model` switches at a level of the input with this one, and
+/// whether the error depends on it between them, too.
+///
+/// A threshold does the same anywhere in the gap between two levels.
+fn switches(model: &JointModel, index: usize, range: &RecordRange<'_>) -> (Vec<f64>, bool) {
+    let Some((component, parameter)) = place(model, index) else { return (Vec::new(), false) };
+    let effect = component.effect();
+    if parameter.dimension == Dimension::Input && effect.spec().stage != Stage::Spool {
+        return (range.thresholds(usize::MAX), false);
+    }
+    let parameters = effect.spec().parameters;
+    let at = parameters.iter().position(|one| std::ptr::eq(one, parameter));
+    (at.map_or_else(Vec::new, |at| effect.jumps(at, range)), true)
 }
 
 /// The effect of which a value of `model` is a parameter, and this.

@@ -5,8 +5,8 @@ use crate::model::{Component, JointModel, Value};
 
 /// Start values: those of the model, and the starts of effects that are still neutral.
 pub(super) fn starts(model: &JointModel, range: &RecordRange<'_>) -> Vec<Vec<f64>> {
-    /// Combinations that are tried at most.
-    const MOST: usize = 16;
+    /// Combinations that are tried at most: one simulation each. The most of one effect are 38.
+    const MOST: usize = 48;
     let mut starts = vec![vec![model.gain.value, model.delay.value]];
     for component in model.components() {
         let own = component_starts(component, range);
