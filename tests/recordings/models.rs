@@ -163,8 +163,8 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
     });
     for ((_, titles), revision) in titles.iter().skip(1).zip(improvements[0].revisions.windows(2)) {
         let title = match revision[1].change {
-            Change::Added("actuator_lag") => "against the time since a step",
-            _ => "at held input",
+            Change::Added("actuator_lag") => "over the time since a step",
+            _ => "over held input",
         };
         assert!(titles.contains(title), "{titles}");
     }

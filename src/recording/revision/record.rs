@@ -38,7 +38,7 @@ pub(in crate::recording) fn add(
         ];
         whole.into_iter().chain(close_up).collect()
     };
-    panels::add(rows, &models.iter().enumerate().map(drawn).collect::<Vec<Vec<Placed>>>())
+    panels::add(rows, models.iter().enumerate().map(drawn))
 }
 
 /// What was not fitted, and where the model fails.
