@@ -58,7 +58,7 @@ fn figures(error: ErrorFigures, rmse_raw: Option<f64>, rmse_free: Option<f64>) -
 }
 
 /// Parameters by name, with their standard errors and units.
-pub(super) fn parameters(joint: &Joint, fit: &AssessedModel) -> Map<String, Value> {
+pub(in crate::report) fn parameters(joint: &Joint, fit: &AssessedModel) -> Map<String, Value> {
     let parameter = |(parameter, unit): (&Parameter, String)| {
         let Parameter { name, value, std_error, status } = parameter;
         let value = json!({

@@ -10,8 +10,8 @@ use crate::fit::{Split, Termination};
 use crate::model::Component;
 use crate::report::compare::errors_note;
 use crate::report::equation::filled_in;
-use crate::report::finding::ranking_table;
 use crate::report::ladder::ladder_table;
+use crate::report::ranking::ranking_table;
 use crate::report::{ComparedJoint, ImprovedJoint, Topic, delay_of_steps, parameter_table};
 use crate::wording::{
     capitalized, correlation_sentences, effect_ids, failure_sentences, listed, measure,
