@@ -2,7 +2,8 @@
 
 use super::ComparedJoint;
 use super::consequence::Consequence;
-use crate::diagnosis::{Comparison, sensor_noise};
+use super::ladder::Before;
+use crate::diagnosis::sensor_noise;
 use crate::effect::Spec;
 use crate::explain::{Attribution, Candidate, Judgement, Verdict};
 use crate::model::Component;
@@ -20,7 +21,7 @@ pub struct Finding<'a> {
     /// What follows the effect on the command line that adds it.
     pub add_arguments: &'a str,
     /// The model to which effects were added, where any were.
-    pub before: Option<&'a Comparison>,
+    pub before: Option<Before<'a>>,
     /// What each effect carries that was added, or is proposed, where that was found out.
     pub attribution: Option<&'a Attribution>,
     /// The delays of its steps, where they were estimated.
@@ -39,10 +40,12 @@ impl<'a> Finding<'a> {
         let comparison = self.compared.comparison;
         let (fit, before, after) = match (self.before, self.proposed()) {
             (None, Some(best)) => {
-                (&best.fit.assessed, comparison.judged(), best.validation.or(best.training))
+                let before = comparison.judged().map(|error| error.rmse);
+                (&best.fit.assessed, before, best.validation.or(best.training))
             }
             (before, _) => {
-                (&comparison.fit.assessed, before.and_then(Comparison::judged), comparison.judged())
+                let before = before.and_then(|before| before.rmse());
+                (&comparison.fit.assessed, before, comparison.judged())
             }
         };
         let (joint, attribution) = (self.compared.joint, self.attribution);

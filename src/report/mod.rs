@@ -86,7 +86,7 @@ pub(crate) use json::{
     EstimateJson, add_json, columns_json, compare_json, design_json, document, effects_json,
     explain_json, folder_json, improve_json, report_json, sweep_json,
 };
-pub use ladder::History;
+pub use ladder::{Before, History};
 pub(crate) use ladder::{change_in_words, errors_of};
 pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{
