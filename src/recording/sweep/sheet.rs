@@ -10,7 +10,7 @@ use super::swept::{Opinion, Swept};
 use crate::delay::sweep::{Factor, SweptStep};
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape};
 use crate::numerics::quantile;
-use crate::recording::canvas::{LINE, Plot, SHEET, Span, Text, width};
+use crate::recording::canvas::{LINE, Plot, SHEET, Span, width};
 use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
 use crate::recording::layers::Layers;
@@ -44,7 +44,8 @@ pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordEr
         layers.stays("map", &place)?;
     }
     panels::add(&mut layers, [placed.into()])?;
-    layers.texts("legend", vec![legend(swept)])?;
+    let answer = (Vec2D::new(SHEET.0 / 2.0, 4.0), headline(swept), palette::BORDER);
+    layers.texts("answer", vec![vec![answer]])?;
     page.add_setting(&mut Layers::rows(chunks, paths::SHEET, swept.settings()).in_front(), plots)?;
     let mut rows = Layers::rows(chunks, paths::SHEET, swept.index.clone()).in_front();
     page.add_step(&mut rows, plots)
@@ -125,7 +126,7 @@ impl<'s> Page<'s> {
         });
         let groups: Vec<(f64, &SweptStep, Group)> = groups.collect();
         let is_named = groups.len().saturating_mul(self.swept.grid.combinations().len()) <= NAMED;
-        let of_opinion = |(part, opinion): (&'static str, Opinion)| {
+        let of_opinion = |(part, name, opinion): (&'static str, &str, Opinion)| {
             let own = groups.iter().filter(|(.., group)| group.opinion == opinion);
             let dots = own.map(|(x, step, group)| {
                 let mut name = group.name(step);
@@ -134,13 +135,17 @@ impl<'s> Page<'s> {
                 }
                 ((*x, group.delay * step.period_s), group.radius(step), name)
             });
-            Mark::new(role(opinion.rgb()), Shape::Named(dots.collect())).part(part)
+            Mark::new(role(opinion.rgb()), Shape::Named(dots.collect())).named(name).part(part)
         };
-        let [same, longer, shorter] =
-            [("same", Opinion::Same), ("longer", Opinion::Longer), ("shorter", Opinion::Shorter)]
-                .map(of_opinion);
+        let [same, longer, shorter] = [
+            ("same", "as most settings say", Opinion::Same),
+            ("longer", "longer", Opinion::Longer),
+            ("shorter", "shorter", Opinion::Shorter),
+        ]
+        .map(of_opinion);
         let ranges = Mark::lines(Role::Grid, 1.0, ranges).part("range");
         let agreed = Mark::lines(Role::Accepted, 1.8, agreed).part("agreed");
+        let agreed = agreed.named("the delay that most agree on");
         let name = "delay of each step, with every setting [s]";
         let (x, y) = (self.axis().bare(), Axis::new(delay_span(self.swept), name, 6.0));
         Panel { x, y, height: 190, marks: vec![ranges, same, longer, shorter, agreed] }
@@ -187,7 +192,7 @@ impl<'s> Page<'s> {
         };
         let ticks = named(self.swept.grid).into_iter().map(name).collect();
         // An axis with a name is one of numbers, of which some may be left out.
-        let name = "which settings agree".to_owned();
+        let name = "which settings agree; black: step not accepted".to_owned();
         let y = Axis { span: self.rows, name, ticks, is_logarithmic: false };
         Panel { x: Axis { name: "step".to_owned(), ..self.axis() }, y, height: 180, marks }
     }
@@ -316,21 +321,7 @@ fn delay_span(swept: &Swept<'_>) -> Span {
     Span::around(ends.chain(agreed), 0.06)
 }
 
-/// The answer in a line, and what the colours mean.
-fn legend(swept: &Swept<'_>) -> Vec<Text> {
-    /// Row of the legend on the sheet.
-    const LEGEND: f32 = 1088.0;
-    let entries: [(f32, f32, String, Rgb); 6] = [
-        (SHEET.0 / 2.0, 4.0, headline(swept), palette::BORDER),
-        (330.0, LEGEND, "● as most settings say".to_owned(), palette::SAME),
-        (570.0, LEGEND, "● longer".to_owned(), palette::LONGER),
-        (720.0, LEGEND, "● shorter".to_owned(), palette::SHORTER),
-        (930.0, LEGEND, "black: step not accepted".to_owned(), palette::BORDER),
-        (1240.0, LEGEND, "– the delay that most agree on".to_owned(), palette::ACCEPTED),
-    ];
-    entries.map(|(x, y, text, rgb)| (Vec2D::new(x, y), text, rgb)).to_vec()
-}
-
+/// The answer in a line.
 fn headline(swept: &Swept<'_>) -> String {
     let name = &swept.reported.joint.name;
     let judged = swept.reported.sweep.judged().count();

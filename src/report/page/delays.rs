@@ -3,12 +3,12 @@
 use super::document::{Figure, HALF, WIDTH, slug};
 use super::timeline::Timeline;
 use crate::delay::{AgainstOfKind, AgainstState, DelayProfile, DelayTable, Transition};
-use crate::figure::delay_levels::{self, Series};
+use crate::figure::delay_levels;
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, thinned_places};
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;
 use crate::report::doubt::doubted;
-use crate::wording::{bracketed, capitalized, p_cell};
+use crate::wording::{capitalized, p_cell};
 
 /// Steps between which the delay is drawn.
 const MOST_STEPS: usize = 2000;
@@ -113,37 +113,13 @@ pub(super) fn over_levels(
     found: &DelayTable,
     file: String,
 ) -> Option<Figure> {
-    let all = delay_levels::series(found);
-    let (x, y) = delay_levels::spans(&all)?;
-    let input = bracketed("level of the input", estimated.joint.input_unit.as_deref());
-    let panel = Panel {
-        x: Axis::new(x, input, 8.0),
-        y: Axis::new(y, "delay [s]", 5.0),
-        height: 220,
-        marks: all.iter().flat_map(|one| level_marks(one, y)).collect(),
-    };
+    let panel = delay_levels::panel(found, estimated.joint.input_unit.as_deref())?;
     let name = format!("Delay of {} by level", estimated.joint.name);
     let caption = "The median delay over the level, for a stop that before it, else that after \
                    it, with its 95 % interval and how many of how many steps were accepted; where \
                    none was, a cross stands at the bottom."
         .to_owned();
     Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
-}
-
-fn level_marks(one: &Series, y: Span) -> Vec<Mark> {
-    let bottom = y.low + 0.04 * (y.high - y.low);
-    let cut = |line: &Vec<Place>| line.iter().map(|place| (place.0, place.1.min(y.high))).collect();
-    let without: Vec<_> =
-        one.without.iter().map(|(x, text)| ((*x, bottom), text.clone())).collect();
-    let crosses = without.iter().map(|(place, _)| *place).collect();
-    let dots = one.medians.iter().map(|(place, _)| *place).collect();
-    let words = one.medians.iter().cloned().chain(without).collect();
-    vec![
-        Mark::lines(one.role, 1.4, one.intervals.iter().map(cut).collect()),
-        Mark::dots(one.role, dots).named(one.kind.id()),
-        Mark::new(one.role, Shape::Crosses(crosses)),
-        Mark::new(Role::Faint, Shape::Words(words)),
-    ]
 }
 
 /// The delay against the speed, and against what it goes with most besides.
