@@ -251,9 +251,7 @@ impl<'a> SegmentFigure<'a> {
             y: Axis::logarithmic(y, bracketed("SSE", unit.as_deref()), 3.0),
             height: 76,
             marks: vec![
-                Mark::lines(Role::Error, 1.6, vec![curve])
-                    .named("error of each candidate")
-                    .part("sse"),
+                Mark::lines(Role::Error, 1.6, vec![curve]).named("each candidate").part("sse"),
                 self.step(),
                 self.verticals(self.verdict(), 1.0, self.q()).part("chosen"),
                 Mark::new(self.verdict(), Shape::Dots(best, 4.0)).named(at_q).part("least"),

@@ -5,8 +5,7 @@ use serde_json::{Map, Value, json};
 use super::Kind;
 use super::facts::{self, Fact, Part, Place, UNSAID, Unit, fact};
 use super::finding::{decision_id, judgement_text, specs};
-use super::json::document::joined;
-use super::json::model::parameters;
+use super::parameters::parameters_json;
 use super::separation::experiment;
 use super::text_table::TextTable;
 use crate::experiment::Joint;
@@ -62,8 +61,10 @@ pub(super) fn candidate_json(joint: &Joint, candidate: &Candidate) -> Value {
 
 /// Whether an effect is worth adding, and why.
 fn judgement_json(judgement: &Judgement) -> Value {
-    let decision = json!({ "decision": decision_id(judgement), "reason": judgement.reason() });
-    joined([json!(judgement), decision])
+    let mut all = json!(judgement);
+    all["decision"] = decision_id(judgement).into();
+    all["reason"] = judgement.reason().into();
+    all
 }
 
 /// The parameters of what was added: `upper` of one effect, `dead_band.upper` of several.
@@ -74,7 +75,7 @@ fn own_parameters(joint: &Joint, candidate: &Candidate) -> Map<String, Value> {
         let short = if candidate.effects.len() == 1 { short.to_owned() } else { name.clone() };
         is_added.then_some(short)
     };
-    let all = parameters(joint, &candidate.fit);
+    let all = parameters_json(joint, &candidate.fit);
     all.into_iter().filter_map(|(name, value)| Some((own(name)?, value))).collect()
 }
 

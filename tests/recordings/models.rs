@@ -49,7 +49,7 @@ fn figures_of_a_model_are_those_of_its_comparison() {
             |part: &str| back.cell(&format!("/{}/{part}", joint.name), "LineStrips2D:strips").len();
         assert_eq!(drawn("error_share/time"), count);
         // The record is drawn on every timeline that the page may be opened on.
-        let map = format!("/{}/model_map/residual/0", joint.name);
+        let map = format!("/{}/model_map/residual", joint.name);
         let rows = back.rows(&map, "LineStrips2D:strips", |strips| strips.len());
         let timelines = ["decision", "doubt", "sample", "segment", "time"];
         assert!(matches!(rows.as_slice(), [(_, 1)]), "{rows:?}");

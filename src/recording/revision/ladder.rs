@@ -27,7 +27,7 @@ pub(super) fn noise(improved: &ImprovedJoint<'_>) -> Option<f64> {
 
 /// The ladder, the revision `at` hand being bright, and the candidates for what comes next.
 pub(super) fn placed(improved: &ImprovedJoint<'_>, at: usize) -> [Placed; 2] {
-    let name = "error of each revision".to_owned();
+    let name = "errors".to_owned();
     let ladder = bars(improved, (name, "ladder"), &rungs(improved, at), LADDER);
     let (title, candidates) = ranking(improved, at);
     [ladder, bars(improved, (title, "ranking"), &candidates, RANKING)]

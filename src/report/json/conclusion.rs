@@ -2,12 +2,12 @@
 
 use serde_json::{Map, Value, json};
 
-use super::model::parameters;
 use crate::diagnosis::ErrorFigures;
 use crate::explain::Contribution;
 use crate::report::conclusion::Conclusion;
 use crate::report::consequence::Consequence;
 use crate::report::finding::Finding;
+use crate::report::parameters::parameters_json;
 use crate::report::ranking::candidate_json;
 
 /// Verdict, ranking and words.
@@ -26,7 +26,7 @@ pub(super) fn finding_json(finding: &Finding<'_>, conclusion: &Conclusion) -> Va
 
 /// What was found, how much it explains, and what remains.
 pub(super) fn conclusion_json(headline: &str, of: &Consequence<'_>) -> Value {
-    let all = parameters(of.joint, of.fit);
+    let all = parameters_json(of.joint, of.fit);
     let found = |one: &Contribution| {
         let prefix = format!("{}.", one.effect);
         let own = all.iter().filter(|(name, _)| name.starts_with(&prefix));
