@@ -16,11 +16,6 @@ pub struct ErrorFigures {
 }
 
 impl ErrorFigures {
-    /// The fit as it is shown: `88.2 %`; none of an output that stands still.
-    pub(crate) fn fit_text(&self) -> Option<String> {
-        Some(self.fit_percent).filter(|fit| fit.is_finite()).map(|fit| format!("{fit:.1} %"))
-    }
-
     /// The error of an evaluated model on `part`; `None` where it has no sample.
     pub fn of(record: &FitRecord<'_>, evaluation: &Evaluation, part: Part) -> Option<Self> {
         Self::over(record, &evaluation.residuals, record.part(part))

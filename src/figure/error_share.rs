@@ -6,8 +6,7 @@ use super::span::Span;
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::{Feature, Region};
 use crate::experiment::Joint;
-use crate::numerics::as_written;
-use crate::wording::{feature_with_unit, number};
+use crate::wording::{feature_with_unit, rounded};
 
 /// All parts of one feature.
 #[derive(Clone, Copy, Debug)]
@@ -110,8 +109,8 @@ fn names(regions: &[Region]) -> Vec<(f64, String)> {
         let named = |(region, slot): (&Region, u32)| (f64::from(slot) + 0.5, name(region));
         return regions.iter().zip(0..).map(named).collect();
     }
-    let first = regions.first().map(|region| (0.0, short(region.from)));
-    let ends = regions.iter().zip(1..).map(|(r, slot): (_, u32)| (f64::from(slot), short(r.to)));
+    let first = regions.first().map(|region| (0.0, rounded(region.from)));
+    let ends = regions.iter().zip(1..).map(|(r, slot): (_, u32)| (f64::from(slot), rounded(r.to)));
     first.into_iter().chain(ends).collect()
 }
 
@@ -124,13 +123,8 @@ fn name(region: &Region) -> String {
             region.label.chars().take(LONGEST - 1).chain(['…']).collect()
         }
         Feature::Direction | Feature::Trial => region.label.clone(),
-        _ => short(region.from),
+        _ => rounded(region.from),
     }
-}
-
-/// A number in three digits.
-pub(crate) fn short(value: f64) -> String {
-    number(as_written(value, 3))
 }
 
 /// Whether a part is one level of its feature, not a range.

@@ -6,21 +6,19 @@
 //!
 //! Recordings show some of it that is not shown elsewhere, which is unused in a program without them.
 
-#![cfg_attr(
-    not(feature = "rrd"),
-    expect(dead_code, unused_imports, reason = "what only recordings show")
-)]
+#![cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "what only recordings show"))]
 
 pub(crate) mod correlogram;
 pub(crate) mod course;
 pub(crate) mod delay_against;
 pub(crate) mod delay_levels;
 pub(crate) mod error_share;
+pub(crate) mod ladder;
 mod panel;
 mod role;
 pub(crate) mod segment;
 mod span;
 
-pub(crate) use panel::{Axis, Mark, Panel, Place, Shape};
+pub(crate) use panel::{Axis, Mark, Panel, Place, Shape, within};
 pub(crate) use role::{Revision, Role};
-pub(crate) use span::{Span, power_of_ten, thinned_places, thinned_to};
+pub(crate) use span::{Span, thinned_places, thinned_to};

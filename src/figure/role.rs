@@ -29,6 +29,8 @@ pub(crate) enum Role {
     Attention,
     /// The revisions of a model behind the first one, which is [`Self::Model`].
     Revision(Revision),
+    /// A colour of its own, which a recording has beside these: red, green, blue.
+    Own(u8, u8, u8),
 }
 
 /// One of the colours of revisions behind the first, counted from 1 to [`Revision::COUNT`].

@@ -8,8 +8,8 @@ use super::origin::made_from;
 use super::recorded::Recording;
 use super::revision::judged;
 use crate::report::{
-    EstimatedJoint, JointSummary, LEVEL_HEADER, ReviewCount, TextTable, change_in_words,
-    chosen_line, dead_time_sentences, doubtful_lines, level_cells, settings_table, summary_table,
+    EstimatedJoint, JointSummary, Place, ReviewCount, TextTable, change_in_words, chosen_line,
+    dead_time_sentences, doubtful_lines, levels_text, settings_table, summary_table,
 };
 use crate::wording::{DOUBT_MEANS, counted, doubtful_sentence, measure};
 
@@ -100,20 +100,17 @@ fn doubtful(page: &mut String, joints: &[EstimatedJoint<'_>]) -> std::fmt::Resul
 fn delay_levels(page: &mut String, joints: &[EstimatedJoint<'_>]) -> std::fmt::Result {
     /// Rows that a person reads, at most.
     const MOST: usize = 200;
-    let tables = joints.iter().map(|joint| (plain(&joint.joint.name), joint.delay_table().rows));
+    let tables = joints.iter().map(|joint| (joint.joint.name.as_str(), joint.delay_table().rows));
     let tables: Vec<_> = tables.collect();
-    let rows = || tables.iter().flat_map(|(name, rows)| rows.iter().map(move |row| (name, row)));
+    let rows = || tables.iter().flat_map(|(name, rows)| rows.iter().map(move |row| (*name, row)));
     let all = rows().count();
     if all == 0 {
         return Ok(());
     }
-    writeln!(page, "\n## Delay table\n\n| joint | {} |", LEVEL_HEADER.join(" | "))?;
-    writeln!(page, "|---|{}", "---|".repeat(LEVEL_HEADER.len()))?;
-    for (name, row) in rows().take(MOST) {
-        writeln!(page, "| {name} | {} |", level_cells(row).join(" | "))?;
-    }
+    let table = levels_text(Place::Recording, rows().take(MOST)).markdown(plain);
+    writeln!(page, "\n## Delay table\n\n{table}")?;
     if all > MOST {
-        writeln!(page, "\n{MOST} of {all} rows; `--table FILE.csv` writes them all.")?;
+        writeln!(page, "{MOST} of {all} rows; `--table FILE.csv` writes them all.")?;
     }
     Ok(())
 }

@@ -151,10 +151,7 @@ fn open_on_the_first(
         chunks.repeat((path, component), segment.opening, &index)?;
     }
     let candidates = segment.opening + 1..=segment.verdict();
-    for path in ["drawing/candidate", "drawing/candidate/mark"] {
-        chunks.replay(path, candidates.clone(), layout.first.tick + 1)?;
-    }
-    Ok(())
+    chunks.replay("drawing/candidate", candidates, layout.first.tick + 1)
 }
 
 /// Equal for equal logs, read in the same way, equal settings and version, so that two

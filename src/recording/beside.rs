@@ -5,7 +5,7 @@ use super::recorded::Recording;
 use crate::delay::{Decision, Verdict};
 use crate::report::EstimatedJoint;
 use crate::study::{JointDifferences, JointResult, StepPair, StepResult};
-use crate::wording::number;
+use crate::wording::{number, verdict_in_short};
 
 /// Another result on one joint.
 #[derive(Debug)]
@@ -73,19 +73,12 @@ impl Shown {
 
     /// The line of the result `name` in a legend.
     pub(super) fn in_short(self, name: &str) -> String {
-        format!("{name}: δ = {} {}", self.delay(), self.verdict("✓"))
+        format!("{name}: δ = {} {}", self.delay(), verdict_in_short(self.verdict, "✓"))
     }
 
     /// The row of the result `name` in a table.
     pub(super) fn row(self, name: &str) -> String {
-        format!("| {name} | {} | {} |", self.delay(), self.verdict("✓ accepted"))
-    }
-
-    fn verdict(self, accepted: &str) -> String {
-        match self.verdict {
-            Verdict::Accepted => accepted.to_owned(),
-            Verdict::Rejected(condition) => format!("✗ {}", condition.meaning()),
-        }
+        format!("| {name} | {} | {} |", self.delay(), verdict_in_short(self.verdict, "✓ accepted"))
     }
 
     fn delay(self) -> String {

@@ -21,5 +21,5 @@ pub(super) fn add(chunks: &mut Chunks, models: &[&ComparedJoint<'_>]) -> Result<
         left += 635.0;
         Placed::new(panel, (left, left + 510.0), 46.0..=430.0)
     });
-    panels::add(&mut Layers::fixed(chunks, paths::CORRELATION), &[placed.into()])
+    panels::add(&mut Layers::fixed(chunks, paths::CORRELATION), [placed.into()])
 }

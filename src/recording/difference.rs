@@ -1,19 +1,18 @@
 //! The decisions by how much they differ from those of other results: both delays over the
 //! record and by rank, lines to click, and what there is to say.
 
-use rerun::datatypes::Vec2D;
-
 use super::beside::Other;
-use super::canvas::{Plot, SHEET, Span, diamond};
+use super::canvas::{SHEET, Span};
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layers::Layers;
-use super::layout::{JointLayout, Placed};
+use super::layout::{JointLayout, Placed as Segment};
 use super::markdown::plain;
-use super::palette::{self, Rgb};
+use super::palette::{self, role};
+use super::panels::{self, Placed};
 use super::paths;
-use super::sheet::Sheet;
 use crate::delay::Verdict;
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape};
 use crate::study::{StepPair, StepResult};
 use crate::wording::{difference_in_short, difference_sentences, result_in_short, step_name};
 
@@ -43,25 +42,25 @@ pub(super) fn add(
 
 /// What others say of a step.
 fn pairs<'o>(
-    (trial, segment): &Placed<'_, '_>,
+    (trial, segment): &Segment<'_, '_>,
     others: &'o [Other<'_>],
 ) -> impl Iterator<Item = (&'o str, &'o StepPair)> {
     let (label, p) = (trial.trial.label(), segment.decision.input_step.sample);
     others.iter().filter_map(move |other| Some((other.name, other.pair(label, p)?)))
 }
 
-fn differs(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> bool {
+fn differs(placed: &Segment<'_, '_>, others: &[Other<'_>]) -> bool {
     pairs(placed, others).any(|(_, pair)| pair.differs())
 }
 
 /// Red where a verdict differs.
-fn level(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> &'static str {
+fn level(placed: &Segment<'_, '_>, others: &[Other<'_>]) -> &'static str {
     let other_verdict =
         |(_, pair): (&str, &StepPair)| pair.here.is_accepted() != pair.there.is_accepted();
     if pairs(placed, others).any(other_verdict) { "ERROR" } else { "INFO" }
 }
 
-fn line(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> String {
+fn line(placed: &Segment<'_, '_>, others: &[Other<'_>]) -> String {
     let trials = placed.0.estimated.joint.trials.len();
     let said = pairs(placed, others).map(|(name, pair)| {
         let there = result_in_short(&pair.there);
@@ -99,39 +98,29 @@ fn draw(
     layout: &JointLayout<'_>,
     others: &[Other<'_>],
 ) -> Result<(), RecordError> {
-    let figure = Figure::of(layout, others);
-    let mut sheet = Sheet::default();
-    sheet.draw(&figure.delays, 10.0, &title(others));
-    sheet.draw(
-        &figure.ranks,
-        10.0,
-        "delay here − there [s], the largest first; red: one accepts what the other rejects",
-    );
-    let mut fixed = Layers::fixed(chunks, paths::DIFFERENCE_SHEET);
-    fixed.sheets([sheet])?;
-    for (path, rgb, shown) in figure.layers() {
-        fixed.strips(path, rgb, 1.8, [shown])?;
-    }
+    let steps: Vec<Step> = layout.segments().flat_map(|placed| of_step(&placed, others)).collect();
+    let delays = Placed::new(delays(&steps, others), SIDES, 44.0..=165.0);
+    let ranks = Placed::new(ranks(&steps), SIDES, 250.0..=312.0);
+    let plots = [delays.plot, ranks.plot];
+    panels::add(&mut Layers::fixed(chunks, paths::DIFFERENCE_SHEET), [vec![delays, ranks]])?;
+    let last = plots[1].x_span.high;
     let here = layout.segments().map(|(trial, segment)| {
         let time = trial.seconds(segment.decision.input_step.sample);
-        let rank = (segment.difference as f64).min(figure.ranks.x_span().high);
-        vec![figure.delays.vertical(time).to_vec(), figure.ranks.vertical(rank).to_vec()]
+        let places = [time, (segment.difference as f64).min(last)];
+        let here = |at: f64| {
+            Mark::new(role(palette::CANDIDATE), Shape::Verticals(vec![at], 1.6)).part("here")
+        };
+        places.map(here).into_iter().zip(plots).collect()
     });
-    let mut rows = Layers::rows(chunks, paths::DIFFERENCE_SHEET, layout.openings());
-    rows.strips("here", palette::CANDIDATE, 1.6, here)
+    let rows = Layers::rows(chunks, paths::DIFFERENCE_SHEET, layout.openings());
+    panels::add_marks(&mut rows.in_front(), here)
 }
 
-/// What the plot of the delays shows.
-fn title(others: &[Other<'_>]) -> String {
-    let names: Vec<_> = others.iter().map(|other| other.name).collect();
-    format!(
-        "delay [s] of each step: here (green), {} (violet); red: rejected there or here",
-        names.join(", ")
-    )
-}
+/// Left and right end of both plots.
+const SIDES: (f32, f32) = (120.0, SHEET.0 - 15.0);
 
-/// A step at its place on both plots.
-struct Mark {
+/// A step as it is drawn.
+struct Step {
     time_s: f64,
     rank: f64,
     here: Option<f64>,
@@ -140,82 +129,60 @@ struct Mark {
     other_verdict: bool,
 }
 
-struct Figure {
-    marks: Vec<Mark>,
-    delays: Plot,
-    ranks: Plot,
+/// The delays of each step here and there, a line between them; a red line through the plot where one
+/// result accepts what the other rejects.
+fn delays(steps: &[Step], others: &[Other<'_>]) -> Panel {
+    let places = |delay: fn(&Step) -> Option<f64>| -> Vec<Place> {
+        steps.iter().filter_map(|step| Some((step.time_s, delay(step)?))).collect()
+    };
+    let alike = steps.iter().filter(|step| !step.other_verdict);
+    let links =
+        alike.filter_map(|step| Some(vec![(step.time_s, step.here?), (step.time_s, step.there?)]));
+    let odd = steps.iter().filter(|step| step.other_verdict).map(|step| step.time_s).collect();
+    let known = steps.iter().flat_map(|step| [step.here, step.there]).flatten();
+    let y = Span::around(known.chain([0.0]), 0.08);
+    let x = Span::around(steps.iter().map(|step| step.time_s), 0.01);
+    let names: Vec<_> = others.iter().map(|other| other.name).collect();
+    let marks = vec![
+        Mark::lines(Role::Faint, 1.8, links.collect()).part("links"),
+        Mark::new(Role::Accepted, Shape::Dots(places(|step| step.here), 5.0)).named("here"),
+        Mark::new(role(palette::OTHER), Shape::Crosses(places(|step| step.there)))
+            .named(names.join(", "))
+            .part("there"),
+        Mark::new(Role::Rejected, Shape::Verticals(odd, 1.8))
+            .named("rejected there or here")
+            .part("other_verdict"),
+    ];
+    Panel { x: Axis::new(x, "", 10.0), y: Axis::new(y, "delay [s]", 3.0), height: 80, marks }
 }
 
-impl Figure {
-    fn of(layout: &JointLayout<'_>, others: &[Other<'_>]) -> Self {
-        let marks: Vec<Mark> =
-            layout.segments().flat_map(|placed| of_step(&placed, others)).collect();
-        let times = marks.iter().map(|mark| mark.time_s);
-        let delays = marks.iter().flat_map(|mark| [mark.here, mark.there]).flatten().chain([0.0]);
-        let steps = marks.iter().filter(|mark| mark.has_rank()).map(|mark| mark.rank);
-        let last = steps.fold(1.0, f64::max);
-        let differences = marks.iter().map(|mark| mark.difference).chain([0.0]);
-        Self {
-            delays: Plot::new(44.0..=165.0, Span::around(times, 0.01), Span::around(delays, 0.08)),
-            ranks: Plot::new(
-                250.0..=312.0,
-                Span::new(0.0, last + 1.0),
-                Span::around(differences, 0.08),
-            ),
-            marks,
-        }
-    }
-
-    /// The parts of the drawing, each of one colour.
-    fn layers(&self) -> [(&'static str, Rgb, Vec<Vec<Vec2D>>); 5] {
-        let marks = || self.marks.iter();
-        let link = marks().filter(|mark| !mark.other_verdict).filter_map(|mark| {
-            let (here, there) = (mark.here?, mark.there?);
-            Some(vec![self.delays.at(mark.time_s, here), self.delays.at(mark.time_s, there)])
-        });
-        let other = marks().filter(|mark| mark.other_verdict);
-        let other: Vec<_> = other.flat_map(|mark| self.other_verdict(mark)).collect();
-        let bars = marks().filter(|mark| !mark.other_verdict && mark.has_rank());
-        let bars = bars.map(|mark| self.bar(mark).to_vec());
-        let here =
-            marks().filter_map(|mark| Some(diamond(self.delays.at(mark.time_s, mark.here?), 4.0)));
-        let there =
-            marks().filter_map(|mark| Some(cross(self.delays.at(mark.time_s, mark.there?))));
-        [
-            ("links", palette::RAW, link.collect()),
-            ("bars", palette::SMOOTHED, bars.collect()),
-            ("delays/here", palette::ACCEPTED, here.collect()),
-            ("delays/there", palette::OTHER, there.flatten().collect()),
-            ("other_verdict", palette::REJECTED, other),
-        ]
-    }
-
-    fn bar(&self, mark: &Mark) -> [Vec2D; 2] {
-        [self.ranks.at(mark.rank, 0.0), self.ranks.at(mark.rank, mark.difference)]
-    }
-
-    /// A step with another verdict: a line through the whole plot of the delays, and its bar, or a
-    /// mark where there is no difference to show.
-    fn other_verdict(&self, mark: &Mark) -> [Vec<Vec2D>; 2] {
-        let [Vec2D([x, zero]), _] = self.bar(mark);
-        let mut bar = self.bar(mark).to_vec();
-        bar.extend([Vec2D::new(x - 3.0, zero), Vec2D::new(x + 3.0, zero)]);
-        [self.delays.vertical(mark.time_s).to_vec(), bar]
-    }
+/// By how much the delays differ, the largest first; of a step with another verdict a mark where there
+/// is no difference to show.
+fn ranks(steps: &[Step]) -> Panel {
+    let ranked = || steps.iter().filter(|step| step.other_verdict || step.difference != 0.0);
+    let bars = |other_verdict: bool| {
+        let own = ranked().filter(|step| step.other_verdict == other_verdict);
+        own.map(|step| vec![(step.rank, 0.0), (step.rank, step.difference)]).collect()
+    };
+    let odd = ranked().filter(|step| step.other_verdict).map(|step| (step.rank, 0.0)).collect();
+    let last = ranked().map(|step| step.rank).fold(1.0, f64::max);
+    let y = Span::around(steps.iter().map(|step| step.difference).chain([0.0]), 0.08);
+    let name = "delay here − there [s], the largest first";
+    let marks = vec![
+        Mark::lines(Role::Smoothed, 1.8, bars(false)).part("bars"),
+        Mark::lines(Role::Rejected, 1.8, bars(true)).part("other_verdict"),
+        Mark::new(Role::Rejected, Shape::Crosses(odd)).part("other_verdict"),
+    ];
+    let x = Axis::new(Span::new(0.0, last + 1.0), "", 10.0);
+    Panel { x, y: Axis::new(y, name, 3.0), height: 40, marks }
 }
 
-impl Mark {
-    fn has_rank(&self) -> bool {
-        self.other_verdict || self.difference != 0.0
-    }
-}
-
-/// A mark for each result that has the step.
-fn of_step(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> Vec<Mark> {
+/// Each result that has the step, as it is drawn.
+fn of_step(placed: &Segment<'_, '_>, others: &[Other<'_>]) -> Vec<Step> {
     let (trial, segment) = placed;
     let time_s = trial.seconds(segment.decision.input_step.sample);
     let accepted = |step: &StepResult| step.delay_s.filter(|_| step.verdict == Verdict::Accepted);
-    let mark = |(_, pair): (&str, &StepPair)| Mark {
+    let drawn = |(_, pair): (&str, &StepPair)| Step {
         time_s,
         rank: segment.difference as f64,
         here: accepted(&pair.here),
@@ -223,10 +190,5 @@ fn of_step(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> Vec<Mark> {
         difference: if pair.differs() { pair.difference_s().unwrap_or(0.0) } else { 0.0 },
         other_verdict: pair.here.is_accepted() != pair.there.is_accepted(),
     };
-    pairs(placed, others).map(mark).collect()
-}
-
-fn cross(Vec2D([x, y]): Vec2D) -> [Vec<Vec2D>; 2] {
-    let line = |dy: f32| vec![Vec2D::new(x - 4.0, y - dy), Vec2D::new(x + 4.0, y + dy)];
-    [line(4.0), line(-4.0)]
+    pairs(placed, others).map(drawn).collect()
 }

@@ -23,7 +23,7 @@ pub(super) fn add(chunks: &mut Chunks, models: &[&ComparedJoint<'_>]) -> Result<
     let models = models.iter().enumerate();
     let models: Vec<_> = models.map(|(n, one)| (Role::of_revision(n), one.comparison)).collect();
     let placed = placed(first.joint, &models);
-    panels::add(&mut Layers::fixed(chunks, paths::ERROR_SHARE), &[placed])
+    panels::add(&mut Layers::fixed(chunks, paths::ERROR_SHARE), [placed])
 }
 
 /// Each panel in one of eight places on the sheet.

@@ -14,7 +14,7 @@ use super::layout::{JointLayout, SegmentLayout, TrialLayout, TrialStarts};
 use super::markdown::{link, plain};
 use super::paths::{self, at};
 use super::recorded::Recording;
-use super::segment_view::{self, Drawing};
+use super::segment_view;
 use super::verdict;
 use crate::report::{EstimatedJoint, JointSummary, SUMMARY_HEADER, TextTable, summary_cells};
 use crate::wording::doubt_percent;
@@ -160,10 +160,8 @@ fn add_doubtful(
     chunks.pages("doubtful/verdict", ranks(), all.iter().map(Doubted::page))?;
     let lines = all.iter().map(|found| (Some("INFO"), found.line()));
     chunks.lines("doubtful/log", ranks(), lines)?;
-    let drawings: Vec<_> =
-        all.iter().map(|found| Drawing::new(found.trial, found.segment)).collect();
     let mut layers = Layers::rows(chunks, "doubtful/drawing", ranks());
-    segment_view::add_drawings(&mut layers, &drawings)
+    segment_view::add_drawings(&mut layers, all.iter().map(|found| (found.trial, found.segment)))
 }
 
 impl Doubted<'_, '_> {

@@ -1,49 +1,25 @@
 //! Drawings: lines, points and texts on a sheet, each part at an entity of its own. What stays is
 //! written once; what changes along a timeline has a row per drawing.
 
-use rerun::datatypes::Vec2D;
-use rerun::{AsComponents, Color, LineStrips2D, Points2D};
-use rerun::{EntityPath, SerializedComponentColumn};
+use rerun::{AsComponents, Color, EntityPath, LineStrips2D, Points2D, SerializedComponentColumn};
 
-use super::canvas::{Labels, Strips};
+use super::canvas::{Dot, Strip, Text};
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
-use super::palette::{self, Rgb, color};
+use super::palette::{Rgb, color};
 use super::paths::at;
-use super::sheet::Sheet;
 
 /// Radius of a text's own point: too small to be seen.
 pub(super) const HIDDEN: f32 = 0.01;
 
-/// Lines or points of all rows, and how many each row has.
-type Data<'d> = (&'d dyn AsComponents, &'d [usize]);
-
-/// The colour of what is drawn at one entity.
-#[derive(Clone)]
-pub(super) enum Ink {
-    One(Rgb),
-    /// Another one in each row.
-    ByRow(Vec<Rgb>),
-    /// Each line, point or text has its own.
-    Own,
-}
-
-impl From<Rgb> for Ink {
-    fn from(rgb: Rgb) -> Self {
-        Self::One(rgb)
-    }
-}
-
-/// The parts of a drawing, which lie below one root.
+/// The parts of a drawing, which lie below one root; each is drawn in front of the one before.
 pub(super) struct Layers<'c> {
     chunks: &'c mut Chunks,
     root: EntityPath,
     /// The moments of the rows; none where there is one that stays.
     index: Option<Index>,
-    /// Where the next part is drawn: behind those with a higher number, where it matters.
-    order: Option<f32>,
-    /// Whether each part is drawn in front of the one before.
-    counts: bool,
+    /// Where the next part is drawn: behind those with a higher number.
+    order: f32,
     /// Whether the index has a moment before all rows, at which the last one is seen.
     opens_on_last: bool,
 }
@@ -51,14 +27,7 @@ pub(super) struct Layers<'c> {
 impl<'c> Layers<'c> {
     /// A drawing below `root` that stays.
     pub(super) fn fixed(chunks: &'c mut Chunks, root: impl Into<EntityPath>) -> Self {
-        Self {
-            chunks,
-            root: root.into(),
-            index: None,
-            order: None,
-            counts: false,
-            opens_on_last: false,
-        }
+        Self { chunks, root: root.into(), index: None, order: 1.0, opens_on_last: false }
     }
 
     /// A drawing with a row at each moment of `index`.
@@ -66,9 +35,9 @@ impl<'c> Layers<'c> {
         Self { index: Some(index), ..Self::fixed(chunks, root) }
     }
 
-    /// What is pushed first is drawn behind the rest.
-    pub(super) fn back_to_front(self) -> Self {
-        Self { order: Some(1.0), counts: true, ..self }
+    /// These parts in front of those of another drawing.
+    pub(super) fn in_front(self) -> Self {
+        Self { order: 100.0, ..self }
     }
 
     /// These rows behind a copy of the last one, for which the index has a moment of its own.
@@ -76,133 +45,67 @@ impl<'c> Layers<'c> {
         Self { opens_on_last: true, ..self }
     }
 
-    /// These parts, of which the next one is drawn behind those with a higher number.
-    pub(super) fn order(&mut self, order: f32) -> &mut Self {
-        self.order = Some(order);
-        self
+    /// Whether all of it stays.
+    pub(super) fn is_fixed(&self) -> bool {
+        self.index.is_none()
     }
 
+    /// The lines of each row.
     pub(super) fn strips(
         &mut self,
         path: &str,
-        ink: impl Into<Ink>,
         radius: f32,
-        rows: impl IntoIterator<Item = Strips>,
+        rows: Vec<Vec<Strip>>,
     ) -> Result<(), RecordError> {
         let (strips, lengths) = self.flattened(rows);
+        let (strips, rgbs): (Vec<_>, Vec<_>) = strips.into_iter().unzip();
+        let style = LineStrips2D::update_fields().with_radii([radius]);
+        let style = style.with_draw_order(self.next_order());
         let strips = LineStrips2D::update_fields().with_strips(strips);
-        self.lines(path, ink.into(), radius, (&strips, &lengths))
-    }
-
-    /// Strips with a colour each.
-    pub(super) fn colored(
-        &mut self,
-        path: &str,
-        radius: f32,
-        rows: impl IntoIterator<Item = Vec<(Vec<Vec2D>, Color)>>,
-    ) -> Result<(), RecordError> {
-        let (strips, lengths) = self.flattened(rows);
-        let (strips, colors): (Vec<_>, Vec<_>) = strips.into_iter().unzip();
-        let strips = LineStrips2D::update_fields().with_strips(strips).with_colors(colors);
-        self.lines(path, Ink::Own, radius, (&strips, &lengths))
-    }
-
-    fn lines(
-        &mut self,
-        path: &str,
-        ink: Ink,
-        radius: f32,
-        data: Data<'_>,
-    ) -> Result<(), RecordError> {
-        let mut style = LineStrips2D::update_fields().with_radii([radius]);
-        if let Ink::One(rgb) = ink {
-            style = style.with_colors([color(rgb)]);
+        match shared(&rgbs) {
+            Some(rgb) => self.put(path, &style.with_colors([color(rgb)]), (&strips, &lengths)),
+            None => self.put(path, &style, (&strips.with_colors(colors(&rgbs)), &lengths)),
         }
-        if let Some(order) = self.next_order() {
-            style = style.with_draw_order(order);
-        }
-        self.put(path, &style, data)?;
-        let Ink::ByRow(rgbs) = ink else { return Ok(()) };
-        let (colors, lengths) = self.by_row(&rgbs);
-        self.push(path, &LineStrips2D::update_fields().with_colors(colors), &lengths)
     }
 
-    pub(super) fn points(
-        &mut self,
-        path: &str,
-        ink: impl Into<Ink>,
-        radius: f32,
-        rows: impl IntoIterator<Item = Vec<Vec2D>>,
-    ) -> Result<(), RecordError> {
-        let (points, lengths) = self.flattened(rows);
-        let mut style = Points2D::update_fields().with_radii([radius]);
-        if let Some(order) = self.next_order() {
-            style = style.with_draw_order(order);
+    /// The circles of each row.
+    pub(super) fn dots(&mut self, path: &str, rows: Vec<Vec<Dot>>) -> Result<(), RecordError> {
+        /// More of them fill an area, and are drawn smaller.
+        const MANY: usize = 1000;
+        let most = rows.iter().map(Vec::len).max().unwrap_or(0);
+        let radius = |dot: &Dot| if most < MANY { dot.radius } else { dot.radius.min(1.2) };
+        let (dots, lengths) = self.flattened(rows);
+        let rgbs: Vec<Rgb> = dots.iter().map(|dot| dot.rgb).collect();
+        let mut style = Points2D::update_fields().with_draw_order(self.next_order());
+        let mut points = Points2D::update_fields().with_positions(dots.iter().map(|dot| dot.at));
+        match shared(&rgbs) {
+            Some(rgb) => style = style.with_colors([color(rgb)]),
+            None => points = points.with_colors(colors(&rgbs)),
         }
-        let points = Points2D::update_fields().with_positions(points);
-        self.dots(path, ink.into(), style, (&points, &lengths))
+        match shared(&dots.iter().map(radius).collect::<Vec<_>>()) {
+            Some(radius) => style = style.with_radii([radius]),
+            None => points = points.with_radii(dots.iter().map(radius)),
+        }
+        if dots.iter().any(|dot| dot.name.is_some()) {
+            let names = dots.iter().map(|dot| dot.name.clone().unwrap_or_default());
+            points = points.with_labels(names);
+            style = style.with_show_labels(false);
+        }
+        self.put(path, &style, (&points, &lengths))
     }
 
-    pub(super) fn texts(
-        &mut self,
-        path: &str,
-        ink: impl Into<Ink>,
-        rows: impl IntoIterator<Item = Labels>,
-    ) -> Result<(), RecordError> {
-        self.named_points(path, ink, HIDDEN, rows)
-    }
-
-    /// Points with texts beside them.
-    pub(super) fn named_points(
-        &mut self,
-        path: &str,
-        ink: impl Into<Ink>,
-        radius: f32,
-        rows: impl IntoIterator<Item = Labels>,
-    ) -> Result<(), RecordError> {
-        let mut all = Labels::default();
-        let mut lengths = Vec::new();
-        for labels in self.opened(rows) {
-            lengths.push(labels.places.len());
-            all.places.extend(labels.places);
-            all.texts.extend(labels.texts);
-            all.colors.extend(labels.colors);
+    /// The texts of each row.
+    pub(super) fn texts(&mut self, path: &str, rows: Vec<Vec<Text>>) -> Result<(), RecordError> {
+        let (texts, lengths) = self.flattened(rows);
+        let rgbs: Vec<Rgb> = texts.iter().map(|(.., rgb)| *rgb).collect();
+        let mut points = Points2D::update_fields().with_positions(texts.iter().map(|text| text.0));
+        points = points.with_labels(texts.iter().map(|text| text.1.clone()));
+        let mut style = Points2D::update_fields().with_radii([HIDDEN]).with_show_labels(true);
+        match shared(&rgbs) {
+            Some(rgb) => style = style.with_colors([color(rgb)]),
+            None => points = points.with_colors(colors(&rgbs)),
         }
-        let mut points = Points2D::update_fields().with_positions(all.places);
-        points = points.with_labels(all.texts);
-        let mut ink = ink.into();
-        if !all.colors.is_empty() {
-            ink = Ink::Own;
-            points = points.with_colors(all.colors);
-        }
-        let style = Points2D::update_fields().with_radii([radius]).with_show_labels(true);
-        self.dots(path, ink, style, (&points, &lengths))
-    }
-
-    fn dots(
-        &mut self,
-        path: &str,
-        ink: Ink,
-        mut style: Points2D,
-        data: Data<'_>,
-    ) -> Result<(), RecordError> {
-        if let Ink::One(rgb) = ink {
-            style = style.with_colors([color(rgb)]);
-        }
-        self.put(path, &style, data)?;
-        let Ink::ByRow(rgbs) = ink else { return Ok(()) };
-        let (colors, lengths) = self.by_row(&rgbs);
-        self.push(path, &Points2D::update_fields().with_colors(colors), &lengths)
-    }
-
-    /// Grids and texts of sheets, one per row.
-    pub(super) fn sheets(
-        &mut self,
-        sheets: impl IntoIterator<Item = Sheet>,
-    ) -> Result<(), RecordError> {
-        let (grids, texts): (Vec<_>, Vec<_>) = sheets.into_iter().map(Sheet::into_parts).unzip();
-        self.strips("grid", palette::GRID, 0.7, grids)?;
-        self.texts("texts", palette::BORDER, texts)
+        self.put(path, &style, (&points, &lengths))
     }
 
     /// Anything else that stays.
@@ -223,14 +126,14 @@ impl<'c> Layers<'c> {
         self.chunks.push(at(&self.root, path), self.index.clone().unwrap_or_default(), columns)
     }
 
-    /// What all rows share, and the rows.
+    /// What all rows share, and the rows with how many each of them has.
     fn put(
         &mut self,
         path: &str,
         style: &dyn AsComponents,
-        (data, lengths): Data<'_>,
+        (data, lengths): (&dyn AsComponents, &[usize]),
     ) -> Result<(), RecordError> {
-        if self.index.is_none() {
+        if self.is_fixed() {
             let parts = [data.as_serialized_batches(), style.as_serialized_batches()].concat();
             return self.stays(path, &parts);
         }
@@ -238,30 +141,27 @@ impl<'c> Layers<'c> {
         self.push(path, data, lengths)
     }
 
-    /// All rows, with the one that is opened on.
-    fn opened<T: Clone>(&self, rows: impl IntoIterator<Item = T>) -> Vec<T> {
-        let mut rows: Vec<T> = rows.into_iter().collect();
+    /// What is in all rows, with the one that is opened on, and how much of it is in each.
+    fn flattened<T: Clone>(&self, mut rows: Vec<Vec<T>>) -> (Vec<T>, Vec<usize>) {
         if let Some(last) = rows.last().filter(|_| self.opens_on_last).cloned() {
             rows.insert(0, last);
         }
-        rows
-    }
-
-    fn by_row(&self, rgbs: &[Rgb]) -> (Vec<Color>, Vec<usize>) {
-        let colors = self.opened(rgbs.iter().map(|rgb| color(*rgb)));
-        let lengths = vec![1; colors.len()];
-        (colors, lengths)
-    }
-
-    fn flattened<T: Clone>(&self, rows: impl IntoIterator<Item = Vec<T>>) -> (Vec<T>, Vec<usize>) {
-        let rows = self.opened(rows);
         let lengths = rows.iter().map(Vec::len).collect();
         (rows.into_iter().flatten().collect(), lengths)
     }
 
-    fn next_order(&mut self) -> Option<f32> {
-        let order = self.order;
-        self.order = order.filter(|_| self.counts).map(|order| order + 1.0);
-        order
+    fn next_order(&mut self) -> f32 {
+        self.order += 1.0;
+        self.order
     }
+}
+
+/// What all of `several` are, where they are alike.
+fn shared<T: PartialEq + Copy>(several: &[T]) -> Option<T> {
+    let first = *several.first()?;
+    several.iter().all(|other| *other == first).then_some(first)
+}
+
+fn colors(rgbs: &[Rgb]) -> impl Iterator<Item = Color> {
+    rgbs.iter().map(|rgb| color(*rgb))
 }

@@ -8,7 +8,7 @@
 //!
 //! Inside, from what others are made of to what is made of them:
 //! - `paths` says where everything lies, `layout` where samples, trials and decisions lie on
-//!   the timelines; `chunk` makes columns of rows with reproducible ids, `layers` and `sheet`
+//!   the timelines; `chunk` makes columns of rows with reproducible ids, `layers` and `panels`
 //!   drawings of them on a `canvas`.
 //! - `recorded`, `sweep` and `index` are three kinds of recording. One part of the content
 //!   each are `signals`, `decisions`, `verdict`, `segment_view`, `beside`, `place`, `doubt`, `difference`, `overview`,
@@ -24,7 +24,6 @@ mod beside;
 mod blueprint;
 mod canvas;
 mod chunk;
-mod close_up;
 mod content;
 mod correlogram;
 mod decisions;
@@ -53,7 +52,6 @@ mod revision;
 mod scatter;
 mod segment_view;
 mod shaded;
-mod sheet;
 mod signals;
 mod sweep;
 mod verdict;

@@ -73,7 +73,7 @@ pub(super) fn add_map(
 ) -> Result<(), RecordError> {
     let Some(start) = layout.start() else { return Ok(()) };
     let index = Index::everywhere(start, layout.first);
-    let mut layers = Layers::rows(chunks, paths::MODEL_MAP, index).back_to_front();
+    let mut layers = Layers::rows(chunks, paths::MODEL_MAP, index);
     revision::add_record(&mut layers, layout, &[*judged])
 }
 

@@ -10,11 +10,10 @@ use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
 use super::palette::{self, color};
 use super::paths;
-use super::shaded::{condition, validation, where_it_fails};
+use super::shaded::{named, validation};
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::WorstSegment;
 use crate::experiment::Joint;
-use crate::wording::misfit_units;
 
 /// Adds `/worst`, `/part` and `/fails`.
 pub(super) fn add(
@@ -25,12 +24,10 @@ pub(super) fn add(
     worst(chunks, layout, comparison)?;
     let grey = palette::dimmed(palette::SMOOTHED);
     let mut lanes = vec![(paths::PART, validation(comparison), "not fitted".to_owned(), grey)];
-    if let Some(condition) = condition(comparison) {
-        let units = misfit_units(joint);
-        let clauses: Vec<_> = condition.clauses.iter().map(|it| it.with_unit(&units)).collect();
-        let name = clauses.join(" and ");
-        lanes.push((paths::FAILS, where_it_fails(comparison), name, palette::REJECTED));
-    }
+    lanes.extend(
+        named(joint, comparison)
+            .map(|(name, spans)| (paths::FAILS, spans, name, palette::REJECTED)),
+    );
     for (path, spans, name, rgb) in lanes {
         let marks = spans.iter().filter_map(|(index, span)| {
             let trial = layout.trial(*index)?;

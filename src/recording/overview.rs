@@ -131,7 +131,7 @@ fn add_maps(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordE
         [(paths::MAP, small, (2.0, 142.0)), (paths::LARGE_MAP, large, (60.0, 638.0))]
     {
         let plot = map.first().map(|placed| placed.plot);
-        panels::add(&mut Layers::fixed(chunks, root), &[map])?;
+        panels::add(&mut Layers::fixed(chunks, root), [map])?;
         plot.map_or(Ok(()), |plot| add_frames(chunks, layout, (root, &plot, rows)))?;
     }
     Ok(())

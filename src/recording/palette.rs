@@ -4,6 +4,8 @@
 
 use rerun::Color;
 
+use crate::figure::Role;
+
 pub(super) type Rgb = (u8, u8, u8);
 
 /// What drove the joint.
@@ -83,6 +85,11 @@ pub(super) fn others() -> impl Iterator<Item = Rgb> {
 pub(super) fn dimmed((r, g, b): Rgb) -> Rgb {
     let half = |part: u8| part / 2;
     (half(r), half(g), half(b))
+}
+
+/// A colour in a drawing that has no meaning elsewhere.
+pub(super) const fn role((r, g, b): Rgb) -> Role {
+    Role::Own(r, g, b)
 }
 
 pub(super) fn color((r, g, b): Rgb) -> Color {

@@ -5,83 +5,89 @@ use std::ops::RangeInclusive;
 
 use rerun::datatypes::Vec2D;
 
-use super::canvas::{HALF_LETTER, Labels, Plot, Strips, simplified};
+use super::canvas::{Dot, LINE, Plot, Strip, Text, simplified, width};
 use super::error::RecordError;
-use super::layers::{Ink, Layers};
+use super::layers::Layers;
 use super::palette::{self, Rgb};
 use super::paths::of_model;
-use crate::figure::{Axis, Mark, Panel, Role, Shape};
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, within};
 
 /// Half the width of the lines that fill an area: their ends are round.
-pub(super) const HATCH: f32 = 1.5;
+const HATCH: f32 = 1.5;
 
-/// Height of a line of text on a sheet in a window of 1280 points.
-const LINE: f32 = 44.0;
-
-/// Where the name of a panel stands, and its legend.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Names {
-    Above,
-    None,
-}
-
-/// A panel with its place on the sheet.
+/// A panel with its place on the sheet, and what stands above it.
 pub(super) struct Placed {
     panel: Panel,
-    names: Names,
+    /// Its name and its legend, in lines.
+    names: Vec<Vec<(Rgb, String)>>,
     pub(super) plot: Plot,
 }
 
 impl Placed {
-    /// A panel between two columns and two rows; above it stand its name and its legend.
+    /// A panel between two columns and two rows; above it stand its name and its legend, for which it
+    /// begins further below where they need several lines.
     pub(super) fn new(panel: Panel, columns: (f32, f32), rows: RangeInclusive<f32>) -> Self {
-        let plot = Plot::within(columns, rows, panel.x.span, panel.y.span);
-        Self { panel, names: Names::Above, plot }
+        let mut placed = Self::unnamed(panel, columns, rows);
+        let plot = &mut placed.plot;
+        let labels = placed.panel.y.ticks.iter().map(|(_, text)| width(text));
+        let room = plot.right + 15.0 - (plot.left - labels.fold(100.0, f32::max));
+        placed.names = names(&placed.panel, room);
+        plot.top += LINE * placed.names.len().saturating_sub(1) as f32;
+        placed
     }
 
     /// One so low that it has no room for its name and its legend.
     pub(super) fn unnamed(panel: Panel, columns: (f32, f32), rows: RangeInclusive<f32>) -> Self {
-        Self { names: Names::None, ..Self::new(panel, columns, rows) }
+        let plot = Plot::new(columns, rows, (panel.x.span, panel.y.span));
+        Self { panel, names: Vec::new(), plot }
     }
 
     /// Frame, grid, and the texts of ticks, name and legend.
-    fn around(&self, grid: &mut Strips, texts: &mut Labels) {
+    fn around(&self) -> (Vec<Strip>, Vec<Text>) {
         let (Panel { x, y, .. }, plot) = (&self.panel, &self.plot);
-        grid.push(plot.frame());
-        grid.extend(x.ticks.iter().map(|(x, _)| plot.vertical(*x).to_vec()));
-        grid.extend(y.ticks.iter().map(|(y, _)| plot.level(*y).to_vec()));
+        let levels = y.ticks.iter().filter(|_| !y.has_names()).map(|(y, _)| plot.level(*y));
+        let grid = x.ticks.iter().map(|(x, _)| plot.vertical(*x)).chain(levels);
+        let grid = grid.chain([plot.frame()]).map(|strip| (strip, palette::GRID)).collect();
+        let mut texts = Vec::new();
         for (x, text) in apart(x, |x| plot.x(x), width) {
-            texts.put_in(palette::BORDER, plot.below(x, 2.0), text);
+            texts.push((plot.below(x, 2.0), text, palette::BORDER));
         }
-        for (y, text) in apart(y, |y| plot.y(y), |_| LINE) {
-            texts.put_in(palette::BORDER, plot.left_of(y, 0.5 * width(&text)), text);
+        // Of names none is left out.
+        let room = |_: &str| if y.has_names() { 0.0 } else { LINE };
+        for (y, text) in apart(y, |y| plot.y(y), room) {
+            texts.push((plot.left_of(y, &text), text, palette::BORDER));
         }
-        if self.names == Names::None {
-            return;
+        for (line, names) in self.names.iter().enumerate() {
+            let whole: f32 = names.iter().map(|(_, text)| width(text)).sum();
+            let middle = f32::midpoint(plot.left, plot.right);
+            let mut left = (middle - 0.5 * whole).min(plot.right + 15.0 - whole).max(0.0);
+            let above = plot.top - LINE * (self.names.len() - line) as f32;
+            for (rgb, text) in names {
+                texts.push((Vec2D::new(left + 0.5 * width(text), above), text.clone(), *rgb));
+                left += width(text);
+            }
         }
-        let named = self
-            .panel
-            .marks
-            .iter()
-            .filter_map(|mark| Some((rgb(mark.role), format!("– {}", mark.name.as_deref()?))));
-        let name = [y.name.as_str(), x.name.as_str()].into_iter().filter(|name| !name.is_empty());
-        let name = (palette::BORDER, name.collect::<Vec<_>>().join(" over "));
-        let names: Vec<(Rgb, String)> = [name].into_iter().chain(named).collect();
-        let whole: f32 = names.iter().map(|(_, text)| width(text)).sum();
-        // Nothing is cut at the sides of the sheet.
-        let (start, end) = (plot.x(x.span.low) - 100.0, plot.x(x.span.high) + 15.0);
-        let mut left = (plot.x(plot.middle()) - 0.5 * whole).min(end - whole).max(start);
-        for (rgb, text) in names {
-            let half = 0.5 * width(&text);
-            texts.put_in(rgb, Vec2D::new(left + half, plot.top - LINE), text);
-            left += 2.0 * half;
-        }
+        (grid, texts)
     }
 }
 
-/// Room of a text on a sheet in a window of 1280 points.
-fn width(text: &str) -> f32 {
-    2.0 * HALF_LETTER * (text.chars().count() + 2) as f32
+/// The name of a panel and its legend in lines, each as long as there is `room` for.
+fn names(panel: &Panel, room: f32) -> Vec<Vec<(Rgb, String)>> {
+    let name = [panel.y.name.as_str(), panel.x.name.as_str()];
+    let name = name.into_iter().filter(|name| !name.is_empty()).collect::<Vec<_>>().join(" over ");
+    let name = (!name.is_empty()).then_some((palette::BORDER, name));
+    let legend = panel.legend().map(|(mark, name)| (rgb(mark.role), format!("– {name}")));
+    let mut lines: Vec<Vec<(Rgb, String)>> = Vec::new();
+    for entry in name.into_iter().chain(legend) {
+        let own = width(&entry.1);
+        let taken =
+            |line: &Vec<(Rgb, String)>| line.iter().map(|(_, text)| width(text)).sum::<f32>();
+        match lines.last_mut() {
+            Some(line) if taken(line) + own <= room => line.push(entry),
+            _ => lines.push(vec![entry]),
+        }
+    }
+    lines
 }
 
 /// The ticks of an axis whose texts do not cover each other.
@@ -118,184 +124,345 @@ fn rgb(role: Role) -> Rgb {
         Role::Model => palette::model(0),
         Role::Noise => palette::NOISE,
         Role::Revision(one) => palette::model(one.place() + 1),
+        Role::Own(red, green, blue) => (red, green, blue),
     }
 }
 
-/// What is drawn of a mark.
+/// What is drawn of the marks of one entity in one row.
 #[derive(Clone, Default)]
 struct Drawn {
-    strips: Strips,
-    points: Vec<Vec2D>,
-    texts: Labels,
+    strips: Vec<Strip>,
+    dots: Vec<Dot>,
+    texts: Vec<Text>,
 }
 
 impl Drawn {
     fn add(&mut self, mark: &Mark, plot: &Plot) {
-        let (x, y) = (plot.x_span(), plot.y_span());
+        let (x, y, rgb) = (plot.x_span, plot.y_span, rgb(mark.role));
+        let is_inside = |place: &Place| {
+            (0.0..=1.0).contains(&x.part(place.0)) && (0.0..=1.0).contains(&y.part(place.1))
+        };
+        let places = |line: Vec<Place>| line.into_iter().map(|at| plot.at(at)).collect::<Vec<_>>();
         match &mark.shape {
             Shape::Lines(lines, _) => {
-                let lines = lines.iter().map(|line| plot.places(line.iter().copied()));
+                let pieces = lines.iter().flat_map(|line| within((x, y), line)).map(places);
                 // What goes back is no curve over its axis.
                 let is_curve = |line: &[Vec2D]| line.is_sorted_by(|a, b| a.x() < b.x());
                 let thin = |line: Vec<Vec2D>| if is_curve(&line) { simplified(line) } else { line };
-                self.strips.extend(lines.map(thin));
+                self.strips.extend(pieces.map(|line| (thin(line), rgb)));
             }
-            Shape::Dots(places) => self.points.extend(plot.places(places.iter().copied())),
-            Shape::Crosses(places) => self.strips.extend(places.iter().flat_map(|(x, y)| {
-                let Vec2D([x, y]) = plot.at(*x, *y);
+            Shape::Dots(dots, radius) => {
+                let dots = dots.iter().filter(|place| is_inside(place));
+                self.dots.extend(dots.map(|place| dot(plot, *place, *radius, rgb)));
+            }
+            Shape::Named(dots) => self.dots.extend(dots.iter().map(|(place, radius, name)| Dot {
+                name: Some(name.clone()),
+                ..dot(plot, *place, *radius, rgb)
+            })),
+            Shape::Crosses(places) => self.strips.extend(places.iter().flat_map(|place| {
+                let Vec2D([x, y]) = plot.at(*place);
                 let line = |dy: f32| vec![Vec2D::new(x - 4.0, y - dy), Vec2D::new(x + 4.0, y + dy)];
-                [line(4.0), line(-4.0)]
+                [(line(4.0), rgb), (line(-4.0), rgb)]
             })),
             Shape::Verticals(places, _) => {
-                self.strips.extend(places.iter().map(|x| plot.vertical(*x).to_vec()));
+                let inside = places.iter().filter(|at| (0.0..=1.0).contains(&x.part(**at)));
+                self.strips.extend(inside.map(|at| (plot.vertical(*at), rgb)));
             }
             Shape::Band(low, high) => {
-                let inside = [*low, *high]
-                    .into_iter()
-                    .filter(|y| (0.0..=1.0).contains(&plot.y_span().part(*y)));
-                self.strips.extend(inside.map(|y| plot.level(y).to_vec()));
+                let inside =
+                    [low, high].into_iter().filter(|at| (0.0..=1.0).contains(&y.part(**at)));
+                self.strips.extend(inside.map(|at| (plot.level(*at), rgb)));
             }
-            Shape::Spans(spans, _) => {
-                let area = |(from, to): &(f64, f64)| filled(plot, (*from, y.low), (*to, y.high));
-                self.strips.extend(spans.iter().map(area));
+            Shape::Spans(spans, density) => {
+                let shade = palette::between(palette::GROUND, rgb, 1.5 * density);
+                let area = |(from, to): &(f64, f64)| [(*from, y.low), (*to, y.high)];
+                self.strips.extend(spans.iter().map(|span| (filled(plot, area(span)), shade)));
             }
             Shape::Bars(bars) => {
-                self.strips.extend(bars.iter().map(|(from, to)| filled(plot, *from, *to)));
+                self.strips.extend(bars.iter().map(|bar| (filled(plot, (*bar).into()), rgb)));
+            }
+            Shape::Area(heights) => self.strips.push((area(plot, heights), rgb)),
+            Shape::Spreads(spreads, above) => {
+                let bars = spreads.iter().flat_map(|ends| spread(plot, *ends, *above));
+                self.strips.extend(bars.map(|line| (line, rgb)));
             }
             Shape::Words(words) => {
-                for (place, text) in words {
-                    let Vec2D([left, y]) = plot.at(place.0.max(x.low), place.1);
-                    self.texts.put(Vec2D::new(left + 0.5 * width(text), y - 14.0), text.clone());
-                }
+                let word = |(place, text): &(Place, String)| {
+                    (plot.beside(*place, text), text.clone(), rgb)
+                };
+                self.texts.extend(words.iter().map(word));
+            }
+            Shape::Flags(flags) => {
+                self.texts
+                    .extend(flagged(plot, flags).into_iter().map(|(at, text)| (at, text, rgb)));
             }
         }
     }
 }
 
+fn dot(plot: &Plot, place: Place, radius: f64, rgb: Rgb) -> Dot {
+    #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
+    Dot { at: plot.at(place), radius: radius as f32, rgb, name: None }
+}
+
 /// An area that is filled by one line to and fro.
-fn filled(plot: &Plot, from: (f64, f64), to: (f64, f64)) -> Vec<Vec2D> {
-    let [a, b] = [from, to].map(|(x, y)| plot.at(x, y));
+fn filled(plot: &Plot, corners: [Place; 2]) -> Vec<Vec2D> {
+    let [a, b] = corners.map(|at| plot.at(at));
     let (top, bottom) = (a.y().min(b.y()), a.y().max(b.y()));
     let (top, bottom) = ((top + HATCH).min(bottom), (bottom - HATCH).max(top));
-    let columns = hatched(a.x().min(b.x()), a.x().max(b.x())).enumerate();
-    let column = |(number, x): (usize, f32)| {
-        let (from, to) = if number % 2 == 0 { (top, bottom) } else { (bottom, top) };
+    to_and_fro(hatched(a.x().min(b.x()), a.x().max(b.x())).map(|x| [x, top, bottom]))
+}
+
+/// The area between two heights along the horizontal axis, likewise.
+fn area(plot: &Plot, heights: &[[f64; 3]]) -> Vec<Vec2D> {
+    let on_sheet = |of: &[f64; 3]| [plot.x(of[0]), plot.y(of[1]), plot.y(of[2])];
+    let pairs = heights.iter().zip(heights.iter().skip(1)).flat_map(|(from, to)| {
+        let (from, to) = (on_sheet(from), on_sheet(to));
+        hatched(from[0], to[0]).map(move |x| {
+            let part = ((x - from[0]) / (to[0] - from[0]).max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let between = |k: usize| from[k] + part * (to[k] - from[k]);
+            [x, between(1), between(2)]
+        })
+    });
+    to_and_fro(pairs)
+}
+
+/// One line through columns, each of a place and two heights.
+fn to_and_fro(columns: impl Iterator<Item = [f32; 3]>) -> Vec<Vec2D> {
+    let column = |(number, [x, a, b]): (usize, [f32; 3])| {
+        let (from, to) = if number % 2 == 0 { (a, b) } else { (b, a) };
         [Vec2D::new(x, from), Vec2D::new(x, to)]
     };
-    columns.flat_map(column).collect()
+    columns.enumerate().flat_map(column).collect()
 }
 
 /// Places between two others that lines of radius [`HATCH`] cover without a gap.
-pub(super) fn hatched(left: f32, right: f32) -> impl Iterator<Item = f32> {
+fn hatched(left: f32, right: f32) -> impl Iterator<Item = f32> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
     let count = ((right - left) / (1.2 * HATCH)).ceil().max(1.0) as usize;
     let step = (right - left - 2.0 * HATCH).max(0.0) / count as f32;
     (0..=count).map(move |k| left + HATCH + step * k as f32)
 }
 
-/// Draws the panels of each row of a drawing, an entity for each mark: named as it, or as its shape;
-/// of a model in a drawing of one row with its number, so that it can be hidden.
-pub(super) fn add(layers: &mut Layers<'_>, rows: &[Vec<Placed>]) -> Result<(), RecordError> {
-    let marks = || rows.iter().flatten().flat_map(|placed| &placed.panel.marks);
-    let mut parts: Vec<(String, &Mark)> = Vec::new();
-    for mark in marks() {
-        let part = part(mark, rows.len());
-        if parts.iter().all(|(known, _)| *known != part) {
-            parts.push((part, mark));
-        }
-    }
-    let (behind, before): (Vec<_>, Vec<_>) =
-        parts.into_iter().partition(|(_, mark)| matches!(mark.shape, Shape::Spans(..)));
-    behind.iter().try_for_each(|part| add_part(layers, rows, part))?;
-    let (mut grids, mut texts) = (Vec::new(), Vec::new());
-    for row in rows {
-        let (mut grid, mut labels) = (Strips::new(), Labels::default());
-        for placed in row {
-            placed.around(&mut grid, &mut labels);
-        }
-        grids.push(grid);
-        texts.push(labels);
-    }
-    layers.strips("grid", palette::GRID, 0.7, grids)?;
-    before.iter().try_for_each(|part| add_part(layers, rows, part))?;
-    layers.texts("texts", Ink::Own, texts)
+/// A bar so far above the plot, as far as it reaches, with a tick at each end.
+fn spread(plot: &Plot, (low, high): (f64, f64), above: f64) -> [Vec<Vec2D>; 3] {
+    #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
+    let row = plot.top - above as f32;
+    let [low, high] = [low, high].map(|x| plot.x(x.clamp(plot.x_span.low, plot.x_span.high)));
+    let tick = |x: f32| vec![Vec2D::new(x, row - 6.0), Vec2D::new(x, row + 6.0)];
+    [tick(low), vec![Vec2D::new(low, row), Vec2D::new(high, row)], tick(high)]
 }
 
-/// The entity of a mark.
-fn part(mark: &Mark, rows: usize) -> String {
-    let name = mark.name.as_deref().unwrap_or(match mark.shape {
+/// Names below a plot, in as many lines as keep them from covering each other.
+fn flagged(plot: &Plot, flags: &[(f64, String)]) -> Vec<(Vec2D, String)> {
+    let mut taken: Vec<(usize, f32, f32)> = Vec::new();
+    let place = |(x, text): &(f64, String)| {
+        // With room between two of them: that of a letter was not seen in 0.41.0.
+        let half = 0.5 * width(text) + 7.0;
+        let x = plot.x(*x).min(plot.right + 60.0 - half).max(half);
+        let collides = |line: usize| {
+            taken.iter().any(|(at, other, room)| *at == line && (x - other).abs() < half + room)
+        };
+        let line = (0..).find(|line| !collides(*line)).unwrap_or(0);
+        taken.push((line, x, half));
+        (Vec2D::new(x, plot.bottom + 2.0 + 40.0 * line as f32), text.clone())
+    };
+    flags.iter().map(place).collect()
+}
+
+/// What an entity is called: by its mark, and of a model in a drawing that stays by its number, so
+/// that it can be hidden.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Key {
+    name: String,
+    model: Option<usize>,
+}
+
+impl Key {
+    fn is_of(&self, mark: &Mark, is_fixed: bool) -> bool {
+        self.name == name(mark) && self.model == model(mark, is_fixed)
+    }
+
+    fn path(&self) -> String {
+        let letter = |c: char| if c.is_alphanumeric() || c == '/' { c } else { '_' };
+        let name: String = self.name.chars().map(letter).collect();
+        self.model.map_or_else(|| name.clone(), |number| of_model(&name, number))
+    }
+}
+
+fn name(mark: &Mark) -> &str {
+    let of_shape = match mark.shape {
         Shape::Lines(..) => "lines",
-        Shape::Dots(_) => "dots",
+        Shape::Dots(..) | Shape::Named(_) => "dots",
         Shape::Crosses(_) => "crosses",
         Shape::Verticals(..) => "verticals",
         Shape::Band(..) => "band",
         Shape::Spans(..) => "spans",
         Shape::Bars(_) => "bars",
+        Shape::Area(_) => "area",
+        Shape::Spreads(..) => "spreads",
         Shape::Words(_) => "words",
-    });
-    let name = name.replace(|c: char| !c.is_alphanumeric(), "_");
+        Shape::Flags(_) => "flags",
+    };
+    mark.part.as_deref().or(mark.name.as_deref()).unwrap_or(of_shape)
+}
+
+fn model(mark: &Mark, is_fixed: bool) -> Option<usize> {
     match mark.role {
-        Role::Model if rows == 1 => of_model(&name, 0),
-        Role::Revision(one) if rows == 1 => of_model(&name, one.place() + 1),
-        _ => name,
+        Role::Model if is_fixed => Some(0),
+        Role::Revision(one) if is_fixed => Some(one.place() + 1),
+        _ => None,
     }
 }
 
-fn add_part(
-    layers: &mut Layers<'_>,
-    rows: &[Vec<Placed>],
-    (name, first): &(String, &Mark),
-) -> Result<(), RecordError> {
-    let own = |mark: &Mark| part(mark, rows.len()) == *name;
-    let mut inks = Vec::new();
-    let mut all = Vec::new();
-    for row in rows {
-        let (mut drawn, mut ink) = (Drawn::default(), rgb(first.role));
-        for placed in row {
-            for mark in placed.panel.marks.iter().filter(|mark| own(mark)) {
-                drawn.add(mark, &placed.plot);
-                ink = rgb(mark.role);
+/// What is drawn at one entity.
+struct Part {
+    key: Key,
+    radius: f32,
+    is_ground: bool,
+    rows: Vec<Drawn>,
+}
+
+/// The entities of a drawing, which is made row by row.
+struct Parts {
+    is_fixed: bool,
+    rows: usize,
+    all: Vec<Part>,
+}
+
+impl Parts {
+    fn of(layers: &Layers<'_>) -> Self {
+        Self { is_fixed: layers.is_fixed(), rows: 0, all: Vec::new() }
+    }
+
+    fn add_row<'m>(&mut self, marks: impl Iterator<Item = (&'m Mark, &'m Plot)>) {
+        self.rows += 1;
+        for (mark, plot) in marks {
+            let known = self.all.iter().position(|part| part.key.is_of(mark, self.is_fixed));
+            let place = known.unwrap_or(self.all.len());
+            if known.is_none() {
+                self.all.push(Part::of(mark, self.is_fixed));
+            }
+            if let Some(part) = self.all.get_mut(place) {
+                part.rows.resize_with(self.rows, Drawn::default);
+                part.rows.last_mut().into_iter().for_each(|row| row.add(mark, plot));
             }
         }
-        if let Shape::Spans(_, density) = first.shape {
-            ink = palette::between(palette::GROUND, ink, 1.5 * density);
-        }
-        inks.push(ink);
-        all.push(drawn);
     }
-    let ink = match inks.as_slice() {
-        [one, others @ ..] if others.iter().all(|other| other == one) => Ink::One(*one),
-        _ => Ink::ByRow(inks),
-    };
-    let points: usize = all.iter().map(|drawn| drawn.points.len()).max().unwrap_or(0);
-    #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
-    match first.shape {
-        Shape::Dots(_) => {
-            // Of many only a filled area would be seen.
-            let radius = if points < 1000 { 3.0 } else { 1.2 };
-            layers.points(name, ink, radius, all.into_iter().map(|drawn| drawn.points))
-        }
-        Shape::Words(_) => layers.texts(name, ink, all.into_iter().map(|drawn| drawn.texts)),
-        Shape::Lines(_, width) | Shape::Verticals(_, width) => {
-            layers.strips(name, ink, width as f32, all.into_iter().map(|drawn| drawn.strips))
-        }
-        Shape::Band(..) | Shape::Crosses(_) => {
-            layers.strips(name, ink, 1.0, all.into_iter().map(|drawn| drawn.strips))
-        }
-        Shape::Spans(..) | Shape::Bars(_) => {
-            layers.strips(name, ink, HATCH, all.into_iter().map(|drawn| drawn.strips))
-        }
+
+    fn push(self, layers: &mut Layers<'_>, is_ground: bool) -> Result<Self, RecordError> {
+        let (now, later): (Vec<_>, Vec<_>) =
+            self.all.into_iter().partition(|part| part.is_ground == is_ground);
+        now.into_iter().try_for_each(|part| part.push(layers, self.rows))?;
+        Ok(Self { all: later, ..self })
     }
+}
+
+impl Part {
+    fn of(mark: &Mark, is_fixed: bool) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
+        let radius = match mark.shape {
+            Shape::Lines(_, width) | Shape::Verticals(_, width) => width as f32,
+            Shape::Spans(..) | Shape::Bars(_) | Shape::Area(_) => HATCH,
+            _ => 1.0,
+        };
+        let key = Key { name: name(mark).to_owned(), model: model(mark, is_fixed) };
+        let is_ground = matches!(mark.shape, Shape::Spans(..) | Shape::Area(_));
+        Self { key, radius, is_ground, rows: Vec::new() }
+    }
+
+    fn push(mut self, layers: &mut Layers<'_>, rows: usize) -> Result<(), RecordError> {
+        self.rows.resize_with(rows, Drawn::default);
+        let path = self.key.path();
+        let any = |of: fn(&Drawn) -> bool| self.rows.iter().any(of);
+        if any(|row| !row.texts.is_empty()) {
+            return layers.texts(&path, self.rows.into_iter().map(|row| row.texts).collect());
+        }
+        if any(|row| !row.dots.is_empty()) {
+            return layers.dots(&path, self.rows.into_iter().map(|row| row.dots).collect());
+        }
+        layers.strips(&path, self.radius, self.rows.into_iter().map(|row| row.strips).collect())
+    }
+}
+
+/// Draws the panels of each row of a drawing, an entity for each mark.
+pub(super) fn add(
+    layers: &mut Layers<'_>,
+    rows: impl IntoIterator<Item = Vec<Placed>>,
+) -> Result<(), RecordError> {
+    let mut parts = Parts::of(layers);
+    let (mut grids, mut texts) = (Vec::new(), Vec::new());
+    for row in rows {
+        let marks = row
+            .iter()
+            .flat_map(|placed| placed.panel.marks.iter().map(move |mark| (mark, &placed.plot)));
+        parts.add_row(marks);
+        let (grid, labels): (Vec<_>, Vec<_>) = row.iter().map(Placed::around).unzip();
+        grids.push(grid.concat());
+        texts.push(labels.concat());
+    }
+    let before = parts.push(layers, true)?;
+    layers.strips("grid", 0.7, grids)?;
+    before.push(layers, false)?;
+    layers.texts("texts", texts)
+}
+
+/// Draws marks in plots that are there, a row for each of `rows`.
+pub(super) fn add_marks(
+    layers: &mut Layers<'_>,
+    rows: impl IntoIterator<Item = Vec<(Mark, Plot)>>,
+) -> Result<(), RecordError> {
+    let mut parts = Parts::of(layers);
+    for row in rows {
+        parts.add_row(row.iter().map(|(mark, plot)| (mark, plot)));
+    }
+    parts.push(layers, true)?.push(layers, false).map(drop)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::Span;
 
     #[test]
     fn an_area_is_filled_and_no_wider_than_its_place() {
         let places: Vec<_> = hatched(10.0, 40.0).collect();
         assert!((places[0] - 11.5).abs() < 1e-4 && (places[places.len() - 1] - 38.5).abs() < 1e-4);
         assert!(places.windows(2).all(|pair| pair[1] - pair[0] < 2.0 * HATCH));
+    }
+
+    fn unit() -> (Span, Span) {
+        (Span::new(0.0, 1.0), Span::new(0.0, 10.0))
+    }
+
+    #[test]
+    fn a_band_reaches_from_height_to_height() {
+        let plot = Plot::new((0.0, 100.0), 0.0..=100.0, unit());
+        let strip = area(&plot, &[[0.0, 2.0, 6.0], [1.0, 2.0, 6.0]]);
+        let rows = strip.iter().map(Vec2D::y);
+        let (low, high) = (rows.clone().fold(0.0, f32::max), rows.fold(100.0, f32::min));
+        assert!((low - 80.0).abs() < 1e-3 && (high - 40.0).abs() < 1e-3, "{low} {high}");
+    }
+
+    #[test]
+    fn no_line_and_no_dot_lies_on_the_frame_because_it_is_off_scale() {
+        let (x, y) = unit();
+        let plot = Plot::new((0.0, 100.0), 0.0..=100.0, (x, y));
+        let curve = vec![(0.0, 5.0), (0.5, 40.0), (0.6, 41.0), (1.0, 5.0)];
+        let mut drawn = Drawn::default();
+        drawn.add(&Mark::lines(Role::Model, 1.0, vec![curve.clone()]), &plot);
+        drawn.add(&Mark::dots(Role::Model, curve), &plot);
+        assert_eq!((drawn.strips.len(), drawn.dots.len()), (2, 2));
+        let along = |(strip, _): &Strip| strip.windows(2).any(|pair| pair[0].y() == pair[1].y());
+        assert!(!drawn.strips.iter().any(along), "a piece along the frame");
+    }
+
+    #[test]
+    fn names_that_would_cover_each_other_stand_below_one_another() {
+        let plot = Plot::new((0.0, 1000.0), 0.0..=100.0, unit());
+        let flags = [(0.5, "p = 100"), (0.51, "q = 104"), (0.9, "end")];
+        let flags = flags.map(|(x, name)| (x, name.to_owned()));
+        let rows: Vec<f32> = flagged(&plot, &flags).iter().map(|(at, _)| at.y()).collect();
+        assert_eq!(rows, [102.0, 142.0, 102.0]);
     }
 }

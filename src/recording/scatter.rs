@@ -6,7 +6,7 @@ use super::error::RecordError;
 use super::layers::Layers;
 use super::panels::{self, Placed};
 use super::paths;
-use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span};
+use crate::figure::{Axis, Mark, Panel, Place, Role, Span};
 use crate::numerics::quantile;
 use crate::report::ComparedJoint;
 use crate::wording::bracketed;
@@ -44,11 +44,10 @@ pub(super) fn add(
         Placed::new(panel(&pairs, of_each, y), (left + 105.0, left + 385.0), 48.0..=226.0)
     };
     let placed = quantities(judged).into_iter().enumerate().map(place).collect();
-    panels::add(&mut Layers::fixed(chunks, paths::SCATTER), &[placed])
+    panels::add(&mut Layers::fixed(chunks, paths::SCATTER), [placed])
 }
 
-/// The points of `pairs`, and a curve through those of each model; what is off the plot upwards or
-/// downwards is drawn on its edge.
+/// The points of `pairs`, and a curve through those of each model; what is off the plot is left out.
 fn panel<'p>(
     pairs: &Pairs,
     of_each: impl Iterator<Item = Option<&'p Pairs>>,
@@ -56,13 +55,12 @@ fn panel<'p>(
 ) -> Panel {
     let x = Span::around(most_of(&pairs.x), 0.03);
     let y = Span::around(most_of(&pairs.residual), 0.05);
-    let is_drawn = |place: &Place| (0.0..=1.0).contains(&x.part(place.0));
     let every = pairs.x.len().div_ceil(POINTS).max(1);
     let places = pairs.x.iter().copied().zip(pairs.residual.iter().copied()).step_by(every);
-    let mut marks = vec![Mark::new(Role::Measured, Shape::Dots(places.filter(is_drawn).collect()))];
+    let mut marks = vec![Mark::dots(Role::Measured, places.collect())];
     marks.extend(of_each.enumerate().map(|(number, own)| {
-        let curve = own.map_or_else(Vec::new, curve).into_iter().filter(is_drawn).collect();
-        Mark::new(Role::of_revision(number), Shape::Lines(vec![curve], 2.4))
+        let curve = own.map_or_else(Vec::new, curve);
+        Mark::lines(Role::of_revision(number), 2.4, vec![curve])
     }));
     let y = Axis::new(y, name, 3.0);
     Panel { x: Axis::new(x, pairs.name.clone(), 4.0), y, height: 190, marks }

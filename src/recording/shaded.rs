@@ -5,7 +5,9 @@ use std::ops::Range;
 
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::FailsWhere;
+use crate::experiment::Joint;
 use crate::fit::Part;
+use crate::wording::misfit_units;
 
 /// Samples of a trial, counted from 0, with the trial's index among those of its joint.
 pub(super) type Spans = Vec<(usize, Range<usize>)>;
@@ -17,12 +19,20 @@ pub(super) fn validation(comparison: &Comparison) -> Spans {
 }
 
 /// The condition under which most of the error arises.
-pub(super) fn condition(comparison: &Comparison) -> Option<&FailsWhere> {
+fn condition(comparison: &Comparison) -> Option<&FailsWhere> {
     FailsWhere::strongest(&comparison.failure.as_ref()?.fails_where)
 }
 
+/// Its name, and where it holds.
+pub(super) fn named(joint: &Joint, comparison: &Comparison) -> Option<(String, Spans)> {
+    let units = misfit_units(joint);
+    let clauses = condition(comparison)?.clauses.iter().map(|clause| clause.with_unit(&units));
+    let name = clauses.collect::<Vec<_>>().join(" and ");
+    Some((name, where_it_fails(comparison)))
+}
+
 /// Where that condition holds.
-pub(super) fn where_it_fails(comparison: &Comparison) -> Spans {
+fn where_it_fails(comparison: &Comparison) -> Spans {
     let samples = condition(comparison).map_or(&[][..], |condition| &condition.samples);
     let mut holding = samples.iter().map(|sample| *sample as usize).peekable();
     let mut spans = Spans::new();

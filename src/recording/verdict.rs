@@ -16,7 +16,7 @@ use crate::delay::{Check, Condition, Decision, Outcome};
 use crate::report::{
     DECISION, DelayRange, EstimatedJoint, JointSummary, Place, dead_time_sentences, onset_sentence,
 };
-use crate::wording::{doubt_percent, number, rounded};
+use crate::wording::{doubt_percent, number, rounded, verdict_in_short};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(
@@ -106,20 +106,19 @@ pub(super) fn in_short(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> 
 
 fn verdict(trial: &TrialLayout<'_>, decision: &Decision) -> String {
     let period = trial.trial.period().seconds();
-    let seconds = |delay: f64| format!("δ {}", seconds(decision, delay, period));
-    let program = match (decision.program_verdict(), decision.program_delay()) {
-        (Verdict::Rejected(condition), _) => format!("✗ {}", condition.meaning()),
-        (Verdict::Accepted, delay) => format!("✓ {}", delay.map_or_else(String::new, seconds)),
+    let delay = |delay: Option<f64>| {
+        delay.map_or_else(String::new, |delay| format!(" δ {}", seconds(decision, delay, period)))
     };
-    if decision.reviewer_verdict.is_some() {
-        let said = match (decision.verdict(), decision.delay()) {
-            (Verdict::Accepted, Some(delay)) => format!("✓ by a reviewer {}", seconds(delay)),
-            (Verdict::Accepted, None) => "✓ by a reviewer".to_owned(),
-            (Verdict::Rejected(_), _) => "✗ by a reviewer".to_owned(),
-        };
-        return format!("{said} (the program: {program})");
+    let accepted = format!("✓{}", delay(decision.program_delay()));
+    let program = verdict_in_short(decision.program_verdict(), &accepted);
+    if decision.reviewer_verdict.is_none() {
+        return program;
     }
-    program
+    let said = match decision.verdict() {
+        Verdict::Accepted => format!("✓ by a reviewer{}", delay(decision.delay())),
+        Verdict::Rejected(_) => "✗ by a reviewer".to_owned(),
+    };
+    format!("{said} (the program: {program})")
 }
 
 /// Seconds: to a millisecond, and finer where delays are between samples.

@@ -22,6 +22,7 @@ use super::{
     correlogram, delay_state, difference, error_share, palette, revision, scatter, segment_view,
 };
 use crate::delay::{Decision, Doubt};
+use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::report::{
     ComparedJoint, EstimatedJoint, JointSummary, by_doubt, doubtful_lines, summary_cells,
@@ -107,6 +108,14 @@ const LANES: &str =
 /// What plots along the record are called: they are empty on timelines that have no samples.
 const ALONG: &str = "Along sample, time or decision";
 
+/// What the residual of models depends on: name, path, the parts that each model has, and size.
+#[rustfmt::skip]
+const DRAWINGS: [(&str, &str, &[&str], (f32, f32)); 3] = [
+    ("Residual against four quantities: points, and their mean", paths::SCATTER, &["lines"], scatter::SIZE),
+    ("Share of the error: bars; of the time: white", paths::ERROR_SHARE, &["squared_error"], error_share::SIZE),
+    ("Correlation: that of noise stays between the lines (99 %)", paths::CORRELATION, &["band", "lines"], correlogram::SIZE),
+];
+
 /// Where a plot says what its curves are: a legend covers data.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Legend {
@@ -146,8 +155,7 @@ impl Tab<'_> {
             pages.push(self.differences());
         }
         if has_decisions(&self.estimated) {
-            let size = (SHEET.0, delay_state::HEIGHT);
-            let delay = Page::drawing("Delay", &self.at(paths::AGAINST), size);
+            let delay = self.drawing("Delay", paths::AGAINST, (SHEET.0, delay_state::HEIGHT));
             pages.extend([self.decisions(), self.record(), delay, self.table()]);
         } else {
             // In words why there are no steps, and its dead time.
@@ -175,20 +183,31 @@ impl Tab<'_> {
         Page::text(name, self.at(path))
     }
 
+    fn drawing(&self, name: &str, path: &str, size: (f32, f32)) -> Page {
+        Page::drawing(name, &self.at(path), size)
+    }
+
+    fn plot(&self, name: &str, paths: &[&str]) -> Page {
+        let entities: Vec<_> = paths.iter().map(|path| self.at(path)).collect();
+        plot(name, &entities, Legend::InTitle)
+    }
+
+    fn lanes(&self, name: &str, paths: &[&str]) -> Page {
+        Page::lanes(name, &paths.iter().map(|path| self.at(path)).collect::<Vec<_>>())
+    }
+
     /// What a reviewer steps through.
     fn decisions(&self) -> Page {
-        let size = (SHEET.0, MAP_HEIGHT);
         let map = "Whole record: the framed segment is shown above";
         // How many steps were accepted and why others were rejected, over the lanes that say of which.
         let [_, steps, accepted, rejected, ..] =
             summary_cells("", &JointSummary::of(self.estimated));
         let verdicts = format!("{accepted} of {steps} ✓ accepted · ✗ rejected: {rejected}");
         // The verdict names the trial: a lane for it would hide that of the verdicts in a small window.
-        let lanes = [paths::VERDICT, paths::SEGMENT].map(|path| self.at(path));
         let left = [
-            (6.3, self.drawing()),
-            (2.1, Page::drawing(map, &self.at(paths::MAP), size)),
-            (2.3, Page::lanes(verdicts, &lanes)),
+            (6.3, self.segment()),
+            (2.1, self.drawing(map, paths::MAP, (SHEET.0, MAP_HEIGHT))),
+            (2.3, self.lanes(&verdicts, &[paths::VERDICT, paths::SEGMENT])),
         ];
         let right = [(7.2, self.text("Verdict", paths::VERDICT)), (2.8, self.lists())];
         let columns =
@@ -202,9 +221,9 @@ impl Tab<'_> {
         Page::stacked(name, [(1.3, headline), (8.7, page)])
     }
 
-    fn drawing(&self) -> Page {
+    fn segment(&self) -> Page {
         let name = "The segment and its candidates; close-up: samples, Algorithm 1 white with 95 % of the noise";
-        Page::drawing(name, &self.at(paths::DRAWING), segment_view::SIZE)
+        self.drawing(name, paths::DRAWING, segment_view::SIZE)
     }
 
     /// The decisions by doubt, in their order, and by doubt with the reasons.
@@ -225,7 +244,7 @@ impl Tab<'_> {
     /// Where the decisions differ from those of other results, the most different first.
     fn differences(&self) -> Page {
         let name = "Delays here and there, and their difference";
-        let sheet = Page::drawing(name, &self.at(paths::DIFFERENCE_SHEET), difference::SIZE);
+        let sheet = self.drawing(name, paths::DIFFERENCE_SHEET, difference::SIZE);
         let log = self.at(paths::DIFFERENCE_LOG);
         let list = Page::list("Most different first: click a number", log, "difference");
         let right = [
@@ -233,7 +252,7 @@ impl Tab<'_> {
             (2.7, list),
             (5.0, self.text("Verdict", paths::VERDICT)),
         ];
-        let left = Page::stacked("Steps", [(3.6, sheet), (6.4, self.drawing())]);
+        let left = Page::stacked("Steps", [(3.6, sheet), (6.4, self.segment())]);
         Page::beside("Differences", [(6.6, left), (3.4, Page::stacked("Lists", right))])
     }
 
@@ -243,7 +262,7 @@ impl Tab<'_> {
     }
 
     fn input(&self) -> Page {
-        plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)
+        self.plot("Input", &[paths::INPUT])
     }
 
     /// The whole record on the time axis.
@@ -274,7 +293,7 @@ impl Tab<'_> {
             paths::BREAKPOINT_ACCEPTED,
             paths::BREAKPOINT_REJECTED,
         ];
-        let output = plot(output, &outputs.map(|path| self.at(path)), Legend::InTitle);
+        let output = self.plot(output, &outputs);
         let mut rows = vec![(1.1, self.input()), (3.1, output), (1.6, self.delays(delay))];
         let joint = self.joint();
         if !joint.covariates.is_empty() {
@@ -286,17 +305,15 @@ impl Tab<'_> {
             ..=1 => (&[paths::VERDICT, paths::SEGMENT][..], 2.1),
             _ => (&[paths::VERDICT, paths::SEGMENT, paths::TRIAL][..], 2.6),
         };
-        let shown: Vec<_> = shown.iter().map(|path| self.at(path)).collect();
-        rows.push((share, Page::lanes(lanes, &shown)));
-        let map = Page::drawing(map, &self.at(paths::LARGE_MAP), (SHEET.0, LARGE_HEIGHT));
+        rows.push((share, self.lanes(lanes, shown)));
+        let map = self.drawing(map, paths::LARGE_MAP, (SHEET.0, LARGE_HEIGHT));
         let tabs = Page::tabs("Record", [map, Page::stacked(ALONG, rows)]);
         Page::stacked("Record", [(1.1, self.place()), (8.9, tabs)])
     }
 
     /// The delays along the record.
     fn delays(&self, name: &str) -> Page {
-        let delays = [paths::TAU, paths::DELAY_ACCEPTED, paths::DELAY_REJECTED];
-        let delays = plot(name, &delays.map(|path| self.at(path)), Legend::InTitle);
+        let delays = self.plot(name, &[paths::TAU, paths::DELAY_ACCEPTED, paths::DELAY_REJECTED]);
         let decisions = self.estimated.estimate.estimated().flat_map(|trial| &trial.decisions);
         let longest = decisions.filter_map(Decision::accepted_delay).reduce(f64::max);
         // One rejected at the end of a long hold would press the others to the axis.
@@ -311,13 +328,13 @@ impl Tab<'_> {
 
     /// A model as it grows.
     fn revisions(&self) -> Page {
-        let drawing = |name, path, size| Page::drawing(name, &self.at(path), size);
         let name = "The error falls; what shows it; what was tried";
-        let sheet = drawing(name, paths::REVISION_SHEET, revision::SIZE);
+        let sheet = self.drawing(name, paths::REVISION_SHEET, revision::SIZE);
         let name =
             "Where the error of the speed arises: its share (bars), share of the time (white)";
-        let share = drawing(name, paths::REVISION_SHARE, error_share::SIZE);
-        let record = drawing("The whole record", paths::REVISION_RECORD, revision::RECORD_SIZE);
+        let share = self.drawing(name, paths::REVISION_SHARE, error_share::SIZE);
+        let record =
+            self.drawing("The whole record", paths::REVISION_RECORD, revision::RECORD_SIZE);
         let words = self.text("In words", paths::REVISION_WORDS);
         let parameters = self.text("Parameters", paths::REVISION_PARAMETERS);
         let left = [(4.4, Page::tabs("Ladder", [sheet, share])), (5.6, record)];
@@ -371,11 +388,8 @@ impl Tab<'_> {
             (2.9, self.lanes_of_models()),
         ];
         let plots = Page::stacked(ALONG, plots);
-        let map = self.at(match self.revisions {
-            0 => paths::MODEL_MAP,
-            _ => paths::REVISION_RECORD,
-        });
-        let map = Page::drawing("Whole record, on every timeline", &map, revision::RECORD_SIZE);
+        let map = if self.revisions == 0 { paths::MODEL_MAP } else { paths::REVISION_RECORD };
+        let map = self.drawing("Whole record, on every timeline", map, revision::RECORD_SIZE);
         // Models side by side are compared in the plots: the map is of the first one alone.
         let tabs = if self.are_side_by_side() { [plots, map] } else { [map, plots] };
         let rows = [
@@ -398,46 +412,26 @@ impl Tab<'_> {
 
     /// The worst segments, what was not fitted to, and where the model fails.
     fn lanes_of_models(&self) -> Page {
-        let mut lanes = vec![self.at(paths::WORST)];
-        if self.models.iter().any(|model| !model.comparison.per_step.is_empty()) {
-            lanes.push(self.at(paths::PART));
-        }
-        if self.models.iter().any(|model| model.comparison.failure.is_some()) {
-            lanes.push(self.at(paths::FAILS));
-        }
-        Page::lanes(LANES, &lanes)
+        let any = |has: fn(&Comparison) -> bool| self.models.iter().any(|it| has(it.comparison));
+        let lanes = [
+            (paths::WORST, true),
+            (paths::PART, any(|comparison| !comparison.per_step.is_empty())),
+            (paths::FAILS, any(|comparison| comparison.failure.is_some())),
+        ];
+        let lanes = lanes.into_iter().filter(|(_, is_there)| *is_there).map(|(path, _)| path);
+        self.lanes(LANES, &lanes.collect::<Vec<_>>())
     }
 
     /// What the residual depends on, in three drawings; and which of several models is better, along the
     /// record.
     fn residuals(&self, names: &[&str], shown: &[usize]) -> Page {
         let hidden = || (0..self.models.len()).filter(|number| !shown.contains(number));
-        let drawing = |name: &str, root: &str, parts: &[&str], size| {
-            let root = self.at(root);
+        let drawings = DRAWINGS.map(|(name, path, parts, size)| {
+            let root = self.at(path);
             let of_models = parts.iter().flat_map(|part| hidden().map(move |n| (part, n)));
             let of_models = of_models.map(|(part, number)| at(&root, &of_model(part, number)));
-            Page::drawing(name, &root, size).without(of_models.collect::<Vec<_>>())
-        };
-        let drawings = [
-            drawing(
-                "Residual against four quantities: points, and their mean",
-                paths::SCATTER,
-                &["lines"],
-                scatter::SIZE,
-            ),
-            drawing(
-                "Share of the error: bars; of the time: white",
-                paths::ERROR_SHARE,
-                &["squared_error"],
-                error_share::SIZE,
-            ),
-            drawing(
-                "Correlation: that of noise stays between the lines (99 %)",
-                paths::CORRELATION,
-                &["band", "lines"],
-                correlogram::SIZE,
-            ),
-        ];
+            self.drawing(name, path, size).without(of_models.collect::<Vec<_>>())
+        });
         let difference = names.split_first().filter(|_| self.are_side_by_side());
         let difference = difference.map(|(first, others)| {
             let root = self.at(paths::MODEL_DIFFERENCE);

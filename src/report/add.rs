@@ -30,11 +30,6 @@ pub(crate) fn gone(before: &JointModel, after: &JointModel) -> Vec<&'static str>
     effect_ids(before).into_iter().filter(|id| !left.contains(id)).collect()
 }
 
-/// Ids of the effects that `after` has and `before` has not.
-pub(crate) fn gained(before: &JointModel, after: &JointModel) -> Vec<&'static str> {
-    gone(after, before)
-}
-
 impl<'a> AddedJoint<'a> {
     /// The model before and after, as revisions.
     pub(crate) fn compared(&self) -> [ComparedJoint<'a>; 2] {
@@ -51,7 +46,7 @@ impl<'a> AddedJoint<'a> {
             joint: self.joint,
             fit: &after.fit,
             attribution: Some(attribution),
-            before: before.judged(),
+            before: before.judged().map(|error| error.rmse),
             after: after.judged(),
             sensor_noise: sensor_noise(&self.joint.trials),
         }

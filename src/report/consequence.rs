@@ -14,8 +14,8 @@ pub(crate) struct Consequence<'a> {
     pub(crate) fit: &'a AssessedModel,
     /// What each of them carries, where that was found out.
     pub(crate) attribution: Option<&'a Attribution>,
-    /// The error without them, where there are any.
-    pub(crate) before: Option<ErrorFigures>,
+    /// The root-mean-square error without them, where there are any.
+    pub(crate) before: Option<f64>,
     /// The error with them.
     pub(crate) after: Option<ErrorFigures>,
     /// The noise of the sensor, from the record alone.
@@ -52,7 +52,7 @@ impl Consequence<'_> {
     /// The part of the error that the effects explain, 0 to 1: `1 − (e − s)/(e₀ − s)` with the
     /// root-mean-square errors `e₀` before and `e` with them, and the noise `s`.
     pub(crate) fn explained(&self) -> Option<f64> {
-        let (before, after) = (self.before?.rmse, self.after?.rmse);
+        let (before, after) = (self.before?, self.after?.rmse);
         let noise = self.sensor_noise.unwrap_or(0.0).min(after);
         let share = 1.0 - (after - noise) / (before - noise).max(f64::MIN_POSITIVE);
         Some(share.clamp(0.0, 1.0))

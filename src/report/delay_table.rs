@@ -1,85 +1,80 @@
 //! The delays by kind of step and level, as a typed table and for people.
 
-use serde_json::{Map, Value};
+use serde_json::{Value, json};
 
+use super::facts::{self, Fact, Part, Place, UNSAID, Unit, fact};
 use super::text_table::TextTable;
 use super::{DataTable, EstimatedJoint, JointSummary, Kind};
 use crate::delay::{Condition, DelayRow, DelayTable, KindDelay, Remedy, Transition, TypicalDelay};
 use crate::wording::{number, remedy_text, unit_suffix};
+use Kind::{Real, Text, Whole};
+use Part::{Json, People, Table};
+use Place::{Recording, Terminal};
 
-/// Names and kinds of the columns.
-const COLUMNS: [(&str, Kind); 11] = [
-    ("joint", Kind::Text),
-    ("transition", Kind::Text),
-    ("level_from", Kind::Real),
-    ("level_to", Kind::Real),
-    ("steps", Kind::Whole),
-    ("accepted", Kind::Whole),
-    ("delay_median_s", Kind::Real),
-    ("delay_low_s", Kind::Real),
-    ("delay_high_s", Kind::Real),
-    ("delay_min_s", Kind::Real),
-    ("delay_max_s", Kind::Real),
+/// A row of the table of a joint, with its name.
+pub(crate) type Level<'a> = (&'a str, &'a DelayRow);
+
+const PEOPLE: &[Place] = &[Terminal, Recording];
+
+/// All of it, in the order of the columns of `--table`: levels are means of a bin, low and high bound
+/// the median at 95 %.
+#[rustfmt::skip]
+pub(super) const LEVEL: &[Fact<fn(&Level<'_>) -> Value>] = &[
+    fact("joint", Text, Table, ("joint", "", Unit::None, &[Recording]), |(joint, _)| (*joint).into()),
+    fact("transition", Text, Table, ("transition", "", Unit::None, PEOPLE), |(_, row)| row.transition.id().into()),
+    fact("level_from", Real, Table, UNSAID, |(_, row)| row.level_from.into()),
+    fact("level_to", Real, Table, UNSAID, |(_, row)| row.level_to.into()),
+    fact("from", Real, People, ("from", "", Unit::None, PEOPLE), |(_, row)| level(row.level_from, row.from_limits)),
+    fact("to", Real, People, ("to", "", Unit::None, PEOPLE), |(_, row)| level(row.level_to, row.to_limits)),
+    fact("steps", Whole, Table, ("steps", "", Unit::None, PEOPLE), |(_, row)| row.steps.into()),
+    fact("accepted", Whole, Table, ("accepted", "", Unit::None, PEOPLE), |(_, row)| row.accepted.into()),
+    fact("delay_median_s", Real, Table, UNSAID, |(_, row)| row.delay.map(|delay| delay.median_s).into()),
+    fact("delay_low_s", Real, Table, UNSAID, |(_, row)| interval(row).map(|(low, _)| low).into()),
+    fact("delay_high_s", Real, Table, UNSAID, |(_, row)| interval(row).map(|(_, high)| high).into()),
+    fact("delay_min_s", Real, Table, UNSAID, |(_, row)| row.delay.map(|delay| delay.min_s).into()),
+    fact("delay_max_s", Real, Table, UNSAID, |(_, row)| row.delay.map(|delay| delay.max_s).into()),
+    fact("median", Real, People, ("median", "", Unit::None, PEOPLE), |(_, row)| said(row.delay.map(|delay| format!("{:.3} s", delay.median_s)))),
+    fact("interval", Text, People, ("95 % interval", "", Unit::None, PEOPLE), |(_, row)| said(interval(row).map(range))),
+    fact("range", Text, People, ("min to max", "", Unit::None, PEOPLE), |(_, row)| said(row.delay.map(|delay| range((delay.min_s, delay.max_s))))),
+    fact("level_from_limits", Real, Json, UNSAID, |(_, row)| json!(row.from_limits)),
+    fact("level_to_limits", Real, Json, UNSAID, |(_, row)| json!(row.to_limits)),
 ];
 
-/// One row of `--table`: levels are means of a bin, low and high bound the median at 95 %.
-pub(super) fn row_json(joint: &str, row: &DelayRow) -> Map<String, Value> {
-    let delay = row.delay;
-    let interval = delay.and_then(|delay| delay.interval_s);
-    let cells: [Value; COLUMNS.len()] = [
-        joint.into(),
-        row.transition.id().into(),
-        row.level_from.into(),
-        row.level_to.into(),
-        row.steps.into(),
-        row.accepted.into(),
-        delay.map(|delay| delay.median_s).into(),
-        interval.map(|(low, _)| low).into(),
-        interval.map(|(_, high)| high).into(),
-        delay.map(|delay| delay.min_s).into(),
-        delay.map(|delay| delay.max_s).into(),
-    ];
-    COLUMNS.into_iter().map(|(name, _)| name.to_owned()).zip(cells).collect()
+fn level(level: f64, (low, high): (f64, f64)) -> Value {
+    let range = format!("{} to {}", number(low), number(high));
+    if low < high { range.into() } else { number(level).into() }
+}
+
+fn interval(row: &DelayRow) -> Option<(f64, f64)> {
+    row.delay?.interval_s
+}
+
+fn range((low, high): (f64, f64)) -> String {
+    format!("{low:.3} to {high:.3} s")
+}
+
+/// What a cell says; a column of which nothing is known stays.
+fn said(text: Option<String>) -> Value {
+    text.unwrap_or_else(|| "-".to_owned()).into()
+}
+
+/// A row in JSON.
+pub(super) fn level_json(joint: &str, row: &DelayRow) -> Value {
+    facts::object(LEVEL, Json, |value| value(&(joint, row))).into()
 }
 
 /// The rows of all joints, as a table with types.
 pub(crate) fn level_table(joints: &[EstimatedJoint<'_>]) -> DataTable {
-    let mut table = DataTable::new(COLUMNS);
-    for joint in joints {
-        for row in &joint.delay_table().rows {
-            table.push(&row_json(&joint.joint.name, row));
-        }
-    }
-    table
+    let tables: Vec<_> = joints.iter().map(|joint| (joint, joint.delay_table().rows)).collect();
+    let rows = tables
+        .iter()
+        .flat_map(|(joint, rows)| rows.iter().map(|row| (joint.joint.name.as_str(), row)));
+    facts::data_table(LEVEL, Table, (rows, |value, row| value(row)))
 }
 
-/// What the cells of [`level_cells`] are.
-pub(crate) const LEVEL_HEADER: [&str; 8] =
-    ["transition", "from", "to", "steps", "accepted", "median", "95 % interval", "min to max"];
-
-/// A row for people.
-pub(crate) fn level_cells(row: &DelayRow) -> [String; 8] {
-    let dash = || "-".to_owned();
-    let level = |level: f64, (low, high): (f64, f64)| {
-        if low < high { format!("{} to {}", number(low), number(high)) } else { number(level) }
-    };
-    let range = |low: f64, high: f64| format!("{low:.3} to {high:.3} s");
-    let interval = row.delay.and_then(|delay| delay.interval_s);
-    [
-        row.transition.to_string(),
-        level(row.level_from, row.from_limits),
-        level(row.level_to, row.to_limits),
-        row.steps.to_string(),
-        row.accepted.to_string(),
-        row.delay.map_or_else(dash, |delay| format!("{:.3} s", delay.median_s)),
-        interval.map_or_else(dash, |(low, high)| range(low, high)),
-        row.delay.map_or_else(dash, |delay| range(delay.min_s, delay.max_s)),
-    ]
-}
-
-/// The rows of a joint for people.
-pub(super) fn level_table_text(rows: &[DelayRow]) -> TextTable {
-    TextTable::of(LEVEL_HEADER, &[1, 2, 3, 4, 5], rows.iter().map(level_cells))
+/// Rows as a person reads them at `place`.
+pub(crate) fn level_text<'a>(place: Place, rows: impl Iterator<Item = Level<'a>>) -> TextTable {
+    facts::text_table(LEVEL, place, None, (rows, |value, row| value(row)))
 }
 
 /// The tables of all joints for the terminal.
@@ -95,7 +90,8 @@ fn joint_text(joint: &EstimatedJoint<'_>) -> String {
         return format!("\n{name}: no delay table: {why}\n");
     }
     let neutral = neutral_sentence(&found, joint.joint.input_unit.as_deref());
-    let table = level_table_text(&found.rows);
+    let rows = found.rows.iter().map(|row| (name.as_str(), row));
+    let table = level_text(Terminal, rows);
     let kinds = joint.kind_sentences(&found.kinds);
     format!("\n{name}: {neutral}\n{table}\n{}\n", kinds.join("\n"))
 }

@@ -1,8 +1,9 @@
 //! `explain` as text.
 
 use super::compare::{ComparedJoint, horizons};
-use super::finding::{Finding, ranking_table};
+use super::finding::Finding;
 use super::parameters::model_text;
+use super::ranking::ranking_table;
 
 /// For each joint the verdict, the ranking and what they mean.
 pub(crate) fn explain_text(findings: &[Finding<'_>]) -> String {

@@ -1,15 +1,13 @@
-//! What `explain` and `improve` have found of a joint, as a table.
+//! What `explain` and `improve` have found of a joint.
 
 use super::ComparedJoint;
 use super::consequence::Consequence;
-use super::text_table::TextTable;
-use crate::diagnosis::{Comparison, sensor_noise};
+use super::ladder::Before;
+use crate::diagnosis::sensor_noise;
 use crate::effect::Spec;
-use crate::experiment::Joint;
 use crate::explain::{Attribution, Candidate, Judgement, Verdict};
 use crate::model::Component;
 use crate::study::JointEstimate;
-use crate::wording::{p_text, with_unit};
 
 /// A joint, the verdict on its model, and the race behind it.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +21,7 @@ pub struct Finding<'a> {
     /// What follows the effect on the command line that adds it.
     pub add_arguments: &'a str,
     /// The model to which effects were added, where any were.
-    pub before: Option<&'a Comparison>,
+    pub before: Option<Before<'a>>,
     /// What each effect carries that was added, or is proposed, where that was found out.
     pub attribution: Option<&'a Attribution>,
     /// The delays of its steps, where they were estimated.
@@ -42,10 +40,12 @@ impl<'a> Finding<'a> {
         let comparison = self.compared.comparison;
         let (fit, before, after) = match (self.before, self.proposed()) {
             (None, Some(best)) => {
-                (&best.fit.assessed, comparison.judged(), best.validation.or(best.training))
+                let before = comparison.judged().map(|error| error.rmse);
+                (&best.fit.assessed, before, best.validation.or(best.training))
             }
             (before, _) => {
-                (&comparison.fit.assessed, before.and_then(Comparison::judged), comparison.judged())
+                let before = before.and_then(|before| before.rmse());
+                (&comparison.fit.assessed, before, comparison.judged())
             }
         };
         let (joint, attribution) = (self.compared.joint, self.attribution);
@@ -70,24 +70,6 @@ pub(super) fn added(candidate: &Candidate) -> impl Iterator<Item = &Component> {
 
 pub(super) fn specs(candidate: &Candidate) -> impl Iterator<Item = &'static Spec> {
     added(candidate).map(|component| component.effect().spec())
-}
-
-/// A row per candidate, best first.
-pub(super) fn ranking_table(joint: &Joint, ranking: &[Candidate]) -> TextTable {
-    let header =
-        ["effect", "validation", "reduction", "p-value", "indistinguishable from", "judgement"];
-    let row = |candidate: &Candidate| {
-        let same = &candidate.indistinguishable_from;
-        [
-            candidate.name(),
-            with_unit(candidate.rmse(), joint.output_unit.as_deref()),
-            format!("{:.1} %", candidate.error_reduction_percent),
-            p_text(candidate.p_value),
-            if same.is_empty() { "-".to_owned() } else { same.join(", ") },
-            judgement_text(&candidate.judgement),
-        ]
-    };
-    TextTable::of(header, &[1, 2], ranking.iter().map(row))
 }
 
 /// `added: shown, …` or `refused: …`.

@@ -3,14 +3,16 @@
 use super::compare::{ComparedJoint, errors_note, horizons};
 use super::conclusion::{Conclusion, Passage, Topic};
 use super::finding::Finding;
-use super::ladder::{History, LadderRow, change_in_words, errors_of, figures, ladder_table};
+use super::ladder::{
+    Before, History, LadderRow, change_in_words, errors_of, figures, ladder_table,
+};
 use super::parameters::model_text;
 use crate::diagnosis::Comparison;
 use crate::effect::by_id;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
 use crate::model::Component;
-use crate::wording::{effect_ids, measure};
+use crate::wording::measure;
 
 /// A joint whose model was improved.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +38,14 @@ impl<'a> ImprovedJoint<'a> {
         let first_revision = finding.compared.revision.saturating_sub(later);
         let (interrupted, reached_limit, history) = (false, false, History::default());
         Self { finding, revisions, first_revision, history, interrupted, reached_limit }
+    }
+
+    /// This, with all effects that came since its history began.
+    #[must_use]
+    pub(crate) fn since_its_beginning(self) -> Self {
+        let beginning = Before::History(self.history, self.revisions);
+        let before = beginning.rmse().map(|_| beginning).or(self.finding.before);
+        Self { finding: Finding { before, ..self.finding }, ..self }
     }
 
     /// That somebody stopped it, which then has ended it, and no limit.
@@ -153,13 +163,6 @@ impl<'a> ImprovedJoint<'a> {
     /// The ladder of errors: the revisions of the model's history, and those made now.
     pub(super) fn ladder(&self) -> Vec<LadderRow> {
         self.history.rows(self.first_revision, self.revisions)
-    }
-
-    /// Effects that the last revision has, and the first of the ladder has not.
-    pub(super) fn came(&self) -> Vec<&'static str> {
-        let first = self.history.first_effects(self.revisions);
-        let own = effect_ids(&self.finding.compared.comparison.fit.model);
-        own.into_iter().filter(|id| !first.contains(id)).collect()
     }
 
     fn text(&self) -> String {

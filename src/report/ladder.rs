@@ -4,7 +4,7 @@ use super::text_table::TextTable;
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
 use crate::explain::{Change, Revision as Step};
-use crate::model::{Fitted, Revision, RevisionErrors};
+use crate::model::{Fitted, JointModel, Revision, RevisionErrors};
 use crate::wording::{self, effect_ids, effects_named, effects_text, with_unit};
 
 /// What the file of a model says of how it came about.
@@ -14,6 +14,34 @@ pub struct History<'a> {
     pub revisions: &'a [Revision],
     /// What its numbers were fitted to.
     pub fitted: Option<&'a Fitted>,
+}
+
+/// A model before effects were added to it.
+#[derive(Clone, Copy, Debug)]
+pub enum Before<'a> {
+    /// As it was given.
+    Model(&'a Comparison),
+    /// As its history began, which led to the first of these revisions.
+    History(History<'a>, &'a [Step]),
+}
+
+impl Before<'_> {
+    /// The error by which it is judged.
+    pub(super) fn rmse(&self) -> Option<f64> {
+        match self {
+            Self::Model(comparison) => comparison.judged().map(|error| error.rmse),
+            Self::History(history, _) => history.fitted?.start.as_ref()?.judged(),
+        }
+    }
+
+    /// Ids of the effects that `model` has and it has not.
+    pub(super) fn gained(&self, model: &JointModel) -> Vec<&'static str> {
+        let had = match self {
+            Self::Model(comparison) => effect_ids(&comparison.fit.model),
+            Self::History(history, revisions) => history.first_effects(revisions),
+        };
+        effect_ids(model).into_iter().filter(|id| !had.contains(id)).collect()
+    }
 }
 
 /// A revision on the ladder.
@@ -120,7 +148,7 @@ impl History<'_> {
 
     /// The effects before the first revision: those of the model that is given, the changes of the
     /// history undone from the last to the first.
-    pub(super) fn first_effects<'a>(&'a self, revisions: &'a [Step]) -> Vec<&'a str> {
+    fn first_effects<'a>(&'a self, revisions: &'a [Step]) -> Vec<&'a str> {
         let given = revisions.first().map(|first| effect_ids(&first.comparison.fit.model));
         let mut effects: Vec<&str> = given.unwrap_or_default();
         for revision in self.revisions.iter().rev() {

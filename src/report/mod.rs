@@ -37,6 +37,7 @@ mod lookup;
 mod model_delay;
 mod page;
 mod parameters;
+mod ranking;
 mod review;
 mod review_page;
 mod separation;
@@ -63,7 +64,7 @@ pub use decisions::decision_rows;
 pub(crate) use decisions::{
     DECISION, decision_columns, decision_table, decision_text, steps_table,
 };
-pub(crate) use delay_table::{LEVEL_HEADER, delay_levels_text, level_cells, level_table};
+pub(crate) use delay_table::{delay_levels_text, level_table, level_text as levels_text};
 pub(crate) use delays::delay_table;
 pub use delays::write_delays;
 pub(crate) use design::{Basis, DesignedJoint, Discrimination, input_table, preview_table};
@@ -85,7 +86,7 @@ pub(crate) use json::{
     EstimateJson, add_json, columns_json, compare_json, design_json, document, effects_json,
     explain_json, folder_json, improve_json, report_json, sweep_json,
 };
-pub use ladder::History;
+pub use ladder::{Before, History};
 pub(crate) use ladder::{change_in_words, errors_of};
 pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{

@@ -1,4 +1,6 @@
-//! The parameters of a model, for people.
+//! The parameters of a model.
+
+use serde_json::{Map, Value, json};
 
 use super::text_table::TextTable;
 use crate::diagnosis::Comparison;
@@ -56,6 +58,18 @@ pub(crate) fn parameter_table(joint: &Joint, fit: &AssessedModel) -> TextTable {
         table.row([format!("{name}{of}"), value]);
     }
     table
+}
+
+/// Parameters by name, with their standard errors and units.
+pub(super) fn parameters_json(joint: &Joint, fit: &AssessedModel) -> Map<String, Value> {
+    let parameter = |(parameter, unit): (&Parameter, String)| {
+        let Parameter { name, value, std_error, status } = parameter;
+        let value = json!({
+            "value": value, "std_error": std_error, "unit": unit, "status": status,
+        });
+        (name.clone(), value)
+    };
+    fit.parameters.iter().zip(parameter_units(joint, &fit.model)).map(parameter).collect()
 }
 
 /// Which delays a law gives to the steps of the record: those of its parameters are of a step of

@@ -15,13 +15,18 @@ fn seconds_text(seconds: f64) -> String {
     format!("{} s", to_place(seconds, 4))
 }
 
+/// What is `accepted`, or `✗` and why it is not.
+pub(crate) fn verdict_in_short(verdict: Verdict, accepted: &str) -> String {
+    match verdict {
+        Verdict::Accepted => accepted.to_owned(),
+        Verdict::Rejected(condition) => format!("✗ {}", condition.meaning()),
+    }
+}
+
 /// What a result says of a step: `✓ 0.15 s`, or `✗` and why.
 pub(crate) fn result_in_short(step: &StepResult) -> String {
-    match (step.verdict, step.delay_s) {
-        (Verdict::Accepted, Some(delay)) => format!("✓ {}", seconds_text(delay)),
-        (Verdict::Accepted, None) => "✓".to_owned(),
-        (Verdict::Rejected(condition), _) => format!("✗ {}", condition.meaning()),
-    }
+    let delay = step.delay_s.map_or_else(String::new, seconds_text);
+    verdict_in_short(step.verdict, format!("✓ {delay}").trim_end())
 }
 
 /// How two results differ on a step, in a few words.

@@ -1,8 +1,9 @@
 //! The doubt of a decision in words.
 
 use super::number::to_place;
+use super::percent;
 #[cfg(feature = "rrd")]
-use super::{counted, number, percent};
+use super::{counted, number};
 use crate::delay::{Condition, Doubt, Flag, Verdict};
 
 /// Margin of a condition that failed up to which it failed by little.
@@ -11,7 +12,6 @@ const LITTLE: f64 = 0.3;
 /// What speaks most against a decision with this verdict, on a trial sampled every `period_s`
 /// seconds.
 pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> String {
-    let seconds = |samples: f64| to_place(samples * period_s, 3);
     let near = doubt.nearest.filter(|(_, margin)| *margin < 1.0);
     if let Verdict::Rejected(_) = verdict {
         return near.map_or_else(
@@ -22,22 +22,48 @@ pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
             },
         );
     }
-    let [explained, placed, meeting] = doubt.margins();
-    let mut reasons = vec![
-        (explained, {
-            let percent = to_place(100.0 * (1.0 - explained), 0);
-            let of = if doubt.settles { "no reaction" } else { "one line" };
-            let what = if doubt.settles { "reaction" } else { "break" };
-            format!("the {what} leaves {percent} % of the squared error of {of}")
-        }),
-        (placed, format!("breakpoints {} s apart fit about as well", seconds(doubt.spread))),
-        (meeting, format!("the lines cross {} s from the breakpoint", seconds(doubt.crossing))),
-    ];
-    reasons.extend(near.map(|(condition, margin)| (margin, by_little(condition))));
-    let least = reasons.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
     let flags = doubt.flags.iter().map(|flag: &Flag| flag.meaning().to_owned());
-    let sentences = flags.chain(least.map(|(_, reason)| reason));
+    let sentences = flags.chain(least(doubt, period_s).map(|[reason, _]| reason));
     sentences.collect::<Vec<_>>().join("; ")
+}
+
+/// What brings an accepted decision nearest to its limit, in a clause and in a few words.
+fn least(doubt: &Doubt, period_s: f64) -> Option<[String; 2]> {
+    let seconds = |samples: f64| format!("{} s", to_place(samples * period_s, 3));
+    let [explained, placed, meeting] = doubt.margins();
+    let left = to_place(100.0 * (1.0 - explained), 0);
+    let (what, of) =
+        if doubt.settles { ("reaction", "no reaction") } else { ("break", "one line") };
+    let (spread, crossing) = (seconds(doubt.spread), seconds(doubt.crossing));
+    let reasons = [
+        (
+            explained,
+            [
+                format!("the {what} leaves {left} % of the squared error of {of}"),
+                format!("error left {}", percent(1.0 - explained)),
+            ],
+        ),
+        (
+            placed,
+            [
+                format!("breakpoints {spread} apart fit about as well"),
+                format!("breaks {spread} apart fit alike"),
+            ],
+        ),
+        (
+            meeting,
+            [
+                format!("the lines cross {crossing} from the breakpoint"),
+                format!("lines cross {crossing} off"),
+            ],
+        ),
+    ];
+    let near = doubt.nearest.filter(|(_, margin)| *margin < 1.0);
+    let near = near.map(|(condition, margin)| {
+        (margin, [by_little(condition), format!("near {}", condition.id())])
+    });
+    let all = reasons.into_iter().chain(near);
+    all.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, said)| said)
 }
 
 /// What speaks most against a decision, as short as it can be said.
@@ -56,16 +82,7 @@ pub(crate) fn doubt_in_short(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
         Some(Flag::Stop) => return "output at its end".to_owned(),
         None => {}
     }
-    let seconds = |samples: f64| to_place(samples * period_s, 3);
-    let [explained, placed, meeting] = doubt.margins();
-    let mut reasons = vec![
-        (explained, format!("error left {}", percent(1.0 - explained))),
-        (placed, format!("breaks {} s apart fit alike", seconds(doubt.spread))),
-        (meeting, format!("lines cross {} s off", seconds(doubt.crossing))),
-    ];
-    reasons.extend(near.map(|(condition, margin)| (margin, format!("near {}", condition.id()))));
-    let least = reasons.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
-    least.map_or_else(String::new, |(_, reason)| reason)
+    least(doubt, period_s).map_or_else(String::new, |[_, reason]| reason)
 }
 
 /// A condition that holds by little.

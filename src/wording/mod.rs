@@ -14,6 +14,8 @@ mod prose;
 mod region;
 mod remedy;
 
+#[cfg(feature = "rrd")]
+pub(crate) use difference::verdict_in_short;
 pub(crate) use difference::{
     difference_in_short, difference_sentences, missing_sentences, result_in_short, step_name,
 };

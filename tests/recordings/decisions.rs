@@ -144,13 +144,18 @@ fn what_another_method_decided_is_drawn_beside_the_first() {
             joint.estimate.estimated().flat_map(|trial| &trial.decisions).collect();
         let drawn = back.rows(&format!("/{name}/drawing/other_0"), "LineStrips2D:strips", |_| ());
         assert_eq!(drawn.len(), decisions.len());
-        let legend = back.texts(&format!("/{name}/drawing/other_0_name"), "Points2D:labels");
+        let legend = back.rows(&format!("/{name}/drawing/texts"), "Points2D:labels", |cell| {
+            let texts = cell.as_string::<i32>();
+            let mut own = texts.iter().flatten().filter_map(|text| text.strip_prefix("– two-line"));
+            own.next().map(str::to_owned)
+        });
         let pages = back.texts(&format!("/{name}/verdict"), "TextDocument:text");
         assert_eq!((legend.len(), pages.len()), (drawn.len(), drawn.len()));
         let shown = legend.iter().zip(&pages);
         for ((first, decision), ((_, legend), (_, page))) in firsts.zip(decisions).zip(shown) {
             let delay = number(decision.delay().unwrap());
-            assert!(legend.starts_with(&format!("two-line: δ = {delay} ")), "{legend}");
+            let legend = legend.as_deref().unwrap();
+            assert!(legend.starts_with(&format!(": δ = {delay} ")), "{legend}");
             assert!(page.contains(&format!("| two-line | {delay} | ")), "{page}");
             let delay = number(first.delay().unwrap());
             assert!(page.contains(&format!("| lag-aware, here | {delay} (")), "{page}");
@@ -274,8 +279,8 @@ fn a_breakpoint_that_a_reviewer_moved_is_drawn_beside_the_programs() {
             back.rows(&format!("/boom/drawing/{part}"), "LineStrips2D:strips", |cell| cell.len());
         rows.iter().find(|(times, _)| times.get("segment") == Some(&3)).unwrap().1
     };
-    // The accepted pair is in the close-up, too.
-    assert_eq!((lines("before_review"), lines("accepted")), (3, 8));
+    // The accepted pair is in the close-up, too, with a line at q in each plot but that of the residual.
+    assert_eq!((lines("before_review"), lines("chosen")), (3, 7));
     let texts = back.texts("/boom/verdict", "TextDocument:text");
     let text = &texts.iter().find(|(times, _)| times.get("segment") == Some(&3)).unwrap().1;
     assert!(

@@ -49,7 +49,7 @@ fn figures_of_a_model_are_those_of_its_comparison() {
             |part: &str| back.cell(&format!("/{}/{part}", joint.name), "LineStrips2D:strips").len();
         assert_eq!(drawn("error_share/time"), count);
         // The record is drawn on every timeline that the page may be opened on.
-        let map = format!("/{}/model_map/residual/0", joint.name);
+        let map = format!("/{}/model_map/residual", joint.name);
         let rows = back.rows(&map, "LineStrips2D:strips", |strips| strips.len());
         let timelines = ["decision", "doubt", "sample", "segment", "time"];
         assert!(matches!(rows.as_slice(), [(_, 1)]), "{rows:?}");
@@ -163,8 +163,8 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
     });
     for ((_, titles), revision) in titles.iter().skip(1).zip(improvements[0].revisions.windows(2)) {
         let title = match revision[1].change {
-            Change::Added("actuator_lag") => "against the time since a step",
-            _ => "at held input",
+            Change::Added("actuator_lag") => "over the time since a step",
+            _ => "over held input",
         };
         assert!(titles.contains(title), "{titles}");
     }

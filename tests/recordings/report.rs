@@ -124,7 +124,7 @@ fn a_model_is_reported_with_its_ladder() {
     assert_eq!(json["schema"], "tauscope/report/1");
     assert_fields(&json, "schema version report recording joints failures");
     let sentence = json["joints"][0]["sentence"].as_str().unwrap();
-    assert!(sentence.contains("dead_band was missing; with it"), "{sentence}");
+    assert!(sentence.contains("dead_band explains"), "{sentence}");
     assert!(sentence.ends_with("nothing more is missing."), "{sentence}");
     assert!(!desk.has("model.toml"), "a report changes no model");
     let page = parsed(&desk.read("report.html"));
@@ -161,7 +161,7 @@ fn a_model_that_improve_made_is_reported_from_its_file() {
         (sentence, words(parsed(&desk.read("given.html")).root_element()))
     };
     let (sentence, page) = of_report("boom.toml");
-    assert!(sentence.contains("dead_band was missing; with it"), "{sentence}");
+    assert!(sentence.contains("dead_band explains"), "{sentence}");
     for part in ["0: integrator", "1: + dead_band", "as it is in its file"] {
         assert!(page.contains(part), "no {part}");
     }
@@ -173,7 +173,7 @@ fn a_model_that_improve_made_is_reported_from_its_file() {
     let (_, behind) = gain.split_once(',').unwrap();
     desk.write("other.toml", &format!("{before}gain = 5.0,{behind}"));
     let (sentence, page) = of_report("other.toml");
-    assert!(sentence.contains("dead_band was missing; with it"), "{sentence}");
+    assert!(sentence.contains("dead_band explains"), "{sentence}");
     assert!(!page.contains("as it is in its file"), "it was to be fitted");
 }
 

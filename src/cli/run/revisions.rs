@@ -9,7 +9,7 @@ use crate::experiment::{Joint, Source};
 use crate::explain::{Change, Explanation, Improvement, Revision as Step, Verdict};
 use crate::model::{Fitted, FittedParameter, LogHash, ModelFile, Revision};
 use crate::report::{
-    ComparedJoint, Finding, History, ImprovedJoint, errors_of, gone, revision_line,
+    Before, ComparedJoint, Finding, History, ImprovedJoint, errors_of, gone, revision_line,
 };
 use crate::wording::parameter_units;
 
@@ -101,7 +101,7 @@ impl<'a> Start<'a> {
             verdict: *verdict,
             ranking: last.ranking.as_slice(),
             add_arguments: arguments.get(index).map_or("", String::as_str),
-            before: first.map(|first| &first.comparison),
+            before: first.map(|first| Before::Model(&first.comparison)),
             attribution: Some(attribution),
             delays: estimates.get(index).and_then(|estimate| estimate.as_ref().ok()),
         };

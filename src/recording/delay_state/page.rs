@@ -1,22 +1,24 @@
 //! The page of plots, and the cursor in it.
 
-use rerun::Points2D;
+use std::ops::RangeInclusive;
+
 use rerun::datatypes::Vec2D;
 
-use super::placed::{Placed, add_numbers, placed};
+use super::placed::{Placed as Step, add_numbers, placed};
 use super::quantity::Quantity;
 use crate::delay::{AgainstState, StepState};
 use crate::experiment::{Joint, Trial};
 use crate::figure::course::Bin;
 use crate::figure::delay_against::Way;
-use crate::recording::canvas::{Labels, Plot, SHEET, Span};
+use crate::figure::{Axis, Mark, Panel, Role, Shape};
+use crate::recording::canvas::{Plot, SHEET, Span, Text};
 use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
-use crate::recording::layers::{HIDDEN, Ink, Layers};
+use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
-use crate::recording::palette::{self, Rgb, color};
+use crate::recording::palette::{self, role};
+use crate::recording::panels::{self, Placed};
 use crate::recording::paths;
-use crate::recording::sheet::Sheet;
 use crate::report::variable_text;
 use crate::units::SamplePeriod;
 use crate::wording::number;
@@ -35,10 +37,11 @@ pub(in crate::recording) fn add(
     let found = layout.estimated.against_state();
     let placed = placed(layout, &found.steps);
     add_numbers(chunks, layout.joint, &placed)?;
-    let page = Page::of(layout.joint, &found, &placed);
-    page.add_plots(chunks)?;
-    page.add_texts(chunks)?;
-    page.add_cursor(chunks, layout, &placed)
+    let mut fixed = Layers::fixed(chunks, paths::AGAINST);
+    let page = Page::drawn(&mut fixed, (layout.joint, &found), &placed)?;
+    fixed.texts("legend", vec![page.legend()])?;
+    let mut rows = Layers::rows(chunks, paths::AGAINST, layout.openings()).in_front();
+    page.add_cursor(&mut rows, &placed)
 }
 
 /// All plots on their sheet.
@@ -47,143 +50,54 @@ struct Page<'f> {
     found: &'f AgainstState,
     /// Each quantity that is drawn, with its plot.
     plots: Vec<(Quantity, Plot)>,
-    /// Each accepted step in words, for the pointer.
-    names: Vec<String>,
     /// Quantities there are.
     quantities: usize,
-    /// Columns of plots.
-    columns: usize,
     /// Seconds per sample, where all trials have the same.
     period_s: Option<f64>,
 }
 
 impl<'f> Page<'f> {
-    fn of(joint: &'f Joint, found: &'f AgainstState, placed: &[Placed<'_, '_>]) -> Self {
+    /// Draws what stays: grid, points, medians.
+    fn drawn(
+        layers: &mut Layers<'_>,
+        (joint, found): (&'f Joint, &'f AgainstState),
+        placed: &[Step<'_, '_>],
+    ) -> Result<Self, RecordError> {
         let mut quantities = Quantity::of(found);
         let count = quantities.len();
         quantities.truncate(if found.steps.is_empty() { 0 } else { PLOTS });
-        let columns = (1..=PLOTS).find(|side| side * side >= quantities.len()).unwrap_or(1);
-        let y = Span::around(found.steps.iter().map(|step| step.delay_s), 0.06);
-        let grid = (columns, quantities.len().div_ceil(columns));
-        let place = |(place, quantity): (usize, Quantity)| {
-            let plot = plot(place, grid, quantity.x_span(), y);
-            (quantity, plot)
-        };
         let mut periods = joint.trials.iter().map(Trial::period);
         let first = periods.next();
         let period_s = first.filter(|first| periods.all(|other| other == *first));
-        Self {
-            joint,
-            found,
-            plots: quantities.into_iter().enumerate().map(place).collect(),
-            names: placed.iter().filter_map(Placed::name).collect(),
-            quantities: count,
-            columns,
-            period_s: period_s.map(SamplePeriod::seconds),
-        }
+        let period_s = period_s.map(SamplePeriod::seconds);
+        let names: Vec<String> = placed.iter().filter_map(Step::name).collect();
+        let grid = Grid::of(quantities.len());
+        let placed = quantities.iter().enumerate().map(|(place, quantity)| {
+            let panel = panel(quantity, (&found.steps, &names), grid.scales(place, period_s));
+            let (columns, rows) = grid.place(place);
+            Placed::new(panel, columns, rows)
+        });
+        let placed: Vec<Placed> = placed.collect();
+        let plots: Vec<Plot> = placed.iter().map(|placed| placed.plot).collect();
+        panels::add(layers, [placed])?;
+        let plots = quantities.into_iter().zip(plots).collect();
+        Ok(Self { joint, found, plots, quantities: count, period_s })
     }
 
-    /// What stays: grid, points, medians.
-    fn add_plots(&self, chunks: &mut Chunks) -> Result<(), RecordError> {
-        let (mut sheet, mut depends) = (Sheet::default(), Vec::new());
-        let (mut bands, mut medians) = (Vec::new(), Vec::new());
-        for (quantity, plot) in &self.plots {
-            let x_ticks: Vec<_> = quantity.x_ticks().into_iter().map(|(x, _)| x).collect();
-            let y_ticks = plot.y_span().ticks(DELAY_TICKS).into_iter();
-            let y_ticks: Vec<_> = y_ticks.map(|y| (y, String::new())).collect();
-            sheet.outline(plot, &x_ticks, &y_ticks);
-            if quantity.depends {
-                depends.push(plot.frame());
-            }
-            for bins in quantity.courses(&self.found.steps) {
-                bands.push(band(plot, &bins));
-                medians.push(plot.places(bins.iter().map(|bin| (bin.x, bin.median))));
-            }
-        }
-        let mut layers = Layers::fixed(chunks, paths::AGAINST);
-        for (path, rgb, radius, order, strips) in [
-            ("band", palette::BAND, 0.6 * STROKE, 5.0, bands),
-            ("grid", palette::GRID, 0.7, 10.0, sheet.grid),
-            ("depends", palette::BORDER, 1.4, 15.0, depends),
-            ("median", palette::BORDER, 2.0, 40.0, medians),
-        ] {
-            layers.order(order).strips(path, rgb, radius, [strips])?;
-        }
-        for (path, rgb, way) in [("down", palette::DOWN, Way::Down), ("up", palette::UP, Way::Up)] {
-            let Labels { places, texts, .. } = self.points(way);
-            let points = Points2D::new(places).with_colors([color(rgb)]).with_radii([3.0]);
-            layers.stays(path, &points.with_labels(texts).with_show_labels(false))?;
-        }
-        Ok(())
-    }
-
-    /// The points of all steps in one direction, plot by plot, and what they are.
-    fn points(&self, way: Way) -> Labels {
-        let mut points = Labels::default();
-        for (quantity, plot) in &self.plots {
-            let steps = self.found.steps.iter().zip(&self.names).enumerate();
-            for (number, (step, name)) in steps.filter(|(_, (step, _))| Way::of(step) == way) {
-                if let Some(place) = place_of(quantity, plot, number, step) {
-                    points.put(place, name.clone());
-                }
-            }
-        }
-        points
-    }
-
-    fn add_texts(&self, chunks: &mut Chunks) -> Result<(), RecordError> {
-        let (mut ticks, mut titles) = (Labels::default(), Labels::default());
-        for (place, (quantity, plot)) in self.plots.iter().enumerate() {
-            for (x, text) in quantity.x_ticks() {
-                ticks.put(plot.below(x, 2.0), text);
-            }
-            self.delay_ticks(place, plot, &mut ticks);
-            let shade = if quantity.depends { palette::BORDER } else { palette::RAW };
-            titles.put_in(shade, plot.above(plot.middle(), 56.0), clipped(&quantity.title));
-            titles.put_in(shade, plot.above(plot.middle(), 28.0), quantity.finding());
-        }
-        let mut layers = Layers::fixed(chunks, paths::AGAINST);
-        layers.texts("ticks", palette::RAW, [ticks])?;
-        layers.texts("titles", Ink::Own, [titles])?;
-        layers.texts("legend", Ink::Own, [self.legend()])
-    }
-
-    /// Seconds at the left of a row of plots, samples at its right.
-    fn delay_ticks(&self, place: usize, plot: &Plot, ticks: &mut Labels) {
-        let is_last = place + 1 == self.plots.len();
-        if place.is_multiple_of(self.columns) {
-            for y in plot.y_span().ticks(DELAY_TICKS) {
-                ticks.put(plot.left_of(y, 34.0), format!("{} s", number(y)));
-            }
-        }
-        if let Some(period_s) = self.period_s
-            && ((place + 1).is_multiple_of(self.columns) || is_last)
-        {
-            let Span { low, high } = plot.y_span();
-            for samples in Span::new(low / period_s, high / period_s).ticks(DELAY_TICKS) {
-                ticks.put(plot.right_of(samples * period_s, 26.0), number(samples));
-            }
-        }
-    }
-
-    fn legend(&self) -> Labels {
+    fn legend(&self) -> Vec<Text> {
         let axis = if self.period_s.is_some() {
             "delay: seconds left, samples right; point at a dot for its step"
         } else {
             "delay in seconds; point at a dot for its step"
         };
-        let entries: [(f32, f32, String, Rgb); 5] = [
+        let entries = [
             (SHEET.0 / 2.0, 0.0, self.headline(), palette::BORDER),
             (90.0, LEGEND, "● step up".to_owned(), palette::UP),
             (225.0, LEGEND, "● step down".to_owned(), palette::DOWN),
             (495.0, LEGEND, "line: median; shaded: middle half".to_owned(), palette::BORDER),
             (850.0, LEGEND, axis.to_owned(), palette::RAW),
         ];
-        let mut labels = Labels::default();
-        for (x, y, text, rgb) in entries {
-            labels.put_in(rgb, Vec2D::new(x, y), text);
-        }
-        labels
+        entries.map(|(x, y, text, rgb)| (Vec2D::new(x, y), text, rgb)).to_vec()
     }
 
     /// The answer in a sentence.
@@ -228,26 +142,104 @@ impl<'f> Page<'f> {
     /// The step of each segment, in words and as a bright point in every plot.
     fn add_cursor(
         &self,
-        chunks: &mut Chunks,
-        layout: &JointLayout<'_>,
-        placed: &[Placed<'_, '_>],
+        layers: &mut Layers<'_>,
+        placed: &[Step<'_, '_>],
     ) -> Result<(), RecordError> {
         let here = placed.iter().map(|placed| {
-            let step = placed.step.into_iter();
-            let of_step = step.flat_map(|(number, step)| {
-                self.plots.iter().filter_map(move |(q, plot)| place_of(q, plot, number, step))
+            let of_step = placed.step.into_iter().flat_map(|(number, step)| {
+                let place = move |(quantity, plot): &(Quantity, Plot)| {
+                    let place = (quantity.value(number)?, step.delay_s);
+                    let here = Shape::Dots(vec![place], 8.0);
+                    Some((Mark::new(role(palette::CANDIDATE), here).part("here"), *plot))
+                };
+                self.plots.iter().filter_map(place)
             });
             of_step.collect()
         });
-        let mut layers = Layers::rows(chunks, paths::AGAINST, layout.openings());
-        layers.order(50.0).points("here", palette::CANDIDATE, 8.0, here)?;
-        let style = Points2D::new([Vec2D::new(SHEET.0 - 280.0, LEGEND)]).with_show_labels(true);
-        let style = style.with_colors([color(palette::CANDIDATE)]).with_radii([HIDDEN]);
-        layers.stays("step", &style)?;
-        let words: Vec<_> = placed.iter().map(Placed::sentence).collect();
-        let lengths = vec![1; words.len()];
-        layers.push("step", &Points2D::update_fields().with_labels(words), &lengths)
+        panels::add_marks(layers, here)?;
+        let at = Vec2D::new(SHEET.0 - 280.0, LEGEND);
+        let words = placed.iter().map(|step| vec![(at, step.sentence(), palette::CANDIDATE)]);
+        layers.texts("step", words.collect())
     }
+}
+
+/// Where the plots lie on the sheet.
+#[derive(Clone, Copy)]
+struct Grid {
+    plots: usize,
+    columns: usize,
+}
+
+/// What stands at the sides of a plot: seconds at the left of a row of plots, samples of so many seconds
+/// at its right.
+struct Scales {
+    seconds: bool,
+    samples: Option<f64>,
+}
+
+impl Grid {
+    fn of(plots: usize) -> Self {
+        let columns = (1..=PLOTS).find(|side| side * side >= plots).unwrap_or(1);
+        Self { plots, columns }
+    }
+
+    fn scales(self, place: usize, period_s: Option<f64>) -> Scales {
+        let is_last = place + 1 == self.plots || (place + 1).is_multiple_of(self.columns);
+        let seconds = place.is_multiple_of(self.columns);
+        Scales { seconds, samples: period_s.filter(|_| is_last) }
+    }
+
+    /// The columns and the rows of a plot; above it is room for its names.
+    fn place(self, place: usize) -> ((f32, f32), RangeInclusive<f32>) {
+        let part =
+            |of: usize, low: f32, high: f32, n: usize| low + (high - low) * n as f32 / of as f32;
+        let column = |n| part(self.columns, 110.0, SHEET.0 - 30.0, n);
+        let row = |n| part(self.plots.div_ceil(self.columns), 60.0, HEIGHT, n);
+        let (across, down) = (place % self.columns, place / self.columns);
+        let rows = row(down) + 48.0..=row(down + 1) - 30.0;
+        ((column(across), column(across + 1) - 30.0), rows)
+    }
+}
+
+/// The delays of `steps`, which have these names, against a quantity.
+fn panel(quantity: &Quantity, (steps, names): (&[StepState], &[String]), scales: Scales) -> Panel {
+    let x_span = quantity.x_span();
+    let y_span = Span::around(steps.iter().map(|step| step.delay_s), 0.06);
+    let mut y = Axis::new(y_span, "", DELAY_TICKS);
+    for (_, text) in &mut y.ticks {
+        *text = if scales.seconds { format!("{text} s") } else { String::new() };
+    }
+    let shade = if quantity.depends { Role::Ink } else { Role::Faint };
+    let courses = quantity.courses(steps);
+    let band = |bins: &Vec<Bin>| {
+        let heights = bins.iter().map(|bin| [bin.x, bin.lower, bin.upper]).collect();
+        Mark::new(role(palette::BAND), Shape::Area(heights)).part("band")
+    };
+    let mut marks: Vec<Mark> = courses.iter().map(band).collect();
+    let Span { low: left, high: right } = x_span;
+    let Span { low, high } = y_span;
+    let frame = vec![(left, low), (right, low), (right, high), (left, high), (left, low)];
+    let frame = if quantity.depends { vec![frame] } else { Vec::new() };
+    marks.push(Mark::lines(Role::Ink, 1.4, frame).part("depends"));
+    for (part, rgb, way) in [("down", palette::DOWN, Way::Down), ("up", palette::UP, Way::Up)] {
+        let own = steps.iter().zip(names).enumerate();
+        let own = own.filter(|(_, (step, _))| Way::of(step) == way);
+        let dots = own.filter_map(|(number, (step, name))| {
+            Some(((quantity.value(number)?, step.delay_s), 3.0, name.clone()))
+        });
+        marks.push(Mark::new(role(rgb), Shape::Named(dots.collect())).part(part));
+    }
+    let medians = courses.iter().map(|bins| bins.iter().map(|bin| (bin.x, bin.median)).collect());
+    let medians = Mark::lines(shade, 2.0, medians.collect()).named(quantity.finding());
+    marks.push(medians.part("median"));
+    marks.extend(scales.samples.map(|period_s| {
+        let samples = Span::new(low / period_s, high / period_s).ticks(DELAY_TICKS).into_iter();
+        let words = samples.map(|n| ((right, n * period_s), number(n))).collect();
+        Mark::new(Role::Faint, Shape::Words(words)).part("samples")
+    }));
+    let name = clipped(&quantity.title);
+    let x = Axis { span: x_span, name, ticks: quantity.x_ticks(), is_logarithmic: false };
+    Panel { x, y, height: 160, marks }
 }
 
 /// Row of the legend on the sheet.
@@ -267,60 +259,4 @@ fn clipped(name: &str) -> String {
         return name.to_owned();
     }
     name.chars().take(NAME - 1).chain(['…']).collect()
-}
-
-/// Where a step lies in a plot, where its value is known.
-fn place_of(quantity: &Quantity, plot: &Plot, number: usize, step: &StepState) -> Option<Vec2D> {
-    Some(plot.at((*quantity.values.get(number)?)?, step.delay_s))
-}
-
-/// The place of a plot in a grid of `columns` and `rows`; room for a title above each.
-fn plot(place: usize, (columns, rows): (usize, usize), x: Span, y: Span) -> Plot {
-    let part = |of: usize, low: f32, high: f32, n: usize| low + (high - low) * n as f32 / of as f32;
-    let column = |n| part(columns, 80.0, SHEET.0 - 30.0, n);
-    let row = |n| part(rows, 60.0, HEIGHT, n);
-    let (across, down) = (place % columns, place / columns);
-    let rows = row(down) + 58.0..=row(down + 1) - 30.0;
-    Plot::within((column(across), column(across + 1) - 30.0), rows, x, y)
-}
-
-/// Distance of the strokes that fill a band, on the sheet.
-const STROKE: f32 = 2.5;
-
-/// The band between the quartiles, as one strip up and down: a sheet has no filled shape.
-fn band(plot: &Plot, bins: &[Bin]) -> Vec<Vec2D> {
-    let mut strip = Vec::new();
-    for pair in bins.windows(2) {
-        let [from, to] = [pair[0], pair[1]];
-        let width = plot.x(to.x) - plot.x(from.x);
-        let strokes = f64::from((width / STROKE).ceil().max(1.0));
-        let between = |a: f64, b: f64, part: f64| a + part * (b - a);
-        let stroke = |number: i32| {
-            let part = f64::from(number) / strokes;
-            let x = between(from.x, to.x, part);
-            let lower = plot.at(x, between(from.lower, to.lower, part));
-            let upper = plot.at(x, between(from.upper, to.upper, part));
-            if number % 2 == 0 { [lower, upper] } else { [upper, lower] }
-        };
-        #[expect(clippy::cast_possible_truncation, reason = "as many as fit on the sheet")]
-        strip.extend((0..=strokes as i32).flat_map(stroke));
-    }
-    strip
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::figure::Span;
-
-    #[test]
-    fn a_band_reaches_from_quartile_to_quartile() {
-        let plot = Plot::new(0.0..=100.0, Span::new(0.0, 1.0), Span::new(0.0, 10.0));
-        let bin = Bin { x: 0.0, lower: 2.0, median: 3.0, upper: 6.0 };
-        let strip = band(&plot, &bin.level(0.0, 1.0));
-        let rows = strip.iter().map(Vec2D::y);
-        let (low, high) = (rows.clone().fold(0.0, f32::max), rows.fold(100.0, f32::min));
-        assert!((low - 80.0).abs() < 1e-3 && (high - 40.0).abs() < 1e-3, "{low} {high}");
-        assert!(strip.windows(2).all(|pair| (pair[1].x() - pair[0].x()).abs() <= STROKE + 1e-3));
-    }
 }

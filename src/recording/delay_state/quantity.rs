@@ -23,7 +23,7 @@ pub(super) struct Quantity {
     pub(super) depends: bool,
     axis: Axis,
     /// Its value at each accepted step.
-    pub(super) values: Vec<Option<f64>>,
+    values: Vec<Option<f64>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,6 +86,11 @@ impl Quantity {
             axis: Axis::Direction,
             values: steps.iter().enumerate().map(place).map(Some).collect(),
         }
+    }
+
+    /// Its value at the accepted step of this number, where it is known.
+    pub(super) fn value(&self, step: usize) -> Option<f64> {
+        *self.values.get(step)?
     }
 
     /// Where its values lie.

@@ -9,9 +9,6 @@ use super::law::{Still, are_alike};
 use super::residual;
 use crate::experiment::Joint;
 use crate::recording::canvas::Span;
-use crate::recording::error::RecordError;
-use crate::recording::layers::{Ink, Layers};
-use crate::recording::palette;
 use crate::report::ImprovedJoint;
 use crate::wording::bracketed;
 
@@ -46,60 +43,29 @@ pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
             figures.push(residual::figure(joint, &step.comparison, number, candidate));
             continue;
         }
-        let before = at.checked_sub(1).and_then(|before| laws.get(before));
+        let before = at.checked_sub(1).and_then(|before| laws.get(before)).cloned();
         figures.push(Figure {
-            title: title(joint, shown),
+            names: names(joint, shown),
             x,
             y,
             points: held.clone(),
-            names: [
-                Some(still.legend(number, &step.comparison.fit.model, joint)),
-                before.map(|_| format!("revision {}", number - 1)),
-                proposed.map(|candidate| format!("with {}", candidate.name())),
-                held.iter().any(|held| held.fell).then(|| "input fell".to_owned()),
+            laws: [
+                Some((still.legend(number, &step.comparison.fit.model, joint), own)),
+                before.map(|law| (format!("revision {}", number - 1), law)),
+                proposed.map(|candidate| (format!("with {}", candidate.name()), next)),
             ],
-            laws: [own, before.cloned().unwrap_or_default(), next],
         });
     }
     Evidence { held, laws, figures }
 }
 
-fn title(joint: &Joint, shown: Shown) -> String {
+/// What is shown of a level, and what is over it.
+fn names(joint: &Joint, shown: Shown) -> [String; 2] {
     let (what, per) = match shown {
         Shown::Speed => ("measured speed", "/s"),
         Shown::Output => ("measured output", ""),
     };
     let unit = joint.output_unit.as_ref().map(|unit| format!("{unit}{per}"));
     let input = bracketed("held input", joint.input_unit.as_deref());
-    format!("{} at {input}", bracketed(what, unit.as_deref()))
-}
-
-/// Adds the points, and the laws drawn through them.
-pub(super) fn add(rows: &mut Layers<'_>, evidence: &Evidence) -> Result<(), RecordError> {
-    let figures = || evidence.figures.iter();
-    let own: Vec<_> = (0..evidence.figures.len()).map(palette::model).collect();
-    // The first one has none before it.
-    let before: Vec<_> = own.first().into_iter().chain(&own).take(own.len()).copied().collect();
-    let proposed = vec![palette::PROPOSED; own.len()];
-    let fallen = vec![palette::DOWN; own.len()];
-    for (name, which, rgbs, radius) in
-        [("before", 1, &before, 2.0), ("proposed", 2, &proposed, 2.0), ("law", 0, &own, 3.0)]
-    {
-        let laws = figures().map(|figure| figure.curve(which));
-        rows.strips(name, Ink::ByRow(rgbs.clone()), radius, laws)?;
-    }
-    rows.strips("uncertain", palette::MEASURED, 0.8, figures().map(Figure::uncertain))?;
-    let simulated = figures().map(Figure::simulated);
-    rows.points("simulated", Ink::ByRow(own.clone()), 3.5, simulated)?;
-    rows.points("points", palette::MEASURED, 4.0, figures().map(Figure::measured))?;
-    rows.points("fallen", palette::DOWN, 4.0, figures().map(Figure::fallen))?;
-    for (name, which, rgbs) in [
-        ("law_name", 0, own),
-        ("before_name", 1, before),
-        ("proposed_name", 2, proposed),
-        ("fallen_name", 3, fallen),
-    ] {
-        rows.texts(name, Ink::ByRow(rgbs), figures().map(|figure| figure.legend(which)))?;
-    }
-    Ok(())
+    [input, bracketed(what, unit.as_deref())]
 }

@@ -7,12 +7,10 @@ use super::{evidence, ladder, record, words};
 use crate::diagnosis::Comparison;
 use crate::explain::{Change, Revision};
 use crate::figure::Role;
-use crate::recording::canvas::Labels;
 use crate::recording::chunk::{Chunks, Index, Moment, lists};
 use crate::recording::error::RecordError;
 use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
-use crate::recording::palette;
 use crate::recording::paths;
 use crate::recording::{error_share, panels};
 use crate::report::{ComparedJoint, ImprovedJoint};
@@ -60,38 +58,17 @@ pub(in crate::recording) fn add(
     record::add(&mut steps.layers(paths::REVISION_RECORD), layout, &models)?;
     let evidence = evidence::evidence(improved);
     steps.evidence(&evidence)?;
-    let mut rows = steps.layers(paths::REVISION_SHEET);
-    ladder::add(&mut rows, improved)?;
-    evidence::add(&mut rows, &evidence)?;
-    around(&mut rows, improved, &evidence)?;
+    let rows = evidence.figures.iter().enumerate().map(|(at, figure)| {
+        let [ladder, ranking] = ladder::placed(improved, at);
+        vec![ladder, figure.placed(at), ranking]
+    });
+    panels::add(&mut steps.layers(paths::REVISION_SHEET), rows)?;
     steps.shares(&models)
-}
-
-/// The grid, the noise and the texts of the sheet.
-fn around(
-    rows: &mut Layers<'_>,
-    improved: &ImprovedJoint<'_>,
-    evidence: &evidence::Evidence,
-) -> Result<(), RecordError> {
-    let (mut noise, mut names, mut texts) = (Vec::new(), Vec::new(), Vec::new());
-    let mut grids = Vec::new();
-    for (at, figure) in evidence.figures.iter().enumerate() {
-        let (grid, mut labels) = figure.sheet().into_parts();
-        let mut floor = Labels::default();
-        noise.push(ladder::around(improved, at, &mut labels, &mut floor));
-        grids.push(grid);
-        names.push(floor);
-        texts.push(labels);
-    }
-    rows.strips("grid", palette::GRID, 0.7, grids)?;
-    rows.strips("noise", palette::NOISE, 1.6, noise)?;
-    rows.texts("noise_name", palette::NOISE, names)?;
-    rows.texts("texts", palette::BORDER, texts)
 }
 
 impl Steps<'_> {
     fn layers(&mut self, path: &str) -> Layers<'_> {
-        let layers = Layers::rows(self.chunks, path, self.index.clone()).back_to_front();
+        let layers = Layers::rows(self.chunks, path, self.index.clone());
         if self.opens_on_last { layers.opening_on_last() } else { layers }
     }
 
@@ -164,7 +141,7 @@ impl Steps<'_> {
             let model = (Role::of_revision(place), compared.comparison);
             error_share::placed(compared.joint, &[model])
         });
-        panels::add(&mut self.layers(paths::REVISION_SHARE), &of_each.collect::<Vec<_>>())
+        panels::add(&mut self.layers(paths::REVISION_SHARE), of_each)
     }
 }
 

@@ -8,9 +8,8 @@ use crate::recording::error::RecordError;
 use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
 use crate::recording::panels::{self, Placed};
-use crate::recording::shaded::{Spans, condition, validation, where_it_fails};
+use crate::recording::shaded::{Spans, named, validation};
 use crate::report::{ComparedJoint, Marked, Timeline, simulated_panels, worst_panel};
-use crate::wording::misfit_units;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 690.0);
@@ -38,7 +37,7 @@ pub(in crate::recording) fn add(
         ];
         whole.into_iter().chain(close_up).collect()
     };
-    panels::add(rows, &models.iter().enumerate().map(drawn).collect::<Vec<Vec<Placed>>>())
+    panels::add(rows, models.iter().enumerate().map(drawn))
 }
 
 /// What was not fitted, and where the model fails.
@@ -51,10 +50,6 @@ fn marked(compared: &ComparedJoint<'_>, timeline: &Timeline<'_>) -> Marked {
         ends.collect::<Vec<_>>()
     };
     let comparison = compared.comparison;
-    let fails = condition(comparison).map(|condition| {
-        let units = misfit_units(compared.joint);
-        let clauses: Vec<_> = condition.clauses.iter().map(|it| it.with_unit(&units)).collect();
-        (clauses.join(" and "), ends(where_it_fails(comparison)))
-    });
+    let fails = named(compared.joint, comparison).map(|(name, spans)| (name, ends(spans)));
     Marked { unfitted: ends(validation(comparison)), fails }
 }

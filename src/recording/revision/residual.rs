@@ -44,19 +44,16 @@ pub(super) fn figure(
         simulated: None,
     };
     let explained: Law = bins.iter().map(|(mean, _)| (mean.x, mean.explained)).collect();
-    let unit = bracketed("", joint.output_unit.as_deref());
     let heights = bins.iter().flat_map(|(mean, _)| [mean.residual, mean.explained, 0.0]);
     Figure {
-        title: format!("residual{unit} against {name}"),
+        names: [name.to_owned(), bracketed("residual", joint.output_unit.as_deref())],
         x: Span::around(bins.iter().map(|(mean, _)| mean.x), 0.03),
         y: Span::around(heights, 0.3),
         points: bins.iter().map(point).collect(),
-        laws: [Law::new(), Law::new(), explained],
-        names: [
-            Some(format!("residual of revision {number}: points")),
+        laws: [
+            Some((format!("residual of revision {number}: points"), Law::new())),
             None,
-            Some(format!("explained by {}", candidate.name())),
-            None,
+            Some((format!("explained by {}", candidate.name()), explained)),
         ],
     }
 }

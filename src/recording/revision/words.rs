@@ -3,7 +3,6 @@
 use super::ladder::{judged, noise};
 use crate::explain::{Change, Revision};
 use crate::fit::Termination;
-use crate::recording::canvas::short;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::report::{ImprovedJoint, MANY_TIMES_NOISE, Topic, change_in_words, parameter_table};
@@ -127,8 +126,8 @@ fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {
         times.map_or_else(String::new, |times| format!(", {} times the noise", rounded(times)));
     match place.checked_sub(1).and_then(error) {
         Some(before) => {
-            format!("Error: {} → {}{unit}{times}", short(before), short(now))
+            format!("Error: {} → {}{unit}{times}", rounded(before), rounded(now))
         }
-        None => format!("Error: {}{unit}{times}", short(now)),
+        None => format!("Error: {}{unit}{times}", rounded(now)),
     }
 }

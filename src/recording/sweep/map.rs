@@ -2,7 +2,6 @@
 //! step, and what its rows are.
 
 use rerun::components::{DrawOrder, MagnificationFilter};
-use rerun::datatypes::Vec2D;
 use rerun::{Image, Transform3D};
 
 use super::swept::{Cell, Opinion, Swept};
@@ -60,12 +59,6 @@ pub(super) fn named(grid: &Grid) -> Vec<Block> {
     low_passes.iter().map(with_method).chain(whole).collect()
 }
 
-/// Where the name of a block is put: left of the middle of its rows.
-pub(super) fn beside(plot: &Plot, block: &Block) -> Vec2D {
-    let middle = block.first as f64 + 0.5 * block.count as f64;
-    plot.left_of(plot.y_span().high - middle, 98.0)
-}
-
 /// Rows of combinations that follow one another and are of `run`: the first and the last.
 pub(super) fn rows_of(grid: &Grid, run: usize) -> Vec<(usize, usize)> {
     let mut rows: Vec<(usize, usize)> = Vec::new();
@@ -103,9 +96,9 @@ pub(super) fn picture(swept: &Swept<'_>, plot: &Plot) -> Option<(Image, Transfor
     let size = [u32::try_from(width).ok()?, u32::try_from(height).ok()?];
     let image = Image::from_rgb24(bytes, size).with_draw_order(DrawOrder::from(-10.0));
     let image = image.with_magnification_filter(MagnificationFilter::Nearest);
-    let [left, top] = plot.at(plot.x_span().low, plot.y_span().high).0;
-    let right = plot.x(plot.x_span().low + (width * across) as f64);
-    let bottom = plot.y(plot.y_span().high - (height * down) as f64);
+    let [left, top] = [plot.left, plot.top];
+    let right = plot.x(plot.x_span.low + (width * across) as f64);
+    let bottom = plot.y(plot.y_span.high - (height * down) as f64);
     let scale = [(right - left) / width as f32, (bottom - top) / height as f32, 1.0];
     Some((image, Transform3D::from_translation([left, top, 0.0]).with_scale(scale)))
 }

@@ -3,29 +3,27 @@
 
 use std::collections::BTreeMap;
 
-use rerun::Points2D;
-use rerun::components::DrawOrder;
 use rerun::datatypes::Vec2D;
 
-use super::map::{Block, beside, blocks, named, picture, rows_of};
+use super::map::{Block, blocks, named, picture, rows_of};
 use super::swept::{Opinion, Swept};
 use crate::delay::sweep::{Factor, SweptStep};
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape};
 use crate::numerics::quantile;
-use crate::recording::canvas::{Labels, Plot, SHEET, Span};
+use crate::recording::canvas::{LINE, Plot, SHEET, Span, width};
 use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
-use crate::recording::layers::{Ink, Layers};
-use crate::recording::palette::{self, Rgb, color};
+use crate::recording::layers::Layers;
+use crate::recording::palette::{self, Rgb, role};
+use crate::recording::panels::{self, Placed};
 use crate::recording::paths;
-use crate::recording::sheet::{Sheet, TITLE};
 use crate::report::settings_in_words;
-use crate::wording::number;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1130.0);
 
 /// Left and right ends of the plots: names stand on the left, counts on the right.
-const SIDES: (f32, f32) = (196.0, SHEET.0 - 70.0);
+const SIDES: (f32, f32) = (250.0, SHEET.0 - 70.0);
 
 /// Points times combinations up to which the pointer names settings in words, which takes
 /// time; with more it counts them.
@@ -35,23 +33,30 @@ const NAMED: usize = 20_000_000;
 pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
     let page = Page::of(swept);
     let mut layers = Layers::fixed(chunks, paths::SHEET);
-    layers.sheets([page.grid()])?;
-    page.add_delays(&mut layers)?;
-    page.add_sensitive(&mut layers)?;
-    page.add_map(&mut layers)?;
-    layers.texts("legend", Ink::Own, [legend(swept)])?;
-    page.add_setting(&mut Layers::rows(chunks, paths::SHEET, swept.settings()))?;
-    page.add_step(&mut Layers::rows(chunks, paths::SHEET, swept.index.clone()))
+    let placed = [
+        Placed::new(page.delays(), SIDES, 100.0..=390.0),
+        Placed::new(page.causes(), SIDES, 466.0..=700.0),
+        Placed::new(page.map(), SIDES, 772.0..=1042.0),
+    ];
+    let plots = [0, 1, 2].map(|place: usize| placed[place].plot);
+    if let Some((image, place)) = picture(swept, &plots[2]) {
+        layers.stays("map", &image)?;
+        layers.stays("map", &place)?;
+    }
+    panels::add(&mut layers, [placed.into()])?;
+    let answer = (Vec2D::new(SHEET.0 / 2.0, 4.0), headline(swept), palette::BORDER);
+    layers.texts("answer", vec![vec![answer]])?;
+    page.add_setting(&mut Layers::rows(chunks, paths::SHEET, swept.settings()).in_front(), plots)?;
+    let mut rows = Layers::rows(chunks, paths::SHEET, swept.index.clone()).in_front();
+    page.add_step(&mut rows, plots)
 }
 
 /// The three plots on their sheet, which share the axis of steps.
 struct Page<'s> {
     swept: &'s Swept<'s>,
-    delays: Plot,
-    sensitive: Plot,
-    map: Plot,
-    /// What delays may be sensitive to.
-    causes: Vec<(String, Cause)>,
+    x: Span,
+    /// Rows of the map: a combination each, from the top down.
+    rows: Span,
 }
 
 /// What a step is sensitive to.
@@ -96,16 +101,8 @@ impl Cause {
 impl<'s> Page<'s> {
     fn of(swept: &'s Swept<'s>) -> Self {
         let x = Span::new(0.5, swept.steps.len().max(1) as f64 + 0.5);
-        let causes = Cause::all(swept);
-        let rows = Span::new(0.0, causes.len() as f64);
-        let combinations = Span::new(0.0, swept.grid.combinations().len().max(1) as f64);
-        Self {
-            swept,
-            delays: Plot::within(SIDES, 100.0..=390.0, x, delay_span(swept)),
-            sensitive: Plot::within(SIDES, 466.0..=700.0, x, rows),
-            map: Plot::within(SIDES, 772.0..=1042.0, x, combinations),
-            causes,
-        }
+        let rows = Span::new(0.0, swept.grid.combinations().len().max(1) as f64);
+        Self { swept, x, rows }
     }
 
     /// Each step with its place on the axis.
@@ -113,165 +110,154 @@ impl<'s> Page<'s> {
         (1_u32..).map(f64::from).zip(self.swept.steps.iter().map(|(step, _)| *step))
     }
 
-    /// Frames, ticks and titles.
-    fn grid(&self) -> Sheet {
-        /// Ticks of the delay, about.
-        const TICKS: f64 = 6.0;
-        let mut sheet = Sheet::default();
-        let ticks: Vec<f64> = self.delays.x_span().ticks(12.0);
-        let seconds = self.delays.y_span().ticks(TICKS).into_iter();
-        let seconds: Vec<_> = seconds.map(|y| (y, format!("{} s", number(y)))).collect();
-        sheet.outline(&self.delays, &ticks, &seconds);
-        sheet.outline(&self.sensitive, &ticks, &[]);
-        sheet.outline(&self.map, &[], &[]);
-        sheet.title(&self.delays, TITLE, "delay of each step, with every setting");
-        sheet.title(&self.sensitive, TITLE, "steps sensitive to");
-        for x in ticks {
-            sheet.put(self.map.below(x, 2.0), number(x));
-        }
-        let end = Vec2D::new(SIDES.1 + 34.0, self.map.below(1.0, 2.0).y());
-        sheet.put(end, "step");
-        for ((name, _), row) in self.causes.iter().zip(0_u32..) {
-            let y = self.sensitive.y_span().high - f64::from(row) - 0.5;
-            sheet.put(self.sensitive.left_of(y, 98.0), name);
-        }
-        sheet
-    }
-
     /// Every delay that is reported, and what is agreed on.
-    fn add_delays(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
+    fn delays(&self) -> Panel {
         let (mut ranges, mut agreed) = (Vec::new(), Vec::new());
         for (x, step) in self.steps() {
             let y = |samples: f64| samples * step.period_s;
-            if let Some(spread) = step.spread {
-                let ends = [y(spread.min), y(spread.max)];
-                ranges.push(ends.map(|y| self.delays.at(x, y)).to_vec());
-            }
-            if let Some(agreement) = step.agreement {
-                let y = y(agreement.delay);
-                agreed.push([x - 0.4, x + 0.4].map(|x| self.delays.at(x, y)).to_vec());
-            }
+            ranges.extend(step.spread.map(|all| vec![(x, y(all.min)), (x, y(all.max))]));
+            agreed.extend(
+                step.agreement.map(|most| vec![(x - 0.4, y(most.delay)), (x + 0.4, y(most.delay))]),
+            );
         }
-        layers.strips("range", palette::GRID, 1.0, [ranges])?;
-        layers.order(45.0).strips("agreed", palette::ACCEPTED, 1.8, [agreed])?;
         // A point for all settings that report one delay of a step.
-        let mut groups: Vec<(f64, &SweptStep, Group)> = Vec::new();
-        for (x, step) in self.steps() {
-            groups.extend(Group::all(self.swept, step).into_iter().map(|group| (x, step, group)));
-        }
+        let groups = self.steps().flat_map(|(x, step)| {
+            Group::all(self.swept, step).into_iter().map(move |group| (x, step, group))
+        });
+        let groups: Vec<(f64, &SweptStep, Group)> = groups.collect();
         let is_named = groups.len().saturating_mul(self.swept.grid.combinations().len()) <= NAMED;
-        for (path, opinion, order) in [
-            ("same", Opinion::Same, 30.0),
-            ("longer", Opinion::Longer, 40.0),
-            ("shorter", Opinion::Shorter, 40.0),
-        ] {
-            let own = || groups.iter().filter(|(.., group)| group.opinion == opinion);
-            let place = |x: f64, step: &SweptStep, group: &Group| {
-                self.delays.at(x, group.delay * step.period_s)
-            };
-            let name = |step: &SweptStep, group: &Group| {
-                let words = is_named.then(|| format!(": {}", group.in_words(self.swept)));
-                group.name(step) + &words.unwrap_or_default()
-            };
-            let points = Points2D::new(own().map(|(x, step, group)| place(*x, step, group)))
-                .with_radii(own().map(|(_, step, group)| group.radius(step)))
-                .with_labels(own().map(|(_, step, group)| name(step, group)))
-                .with_colors([color(opinion.rgb())])
-                .with_show_labels(false)
-                .with_draw_order(DrawOrder::from(order));
-            layers.stays(path, &points)?;
-        }
-        Ok(())
+        let of_opinion = |(part, name, opinion): (&'static str, &str, Opinion)| {
+            let own = groups.iter().filter(|(.., group)| group.opinion == opinion);
+            let dots = own.map(|(x, step, group)| {
+                let mut name = group.name(step);
+                if is_named {
+                    name += &format!(": {}", group.in_words(self.swept));
+                }
+                ((*x, group.delay * step.period_s), group.radius(step), name)
+            });
+            Mark::new(role(opinion.rgb()), Shape::Named(dots.collect())).named(name).part(part)
+        };
+        let [same, longer, shorter] = [
+            ("same", "as most settings say", Opinion::Same),
+            ("longer", "longer", Opinion::Longer),
+            ("shorter", "shorter", Opinion::Shorter),
+        ]
+        .map(of_opinion);
+        let ranges = Mark::lines(Role::Grid, 1.0, ranges).part("range");
+        let agreed = Mark::lines(Role::Accepted, 1.8, agreed).part("agreed");
+        let agreed = agreed.named("the delay that most agree on");
+        let name = "delay of each step, with every setting [s]";
+        let (x, y) = (self.axis().bare(), Axis::new(delay_span(self.swept), name, 6.0));
+        Panel { x, y, height: 190, marks: vec![ranges, same, longer, shorter, agreed] }
+    }
+
+    fn axis(&self) -> Axis {
+        Axis::new(self.x, "", 12.0)
     }
 
     /// A mark for each step beside what it is sensitive to, and how many they are.
-    fn add_sensitive(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
-        let (mut counts, mut marks, mut colors) = (Labels::default(), Vec::new(), Vec::new());
-        let slot = self.sensitive.x(2.0) - self.sensitive.x(1.0);
-        for ((_, cause), row) in self.causes.iter().zip(0_u32..) {
-            let y = self.sensitive.y_span().high - f64::from(row) - 0.5;
+    fn causes(&self) -> Panel {
+        let causes = Cause::all(self.swept);
+        let names: Vec<String> = causes.iter().map(|(name, _)| name.clone()).collect();
+        let slot = f64::from(SIDES.1 - SIDES.0) / (self.x.high - self.x.low);
+        let mut counts = Vec::new();
+        let rows = (0..).map(|row: u32| -f64::from(row)).zip(&causes);
+        let mark = |(y, (_, cause)): (f64, &(String, Cause))| {
             let sensitive = self.steps().filter(|(_, step)| cause.moves(step));
-            let places: Vec<_> = sensitive.map(|(x, _)| self.sensitive.at(x, y)).collect();
-            counts.put(self.sensitive.right_of(y, 30.0), places.len().to_string());
-            colors.extend(std::iter::repeat_n(color(cause.rgb()), places.len()));
-            marks.extend(places);
-        }
-        let points = Points2D::new(marks).with_colors(colors).with_radii([(0.5 * slot).min(7.0)]);
-        layers.stays("hanging", &points)?;
-        layers.texts("counts", palette::BORDER, [counts])
+            let places: Vec<Place> = sensitive.map(|(x, _)| (x, y)).collect();
+            counts.push(((self.x.high, y), places.len().to_string()));
+            let dots = Shape::Dots(places, (0.5 * slot).min(7.0));
+            Mark::new(role(cause.rgb()), dots).part("hanging")
+        };
+        let mut marks: Vec<Mark> = rows.map(mark).collect();
+        marks.push(Mark::new(Role::Ink, Shape::Words(counts)).part("counts"));
+        let x = Axis { name: "steps sensitive to".to_owned(), ..self.axis().bare() };
+        Panel { x, y: Axis::of_names(&names, ""), height: 150, marks }
     }
 
-    /// The picture of all settings and steps, and what its rows are.
-    fn add_map(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
-        /// Names nearer than this would cover each other.
-        const APART: f32 = 36.0;
-        if let Some((image, place)) = picture(self.swept, &self.map) {
-            layers.stays("map", &image)?;
-            layers.stays("map", &place)?;
-        }
+    /// What is around the picture of all settings and steps: borders between its rows, and their names.
+    fn map(&self) -> Panel {
         let (methods, low_passes) = blocks(self.swept.grid);
-        let border = |block: &Block| self.map.level(self.row(block.first)).to_vec();
-        let thin = low_passes.iter().map(|block| (border(block), color(palette::GRID)));
-        let thick = methods.iter().map(|block| (border(block), color(palette::BORDER)));
-        layers.colored("blocks", 0.8, [thin.chain(thick).collect()])?;
-        let mut texts = Labels::default();
-        for block in named(self.swept.grid) {
-            let place = beside(&self.map, &block);
-            if texts.places.last().is_none_or(|last| place.y() - last.y() > APART) {
-                texts.put(place, block.label);
-            }
-        }
-        layers.texts("rows", palette::BORDER, [texts])
+        let border = |block: &Block| {
+            let row = self.row(block.first);
+            vec![(self.x.low, row), (self.x.high, row)]
+        };
+        let lines = |blocks: &[Block]| blocks.iter().map(border).collect();
+        let marks = vec![
+            Mark::lines(Role::Grid, 0.8, lines(&low_passes)).part("blocks"),
+            Mark::lines(Role::Ink, 0.8, lines(&methods)).part("blocks"),
+        ];
+        let name = |block: Block| {
+            (self.rows.high - block.first as f64 - 0.5 * block.count as f64, block.label)
+        };
+        let ticks = named(self.swept.grid).into_iter().map(name).collect();
+        // An axis with a name is one of numbers, of which some may be left out.
+        let name = "which settings agree; black: step not accepted".to_owned();
+        let y = Axis { span: self.rows, name, ticks, is_logarithmic: false };
+        Panel { x: Axis { name: "step".to_owned(), ..self.axis() }, y, height: 180, marks }
     }
 
     /// The upper edge of a row.
     fn row(&self, row: usize) -> f64 {
-        self.map.y_span().high - row as f64
+        self.rows.high - row as f64
     }
 
     /// The setting under the cursor: its delays, its rows, its name.
-    fn add_setting(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
+    fn add_setting(
+        &self,
+        layers: &mut Layers<'_>,
+        [delays, _, map]: [Plot; 3],
+    ) -> Result<(), RecordError> {
         let runs = || 0..self.swept.names.len();
-        let delays = |run: usize| {
-            let place = |(x, step): (f64, &SweptStep)| {
-                Some(self.delays.at(x, Swept::delay(step, run)? * step.period_s))
-            };
-            self.steps().filter_map(place).collect()
-        };
-        layers.points("setting/delays", palette::HERE, 4.0, runs().map(delays))?;
-        let frame = |run: usize| {
+        let row = |run: usize| {
+            let place =
+                |(x, step): (f64, &SweptStep)| Some((x, Swept::delay(step, run)? * step.period_s));
+            let dots = Shape::Dots(self.steps().filter_map(place).collect(), 4.0);
             let frame = |(first, last): (usize, usize)| {
-                let ends = [first, last + 1].map(|row| self.map.level(self.row(row)));
-                let [[a, b], [d, c]] = ends;
-                vec![a, b, c, d, a]
+                rectangle((self.x.low, self.row(first)), (self.x.high, self.row(last + 1)))
             };
-            rows_of(self.swept.grid, run).into_iter().map(frame).collect()
+            let frames = rows_of(self.swept.grid, run).into_iter().map(frame).collect();
+            let here = role(palette::HERE);
+            vec![
+                (Mark::new(here, dots).part("setting/delays"), delays),
+                (Mark::lines(here, 1.3, frames).part("setting/frame"), map),
+            ]
         };
-        layers.strips("setting/frame", palette::HERE, 1.3, runs().map(frame))?;
+        panels::add_marks(layers, runs().map(row))?;
         let all = self.swept.names.len();
         let name = |run: usize| {
             let name = self.swept.names.get(run).map_or("", String::as_str);
-            let text = format!("which settings agree; framed: {name} ({} of {all})", run + 1);
-            Labels::one(self.map.above(self.map.middle(), TITLE), text)
+            let text = format!("framed: {name} ({} of {all})", run + 1);
+            let at = Vec2D::new(map.left + 0.5 * width(&text), map.top - LINE);
+            vec![(at, text, palette::HERE)]
         };
-        layers.texts("setting/name", palette::HERE, runs().map(name))
+        layers.texts("setting/name", runs().map(name).collect())
     }
 
     /// The step under the cursor: a frame through all plots.
-    fn add_step(&self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
-        let frame = |(x, _): (f64, &SweptStep)| {
-            let side = |plot: &Plot| plot.column(x - 0.5, x + 0.5);
-            [&self.delays, &self.sensitive, &self.map].map(side).to_vec()
+    fn add_step(&self, layers: &mut Layers<'_>, plots: [Plot; 3]) -> Result<(), RecordError> {
+        let row = |(x, _): (f64, &SweptStep)| {
+            let frame = |plot: Plot| {
+                let Span { low, high } = plot.y_span;
+                let frame = vec![rectangle((x - 0.5, low), (x + 0.5, high))];
+                (Mark::lines(role(palette::HERE), 1.3, frame).part("step/frame"), plot)
+            };
+            plots.map(frame).to_vec()
         };
-        layers.strips("step/frame", palette::HERE, 1.3, self.steps().map(frame))?;
-        let name = |(x, step): (f64, &SweptStep)| {
-            let mut labels = Labels::default();
-            let text = format!("step {} at {:.2} s", step.number, step.time_s);
-            labels.put_whole(self.map.above(x, TITLE), text);
-            labels
+        panels::add_marks(layers, self.steps().map(row))?;
+        let map = plots[2];
+        let name = |(_, step): (f64, &SweptStep)| {
+            let text = format!("framed: step {} at {:.2} s", step.number, step.time_s);
+            let at = Vec2D::new(map.right - 0.5 * width(&text), map.top - LINE);
+            vec![(at, text, palette::HERE)]
         };
-        layers.texts("step/name", palette::HERE, self.steps().map(name))
+        layers.texts("step/name", self.steps().map(name).collect())
     }
+}
+
+/// The line about an area.
+fn rectangle((left, low): Place, (right, high): Place) -> Vec<Place> {
+    vec![(left, low), (right, low), (right, high), (left, high), (left, low)]
 }
 
 /// Settings that report one delay of a step.
@@ -297,8 +283,8 @@ impl Group {
     }
 
     /// The more settings report it, the larger it is; what disagrees is never small.
-    fn radius(&self, step: &SweptStep) -> f32 {
-        let share = self.votes as f32 / step.tried.max(1) as f32;
+    fn radius(&self, step: &SweptStep) -> f64 {
+        let share = self.votes as f64 / step.tried.max(1) as f64;
         let least = if self.opinion == Opinion::Same { 1.4 } else { 2.4 };
         least + 3.0 * share.sqrt()
     }
@@ -335,25 +321,7 @@ fn delay_span(swept: &Swept<'_>) -> Span {
     Span::around(ends.chain(agreed), 0.06)
 }
 
-/// The answer in a line, and what the colours mean.
-fn legend(swept: &Swept<'_>) -> Labels {
-    /// Row of the legend on the sheet.
-    const LEGEND: f32 = 1088.0;
-    let entries: [(f32, f32, String, Rgb); 6] = [
-        (SHEET.0 / 2.0, 4.0, headline(swept), palette::BORDER),
-        (330.0, LEGEND, "● as most settings say".to_owned(), palette::SAME),
-        (570.0, LEGEND, "● longer".to_owned(), palette::LONGER),
-        (720.0, LEGEND, "● shorter".to_owned(), palette::SHORTER),
-        (930.0, LEGEND, "black: step not accepted".to_owned(), palette::BORDER),
-        (1240.0, LEGEND, "– the delay that most agree on".to_owned(), palette::ACCEPTED),
-    ];
-    let mut labels = Labels::default();
-    for (x, y, text, rgb) in entries {
-        labels.put_in(rgb, Vec2D::new(x, y), text);
-    }
-    labels
-}
-
+/// The answer in a line.
 fn headline(swept: &Swept<'_>) -> String {
     let name = &swept.reported.joint.name;
     let judged = swept.reported.sweep.judged().count();

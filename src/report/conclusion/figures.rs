@@ -3,7 +3,6 @@
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
 use crate::fit::{AssessedModel, follows_input, time_constant_s};
-use crate::report::add::gained;
 use crate::report::finding::Finding;
 use crate::wording::{effects_text, measure, percent, rounded};
 
@@ -36,7 +35,7 @@ impl Finding<'_> {
     /// `dead_band and end_stop explain 70 % of the error beyond the noise (2.89 to 0.88 deg)`.
     pub(super) fn explained(&self) -> Option<String> {
         let before = self.before?;
-        let mut gained = gained(&before.fit.model, &self.comparison().fit.model);
+        let mut gained = before.gained(&self.comparison().fit.model);
         let doubtful = self.attribution.map_or(&[][..], |known| &known.doubtful);
         gained.retain(|id| doubtful.iter().all(|one| one.effect != *id));
         let names = self.gained_in_words(gained)?;
@@ -47,7 +46,7 @@ impl Finding<'_> {
     /// `70 % of the error beyond the noise (2.89 to 0.88 deg)`.
     pub(super) fn explained_share(&self) -> Option<String> {
         let share = percent(self.consequence().explained()?);
-        let (from, to) = (rounded(self.before?.judged()?.rmse), self.output(self.error()));
+        let (from, to) = (rounded(self.before?.rmse()?), self.output(self.error()));
         Some(format!("{share} of the error beyond the noise ({from} to {to})"))
     }
 

@@ -9,13 +9,13 @@ use super::difference::differences_json;
 use super::document::{document, joined, without_empty};
 use super::settings::settings_json;
 use crate::delay::{
-    AgainstState, Bounds, DeadTime, DelayRow, DelayTable, Finding, KindDelay, OnsetModel, Settings,
-    Tracking, Unknown, Window,
+    AgainstState, Bounds, DeadTime, DelayTable, Finding, KindDelay, OnsetModel, Settings, Tracking,
+    Unknown, Window,
 };
 use crate::experiment::{Experiment, Joint, Source};
 use crate::report::dead_time_sentences;
 use crate::report::decisions::decision_json;
-use crate::report::delay_table;
+use crate::report::delay_table::level_json;
 use crate::report::doubt::doubted;
 use crate::report::settings::own_settings;
 use crate::report::{Against, EstimatedJoint, JointSummary};
@@ -118,7 +118,7 @@ fn facts(estimated: EstimatedJoint<'_>, asked: &Settings, table: &DelayTable) ->
     let summary = JointSummary::with(estimated, table.kinds.clone());
     let rejected = summary.rejected.iter();
     let rejected = rejected.map(|(condition, count)| (condition.to_string(), (*count).into()));
-    let rows = table.rows.iter().map(|row| row_json(&joint.name, row));
+    let rows = table.rows.iter().map(|row| level_json(&joint.name, row));
     let facts = json!({
         "joint": joint.name,
         "input_unit": joint.input_unit,
@@ -169,15 +169,6 @@ fn onset_json(model: &OnsetModel) -> Value {
 /// Where an output comes to rest: at `offset + gain · input`.
 fn tracking_json(found: Tracking) -> Value {
     json!({ "offset": found.offset(), "gain": found.gain() })
-}
-
-/// A row of the delay table, with the limits of its bins.
-fn row_json(joint: &str, row: &DelayRow) -> Value {
-    let limits = json!({
-        "level_from_limits": row.from_limits,
-        "level_to_limits": row.to_limits,
-    });
-    joined([delay_table::row_json(joint, row).into(), limits])
 }
 
 /// All steps of a kind; a median only where it is typical.

@@ -1,13 +1,13 @@
 //! A joint and its model, as every command that fits models shows them.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use crate::diagnosis::failure::{FailsWhere, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures};
 use crate::experiment::{Joint, Trial};
-use crate::fit::{AssessedModel, Parameter};
 use crate::report::compare::ComparedJoint;
-use crate::wording::{effect_ids, parameter_units};
+use crate::report::parameters::parameters_json;
+use crate::wording::effect_ids;
 
 /// A model and how it compares with the measurement; `fails_horizon` is where the simulation restarts
 /// of which `fails_where` and `regions` are.
@@ -20,7 +20,7 @@ pub(super) fn model_json(compared: &ComparedJoint<'_>) -> Value {
         "model": model,
         "revision": revision,
         "effects": effect_ids(&comparison.fit.model),
-        "parameters": parameters(joint, &comparison.fit),
+        "parameters": parameters_json(joint, &comparison.fit),
         "error": error_json(comparison),
         "lack_of_fit": comparison.lack_of_fit,
         "whiteness": comparison.whiteness,
@@ -55,18 +55,6 @@ fn figures(error: ErrorFigures, rmse_raw: Option<f64>, rmse_free: Option<f64>) -
         "fit_percent": error.fit_percent,
         "max": error.max,
     })
-}
-
-/// Parameters by name, with their standard errors and units.
-pub(super) fn parameters(joint: &Joint, fit: &AssessedModel) -> Map<String, Value> {
-    let parameter = |(parameter, unit): (&Parameter, String)| {
-        let Parameter { name, value, std_error, status } = parameter;
-        let value = json!({
-            "value": value, "std_error": std_error, "unit": unit, "status": status,
-        });
-        (name.clone(), value)
-    };
-    fit.parameters.iter().zip(parameter_units(joint, &fit.model)).map(parameter).collect()
 }
 
 fn condition(found: &FailsWhere) -> Value {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::conclusion::{conclusion_json, finding_json};
 use super::difference::differences_json;
 use super::document::{document, joined, without_empty};
-use super::model::{error_json, model_json, parameters};
+use super::model::{error_json, model_json};
 use crate::diagnosis::RegionPair;
 use crate::experiment::Joint;
 use crate::explain::{Change, Revision};
@@ -15,6 +15,7 @@ use crate::report::compare::{ComparedJoint, ComparedModels, model_differences};
 use crate::report::finding::Finding;
 use crate::report::improve::ImprovedJoint;
 use crate::report::page::Report;
+use crate::report::parameters::parameters_json;
 use crate::wording::effect_ids;
 
 /// The document of `compare --format json`.
@@ -124,7 +125,7 @@ fn revision(joint: &Joint, number: u32, revision: &Revision) -> Value {
         "added": added,
         "removed": removed,
         "effects": effect_ids(&fit.model),
-        "parameters": parameters(joint, fit),
+        "parameters": parameters_json(joint, fit),
         "error": error_json(&revision.comparison),
         "lack_of_fit": revision.comparison.lack_of_fit,
     })

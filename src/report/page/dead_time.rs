@@ -52,9 +52,9 @@ pub(crate) fn panel(found: &DeadTime, timeline: &Timeline<'_>) -> Option<Panel> 
         marks.push(Mark::new(Role::Noise, Shape::Band(low_s, high_s)).named("whole record"));
     }
     let reaches = known.iter().map(reach).collect();
-    marks.push(Mark::new(Role::Smoothed, Shape::Lines(reaches, 1.0)).named("window"));
-    marks.push(Mark::new(Role::Faint, Shape::Lines(intervals, 1.4)).named("interval"));
-    marks.push(Mark::new(Role::Accepted, Shape::Dots(dots)).named("dead time"));
+    marks.push(Mark::lines(Role::Smoothed, 1.0, reaches).named("window"));
+    marks.push(Mark::lines(Role::Faint, 1.4, intervals).named("interval"));
+    marks.push(Mark::dots(Role::Accepted, dots).named("dead time"));
     let axis = Axis::new(y, "dead time [s]", 5.0);
     Some(Panel { x: timeline.axis(), y: axis, height: 150, marks })
 }
@@ -69,7 +69,7 @@ fn curve(estimated: EstimatedJoint<'_>, found: &DeadTime, file: String) -> Optio
         Mark::new(Role::Noise, Shape::Spans(vec![(bounds.low_s, bounds.high_s)], 1.0))
             .named("interval"),
         Mark::new(Role::Accepted, Shape::Verticals(vec![bounds.value_s], 1.4)).named("dead time"),
-        Mark::new(Role::Error, Shape::Lines(vec![points], 1.4)).named("error"),
+        Mark::lines(Role::Error, 1.4, vec![points]).named("error"),
     ];
     let panel = Panel { x, y: Axis::new(y, "error over the least", 5.0), height: 150, marks };
     let name = format!("Prediction error of {} by dead time", estimated.joint.name);

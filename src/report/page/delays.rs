@@ -3,12 +3,12 @@
 use super::document::{Figure, HALF, WIDTH, slug};
 use super::timeline::Timeline;
 use crate::delay::{AgainstOfKind, AgainstState, DelayProfile, DelayTable, Transition};
-use crate::figure::delay_levels::{self, Series};
+use crate::figure::delay_levels;
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, thinned_places};
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;
 use crate::report::doubt::doubted;
-use crate::wording::{bracketed, capitalized, p_cell};
+use crate::wording::{capitalized, p_cell};
 
 /// Steps between which the delay is drawn.
 const MOST_STEPS: usize = 2000;
@@ -45,13 +45,13 @@ pub(crate) fn panel(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> O
     // Of more steps than that only a filled area would be seen.
     let are_apart = accepted.len() <= MOST_STEPS;
     if are_apart {
-        let held = Mark::new(Role::Smoothed, Shape::Lines(held, 1.0));
+        let held = Mark::lines(Role::Smoothed, 1.0, held);
         marks.push(held.named("delay of every sample"));
     }
     if !intervals.is_empty() && are_apart {
-        marks.push(Mark::new(Role::Faint, Shape::Lines(intervals, 1.4)).named("interval"));
+        marks.push(Mark::lines(Role::Faint, 1.4, intervals).named("interval"));
     }
-    marks.push(Mark::new(Role::Accepted, Shape::Dots(accepted)).named("accepted step"));
+    marks.push(Mark::dots(Role::Accepted, accepted).named("accepted step"));
     if !rejected.is_empty() {
         marks.push(Mark::new(Role::Rejected, Shape::Crosses(rejected)).named("rejected step"));
     }
@@ -113,37 +113,13 @@ pub(super) fn over_levels(
     found: &DelayTable,
     file: String,
 ) -> Option<Figure> {
-    let all = delay_levels::series(found);
-    let (x, y) = delay_levels::spans(&all)?;
-    let input = bracketed("level of the input", estimated.joint.input_unit.as_deref());
-    let panel = Panel {
-        x: Axis::new(x, input, 8.0),
-        y: Axis::new(y, "delay [s]", 5.0),
-        height: 220,
-        marks: all.iter().flat_map(|one| level_marks(one, y)).collect(),
-    };
+    let panel = delay_levels::panel(found, estimated.joint.input_unit.as_deref())?;
     let name = format!("Delay of {} by level", estimated.joint.name);
     let caption = "The median delay over the level, for a stop that before it, else that after \
                    it, with its 95 % interval and how many of how many steps were accepted; where \
                    none was, a cross stands at the bottom."
         .to_owned();
     Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
-}
-
-fn level_marks(one: &Series, y: Span) -> Vec<Mark> {
-    let bottom = y.low + 0.04 * (y.high - y.low);
-    let cut = |line: &Vec<Place>| line.iter().map(|place| (place.0, place.1.min(y.high))).collect();
-    let without: Vec<_> =
-        one.without.iter().map(|(x, text)| ((*x, bottom), text.clone())).collect();
-    let crosses = without.iter().map(|(place, _)| *place).collect();
-    let dots = one.medians.iter().map(|(place, _)| *place).collect();
-    let words = one.medians.iter().cloned().chain(without).collect();
-    vec![
-        Mark::new(one.role, Shape::Lines(one.intervals.iter().map(cut).collect(), 1.4)),
-        Mark::new(one.role, Shape::Dots(dots)).named(one.kind.id()),
-        Mark::new(one.role, Shape::Crosses(crosses)),
-        Mark::new(Role::Faint, Shape::Words(words)),
-    ]
 }
 
 /// The delay against the speed, and against what it goes with most besides.
@@ -178,7 +154,7 @@ fn scatter(joint: &str, found: &AgainstState, variable: usize, file: &str) -> Op
     let y = Span::around(all().map(|place| place.1), 0.1);
     let quantity = variable_text(&correlation.variable, correlation.unit.as_deref());
     let mark = |(kind, places): (Transition, Vec<Place>)| {
-        Mark::new(delay_levels::role(kind), Shape::Dots(places)).named(kind.id())
+        Mark::dots(delay_levels::role(kind), places).named(kind.id())
     };
     let panel = Panel {
         x: Axis::new(x, quantity.clone(), 6.0),
@@ -229,11 +205,9 @@ pub(super) fn overview(joints: &[EstimatedJoint<'_>]) -> Option<Figure> {
         y: Axis::of_names(&names, ""),
         height: 22 * u32::try_from(rows.len()).unwrap_or(1) + 10,
         marks: vec![
-            Mark::new(Role::Faint, Shape::Lines(line(|s| s.low, |s| s.high), 1.2))
-                .named("least to greatest"),
-            Mark::new(Role::Smoothed, Shape::Lines(line(|s| s.lower, |s| s.upper), 6.0))
-                .named("middle half"),
-            Mark::new(Role::Ink, Shape::Dots(medians)).named("median"),
+            Mark::lines(Role::Faint, 1.2, line(|s| s.low, |s| s.high)).named("least to greatest"),
+            Mark::lines(Role::Smoothed, 6.0, line(|s| s.lower, |s| s.upper)).named("middle half"),
+            Mark::dots(Role::Ink, medians).named("median"),
         ],
     };
     let [file, name, caption] =

@@ -78,7 +78,7 @@ fn input(joint: &DesignedJoint, x: &Axis) -> Panel {
     }
     let y = Span::around(joint.schedule.levels().into_iter(), 0.06);
     let y = Axis::new(y, bracketed("input", joint.rig.input_unit.as_deref()), 3.0);
-    let marks = vec![Mark::new(Role::Input, Shape::Lines(vec![corners], 1.4))];
+    let marks = vec![Mark::lines(Role::Input, 1.4, vec![corners])];
     Panel { x: x.clone(), y, height: 90, marks }
 }
 
@@ -95,7 +95,7 @@ fn output(joint: &DesignedJoint, x: &Axis) -> Panel {
     for (place, (name, Prediction { output, margin })) in joint.expected().into_iter().enumerate() {
         let role = Role::of_revision(place);
         let edge = |sign: f64| line(joint, output.iter().zip(margin).map(|(y, m)| y + sign * m));
-        marks.push(Mark::new(role, Shape::Lines(vec![edge(-1.0), edge(1.0)], 0.5)));
+        marks.push(Mark::lines(role, 0.5, vec![edge(-1.0), edge(1.0)]));
         let expected = Shape::Lines(vec![line(joint, output.iter().copied())], 1.6);
         marks.push(Mark::new(role, expected).named(name));
     }
@@ -106,7 +106,7 @@ fn output(joint: &DesignedJoint, x: &Axis) -> Panel {
     let limits: Vec<f64> = limits.filter(|limit| (-1.0..2.0).contains(&own.part(*limit))).collect();
     let y = Span::around([own.low, own.high].into_iter().chain(limits.iter().copied()), 0.0);
     let range = limits.iter().map(|limit| vec![(x.span.low, *limit), (x.span.high, *limit)]);
-    marks.push(Mark::new(Role::Rejected, Shape::Lines(range.collect(), 1.0)).named("range"));
+    marks.push(Mark::lines(Role::Rejected, 1.0, range.collect()).named("range"));
     let y = Axis::new(y, bracketed("output", joint.rig.output_unit.as_deref()), 5.0);
     Panel { x: x.clone(), y, height: 190, marks }
 }

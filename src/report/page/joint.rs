@@ -6,7 +6,7 @@ use super::{dead_time, delays, model, record, segment};
 use crate::delay::{AgainstState, Condition, DelayTable};
 use crate::report::against::{AGAINST_HEADER, CORRECTED, against_rows, confounded_sentences};
 use crate::report::decisions::{decision_names, decision_text};
-use crate::report::delay_table::{level_table_text, neutral_sentence};
+use crate::report::delay_table::{level_text, neutral_sentence};
 use crate::report::difference::difference_table;
 use crate::report::doubt::doubted;
 use crate::report::facts::Place;
@@ -93,7 +93,8 @@ fn level_blocks(estimated: EstimatedJoint<'_>, file: &str, found: &DelayTable) -
         Block::List(estimated.kind_sentences(&found.kinds)),
     ];
     blocks.extend(figure.map(|figure| Block::Figures(vec![figure])));
-    blocks.push(Block::Table(level_table_text(&found.rows)));
+    let rows = found.rows.iter().map(|row| (estimated.joint.name.as_str(), row));
+    blocks.push(Block::Table(level_text(Place::Terminal, rows)));
     blocks
 }
 

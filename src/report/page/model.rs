@@ -3,19 +3,17 @@
 use super::document::Block;
 use super::report::Report;
 use super::{model_figures, simulated};
-use crate::diagnosis::{Comparison, sensor_noise};
 use crate::effect::Stage;
-use crate::explain::{Candidate, Revision, Verdict};
+use crate::explain::Revision;
 use crate::fit::{Split, Termination};
 use crate::model::Component;
 use crate::report::compare::errors_note;
 use crate::report::equation::filled_in;
-use crate::report::finding::ranking_table;
 use crate::report::ladder::ladder_table;
+use crate::report::ranking::ranking_table;
 use crate::report::{ComparedJoint, ImprovedJoint, Topic, delay_of_steps, parameter_table};
 use crate::wording::{
-    capitalized, correlation_sentences, effect_ids, failure_sentences, listed, measure,
-    parameter_units, parameter_value,
+    capitalized, correlation_sentences, failure_sentences, parameter_units, parameter_value,
 };
 
 /// All that is said of the model of a joint.
@@ -48,68 +46,10 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
     blocks
 }
 
-/// What is said of the model, behind what speaks against the log, and whether the search was ended.
+/// What is said of the model, and whether the search was ended.
 pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
-    let caution = improved.finding.caution();
-    let caution = caution.map_or_else(String::new, |said| format!("{}. ", capitalized(&said)));
-    format!("{caution}{}{}", found(improved), stopped(improved))
-}
-
-fn stopped(improved: &ImprovedJoint<'_>) -> &'static str {
-    if improved.interrupted { " The search was stopped before its end." } else { "" }
-}
-
-/// What is said of the model in one sentence.
-fn found(improved: &ImprovedJoint<'_>) -> String {
-    let comparison = improved.finding.compared.comparison;
-    let own = effect_ids(&comparison.fit.model);
-    let model = ["integrator"].into_iter().chain(own).collect::<Vec<_>>().join(" + ");
-    let (error, rest) = (error_of(improved, comparison), missing(improved));
-    match (improved.ladder().first(), improved.came().as_slice()) {
-        (Some(first), came @ [_, others @ ..]) => {
-            let (was, it) = if others.is_empty() { ("was", "it") } else { ("were", "them") };
-            let names: Vec<String> = came.iter().map(|name| (*name).to_owned()).collect();
-            let came = listed(&names, "and");
-            let unit = improved.finding.compared.joint.output_unit.as_deref();
-            let before = first.errors.judged().map_or_else(|| "-".to_owned(), |e| measure(e, unit));
-            let falls = format!("({model}) the error falls from {before} to {error}; {rest}.");
-            // What is not shown to be the cause is not said to be missing.
-            match improved.finding.verdict {
-                Verdict::Unexplained => format!("Model: with {came} {falls}"),
-                _ => format!("Model: {came} {was} missing; with {it} {falls}"),
-            }
-        }
-        _ => format!("Model: {model}, error {error}; {rest}."),
-    }
-}
-
-/// What is still missing.
-fn missing(improved: &ImprovedJoint<'_>) -> String {
-    let more = if improved.ladder().len() > 1 { " more" } else { "" };
-    let best = improved.finding.proposed().map(Candidate::name);
-    match (improved.finding.verdict, best) {
-        (Verdict::Adequate, _) => format!("nothing{more} is missing"),
-        (Verdict::MissingEffect, Some(best)) => format!("{best} is missing"),
-        (Verdict::MissingEffect, None) => "more is missing".to_owned(),
-        (Verdict::Unexplained, _) => "an error remains that no effect accounts for".to_owned(),
-    }
-}
-
-/// The error by which a model is judged.
-fn judged_error(improved: &ImprovedJoint<'_>, comparison: &Comparison) -> String {
-    let unit = improved.finding.compared.joint.output_unit.as_deref();
-    comparison.judged().map_or_else(|| "-".to_owned(), |error| measure(error.rmse, unit))
-}
-
-/// The error by which a model is judged, and what it is of the noise and the signal.
-fn error_of(improved: &ImprovedJoint<'_>, comparison: &Comparison) -> String {
-    let rmse = judged_error(improved, comparison);
-    let Some(error) = comparison.judged() else { return rmse };
-    let noise = sensor_noise(&improved.finding.compared.joint.trials);
-    let times = noise
-        .map_or_else(String::new, |noise| format!(", {:.2} times the noise", error.rmse / noise));
-    let fit = error.fit_text().map_or_else(String::new, |fit| format!(" (fit {fit})"));
-    format!("{rmse}{times}{fit}")
+    let stopped = if improved.interrupted { " The search was stopped before its end." } else { "" };
+    format!("Model: {}.{stopped}", improved.finding.headline())
 }
 
 /// The model in equations with its numbers, in the order in which a signal runs through it.

@@ -5,45 +5,30 @@ use super::document::{Figure, HALF, WIDTH};
 use crate::diagnosis::{Curve, CurveOf, sensor_noise};
 use crate::experiment::Joint;
 use crate::figure::error_share::FeatureShares;
-use crate::figure::{Axis, Mark, Panel, Role, Shape, Span};
+use crate::figure::ladder::{Rung, panel};
+use crate::figure::{Axis, Mark, Panel, Role, Span};
 use crate::report::ladder::LadderRow;
 use crate::report::{ComparedJoint, ImprovedJoint};
-use crate::units::floor_to_index;
-use crate::wording::{bracketed, feature_with_unit, number};
+use crate::wording::{bracketed, feature_with_unit};
 
 /// A bar for the error of each revision, and the noise as a line.
 pub(super) fn ladder(improved: &ImprovedJoint<'_>, file: String) -> Figure {
     let joint = improved.finding.compared.joint;
-    let rungs = improved.ladder();
-    let name = |row: &LadderRow| format!("{}: {}", row.number, row.change);
-    let names: Vec<String> = rungs.iter().map(name).collect();
-    let errors: Vec<f64> = rungs.iter().map(|row| row.errors.judged().unwrap_or(0.0)).collect();
-    let bar =
-        |(row, error): (u32, &f64)| ((0.0, -f64::from(row) - 0.3), (*error, 0.3 - f64::from(row)));
-    let words = |(row, error): (u32, &f64)| ((*error, -f64::from(row)), number(*error));
-    let largest = errors.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    let noise = sensor_noise(&joint.trials);
-    let rows = || (0..).zip(&errors);
+    let rows = improved.ladder();
     // A revision has its colour in all figures, and in the recording.
-    let bars = rows().map(|(row, error)| {
-        let role = Role::of_revision(floor_to_index(f64::from(row)));
-        Mark::new(role, Shape::Bars(vec![bar((row, error))]))
-    });
-    let mut marks: Vec<Mark> = bars.collect();
-    if let Some(first) = marks.first_mut() {
-        first.name = Some(judged_on(&rungs).to_owned());
-    }
-    marks.push(Mark::new(Role::Ink, Shape::Words(rows().map(words).collect())));
-    marks.extend(noise.map(|noise| {
-        Mark::new(Role::Noise, Shape::Verticals(vec![noise], 1.2)).named("noise of the sensor")
-    }));
-    let name = bracketed("root-mean-square error", joint.output_unit.as_deref());
-    let panel = Panel {
-        x: Axis::new(Span::new(0.0, 1.15 * largest.max(noise.unwrap_or(0.0))), name, 6.0),
-        y: Axis::of_names(&names, ""),
-        height: 24 * u32::try_from(names.len()).unwrap_or(1) + 10,
-        marks,
+    let rung = |(place, row): (usize, &LadderRow)| Rung {
+        name: format!("{}: {}", row.number, row.change),
+        error: row.errors.judged(),
+        training: row.errors.train_rmse.filter(|_| row.errors.validation_rmse.is_some()),
+        role: Role::of_revision(place),
     };
+    let rungs: Vec<Rung> = rows.iter().enumerate().map(rung).collect();
+    let unit = joint.output_unit.as_deref();
+    let name = (bracketed("root-mean-square error", unit), "ladder");
+    let mut panel = panel(name, &rungs, (sensor_noise(&joint.trials), unit), 1.2);
+    if let Some(first) = panel.marks.first_mut() {
+        first.name = Some(judged_on(&rows).to_owned());
+    }
     let name = format!("Errors of the revisions of {}", joint.name);
     let caption = "How the error falls from revision to revision.".to_owned();
     Figure { file, name, width: WIDTH, panels: vec![panel], caption }
@@ -122,9 +107,9 @@ fn curve(joint: &Joint, curves: &[&Curve], file: String) -> Figure {
         y: Axis::new(y, up, 5.0),
         height: 200,
         marks: vec![
-            Mark::new(Role::Model, Shape::Lines(places(|curve| &curve.model), 1.6)).named("model"),
-            Mark::new(Role::Measured, Shape::Lines(bands.collect(), 1.0)),
-            Mark::new(Role::Measured, Shape::Dots(places(|curve| &curve.y).concat()))
+            Mark::lines(Role::Model, 1.6, places(|curve| &curve.model)).named("model"),
+            Mark::lines(Role::Measured, 1.0, bands.collect()),
+            Mark::dots(Role::Measured, places(|curve| &curve.y).concat())
                 .named("measured, with 95 % bands"),
         ],
     };

@@ -41,6 +41,10 @@ impl Role {
             Self::Noise => (0x2F_8FCB, 0x57_B5EA),
             Self::Attention => (0xCC_79A7, 0xCC_79A8),
             Self::Revision(one) => REVISIONS[one.place()],
+            Self::Own(red, green, blue) => {
+                let shade = u32::from_be_bytes([0, red, green, blue]);
+                (shade, shade)
+            }
         }
     }
 

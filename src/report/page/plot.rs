@@ -12,7 +12,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::document::Figure;
-use crate::figure::{Axis, Mark, Panel, Place, Role, Shape};
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, within};
 use crate::wording::{capitalized, legible, listed, rounded};
 
 /// Parts of a pixel that a coordinate resolves.
@@ -47,14 +47,6 @@ type Axes = Cartesian2d<Axis, Axis>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Axes>;
 
 impl Axis {
-    fn is_bare(&self) -> bool {
-        self.ticks.iter().all(|(_, text)| text.is_empty()) && self.name.is_empty()
-    }
-
-    fn has_names(&self) -> bool {
-        self.name.is_empty() && !self.is_bare()
-    }
-
     /// The text at a tick.
     fn text(&self, at: f64) -> String {
         let near = |tick: f64| (tick - at).abs() <= 1e-9 * (self.span.high - self.span.low);
@@ -77,7 +69,7 @@ impl Ranged for Axis {
 
     fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
         /// How far beyond the axis something is still drawn, in its lengths.
-        const BEYOND: f64 = 0.02;
+        const BEYOND: f64 = 0.1;
         let part = self.span.part(*value).clamp(-BEYOND, 1.0 + BEYOND);
         #[expect(clippy::cast_possible_truncation, reason = "a place in the drawing")]
         let offset = (part * f64::from(to - from)).round() as i32;
@@ -247,7 +239,7 @@ impl Panel {
         for mark in before {
             mark.draw(&mut chart, self)?;
         }
-        self.legend(area, left)
+        self.draw_legend(area, left)
     }
 
     fn mesh(&self, chart: &mut Chart<'_, '_>) -> Result<(), DrawingError> {
@@ -274,29 +266,24 @@ impl Panel {
     }
 
     /// A swatch and a name for each mark that has one, in a line above the axes.
-    fn legend(&self, area: &Svg<'_>, left: u32) -> Result<(), DrawingError> {
+    fn draw_legend(&self, area: &Svg<'_>, left: u32) -> Result<(), DrawingError> {
         let middle = fine(LEGEND) / 2 - fine(1);
-        let names = || self.marks.iter().filter_map(|mark| mark.name.as_deref());
-        let width: u32 = names().map(entry_width).sum();
+        let names = || self.legend();
+        let width: u32 = names().map(|(_, name)| entry_width(&name)).sum();
         let (whole, _) = area.dim_in_pixel();
         let mut x = if left + width <= whole / FINE { left } else { 4 };
-        for mark in &self.marks {
-            let Some(name) = &mark.name else { continue };
+        for (mark, name) in names() {
             mark.swatch(area, (fine(x), middle))?;
             let style = letters(Role::Ink).pos(Pos::new(HPos::Left, VPos::Center));
-            area.draw(&Text::new(name.clone(), (fine(x + SWATCH + 6), middle), style))?;
-            x += entry_width(name);
+            let width = entry_width(&name);
+            area.draw(&Text::new(name, (fine(x + SWATCH + 6), middle), style))?;
+            x += width;
         }
         Ok(())
     }
 }
 
 impl Mark {
-    /// Whether the grid is drawn over it.
-    fn is_ground(&self) -> bool {
-        matches!(self.shape, Shape::Band(..) | Shape::Spans(..))
-    }
-
     fn swatch(&self, area: &Svg<'_>, (x, y): (i32, i32)) -> Result<(), DrawingError> {
         let (middle, end) = (x + fine(SWATCH / 2), x + fine(SWATCH));
         let block = [(x, y - fine(4)), (end, y + fine(4))];
@@ -304,17 +291,20 @@ impl Mark {
             Shape::Lines(_, width) => {
                 area.draw(&PathElement::new([(x, y), (end, y)], stroke(self.role, *width)))
             }
+            Shape::Spreads(..) => {
+                area.draw(&PathElement::new([(x, y), (end, y)], stroke(self.role, 1.4)))
+            }
             Shape::Verticals(_, width) => {
                 let ends = [(middle, y - fine(6)), (middle, y + fine(6))];
                 area.draw(&PathElement::new(ends, stroke(self.role, *width)))
             }
-            Shape::Dots(_) => area.draw(&dot((middle, y), self.role)),
+            Shape::Dots(..) | Shape::Named(_) => area.draw(&dot((middle, y), 3.0, self.role)),
             Shape::Crosses(_) => area.draw(&cross((middle, y), self.role)),
-            Shape::Band(..) | Shape::Spans(..) => {
+            Shape::Band(..) | Shape::Spans(..) | Shape::Area(_) => {
                 area.draw(&Rectangle::new(block, filled(self.role, 0.3)))
             }
             Shape::Bars(_) => area.draw(&Rectangle::new(block, filled(self.role, 1.0))),
-            Shape::Words(_) => Ok(()),
+            Shape::Words(_) | Shape::Flags(_) => Ok(()),
         }
     }
 
@@ -323,12 +313,33 @@ impl Mark {
         let apart = |places: &[Place]| apart(places, |place| chart.backend_coord(place));
         let area = chart.plotting_area();
         match &self.shape {
-            Shape::Lines(lines, width) => lines.iter().try_for_each(|line| {
-                area.draw(&PathElement::new(line.clone(), stroke(role, *width)))
-            }),
-            Shape::Dots(places) => {
-                apart(places).into_iter().try_for_each(|place| area.draw(&dot(place, role)))
+            Shape::Lines(lines, width) => {
+                let mut pieces = lines.iter().flat_map(|line| within((x, y), line));
+                pieces.try_for_each(|line| area.draw(&PathElement::new(line, stroke(role, *width))))
             }
+            Shape::Dots(places, radius) => apart(places)
+                .into_iter()
+                .try_for_each(|place| area.draw(&dot(place, *radius, role))),
+            Shape::Named(dots) => dots
+                .iter()
+                .try_for_each(|(place, radius, _)| area.draw(&dot(*place, *radius, role))),
+            Shape::Area(area_of) => {
+                let upper = area_of.iter().map(|[x, _, high]| (*x, *high));
+                let lower = area_of.iter().rev().map(|[x, low, _]| (*x, *low));
+                area.draw(&Polygon::new(upper.chain(lower).collect::<Vec<_>>(), filled(role, 0.18)))
+            }
+            Shape::Spreads(spreads, above) => {
+                let pixel = (y.high - y.low) / f64::from(panel.height);
+                let row = |pixels: f64| y.high + pixels * pixel;
+                spreads.iter().try_for_each(|(from, to)| {
+                    let tick = |x: f64| [(x, row(above - 3.0)), (x, row(above + 3.0))];
+                    let bar = [(*from, row(*above)), (*to, row(*above))];
+                    [tick(*from), bar, tick(*to)]
+                        .into_iter()
+                        .try_for_each(|line| area.draw(&PathElement::new(line, stroke(role, 1.4))))
+                })
+            }
+            Shape::Flags(_) => Ok(()),
             Shape::Crosses(places) => {
                 apart(places).into_iter().try_for_each(|place| area.draw(&cross(place, role)))
             }
@@ -370,8 +381,10 @@ fn apart(places: &[Place], drawn_at: impl Fn(&Place) -> (i32, i32)) -> Vec<Place
     places.iter().filter(|place| taken.insert(square(place))).copied().collect()
 }
 
-fn dot<P>(place: P, role: Role) -> Circle<P, i32> {
-    Circle::new(place, fine(3), filled(role, 1.0))
+fn dot<P>(place: P, radius: f64, role: Role) -> Circle<P, i32> {
+    #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
+    let radius = (radius * f64::from(FINE)).round() as i32;
+    Circle::new(place, radius, filled(role, 1.0))
 }
 
 fn cross<P>(place: P, role: Role) -> Cross<P, i32> {
@@ -449,7 +462,7 @@ mod tests {
     fn of_places_that_hide_one_another_one_is_drawn() {
         let places: Vec<Place> = (0..1000).map(|k| (f64::from(k) / 100.0, 5.0)).collect();
         let at = |pixels: f64| {
-            let shape = Shape::Dots(places.iter().map(|(x, y)| (x * pixels, *y)).collect());
+            let shape = Shape::Dots(places.iter().map(|(x, y)| (x * pixels, *y)).collect(), 3.0);
             svg(panel(vec![Mark::new(Role::Accepted, shape)]), "").matches("<circle").count()
         };
         assert!((40..70).contains(&at(1.0)), "{}", at(1.0));

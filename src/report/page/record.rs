@@ -29,9 +29,8 @@ pub(crate) fn panels(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> 
         height: 170,
         marks: vec![
             timeline.borders(),
-            Mark::new(Role::Measured, Shape::Lines(timeline.lines(|_, t| t.output()), 1.3))
-                .named("output"),
-            Mark::new(Role::Accepted, Shape::Dots(accepted)).named("breakpoint, accepted"),
+            Mark::lines(Role::Measured, 1.3, timeline.lines(|_, t| t.output())).named("output"),
+            Mark::dots(Role::Accepted, accepted).named("breakpoint, accepted"),
             Mark::new(Role::Rejected, Shape::Crosses(rejected)).named("rejected"),
         ],
     };
@@ -41,7 +40,7 @@ pub(crate) fn panels(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> 
         height: 80,
         marks: vec![
             timeline.borders(),
-            Mark::new(Role::Input, Shape::Lines(timeline.held(|_, t| t.input()), 1.4)),
+            Mark::lines(Role::Input, 1.4, timeline.held(|_, t| t.input())),
         ],
     };
     [output, input]

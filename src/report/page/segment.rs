@@ -5,11 +5,10 @@ use std::collections::HashSet;
 use super::document::{Figure, NARROW};
 use crate::delay::{Condition, Verdict};
 use crate::experiment::Joint;
-use crate::figure::segment::SegmentFigure;
-use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span};
+use crate::figure::segment::{Scale, SegmentFigure};
 use crate::report::doubt::doubted;
 use crate::report::{Doubted, EstimatedJoint};
-use crate::wording::{bracketed, rounded, to_place};
+use crate::wording::{rounded, to_place};
 
 /// A decision that is worth a look, and why.
 struct Choice<'a> {
@@ -62,8 +61,10 @@ fn is_telling(found: &Doubted<'_>) -> bool {
 
 impl Choice<'_> {
     fn figure(&self, joint: &Joint, file: &str) -> Figure {
-        let x = Axis::new(self.window_s(), "time [s]", 5.0);
-        let panels = vec![self.lines(joint, x.bare()), self.errors(joint, x)];
+        let Doubted { trial, decision, smoothed, .. } = &self.found;
+        let unit = joint.output_unit.as_deref();
+        let drawn = SegmentFigure::new((trial, unit), *smoothed, decision, Scale::time(trial));
+        let panels = vec![drawn.output(), drawn.errors()];
         let number = self.found.decision.number;
         let name = format!("{} step of {}: number {number}", self.why, joint.name);
         let file = format!("{file}-{}", self.why.to_ascii_lowercase().replace(' ', "-"));
@@ -121,90 +122,6 @@ impl Choice<'_> {
         let ends = own.map(|fine| (seconds(fine.low), seconds(fine.high)));
         let ends = ends.map_or_else(String::new, |(low, high)| format!(" ({low} to {high} s)"));
         format!("delay {} s{ends}", seconds(delay))
-    }
-
-    /// What is drawn of it.
-    fn drawn(&self) -> SegmentFigure<'_> {
-        SegmentFigure::new(self.found.trial, self.found.decision)
-    }
-
-    fn window_s(&self) -> Span {
-        let (first, last) = self.drawn().window;
-        Span::new(self.found.trial.time_s(first), self.found.trial.time_s(last))
-    }
-
-    /// The time of a sample, which may be between two.
-    fn at(&self, sample: f64) -> f64 {
-        self.found.trial.time_s(1) + (sample - 1.0) * self.found.trial.period().seconds()
-    }
-
-    /// Places by time instead of by sample.
-    fn timed(&self, places: impl IntoIterator<Item = Place>) -> Vec<Place> {
-        places.into_iter().map(|(sample, y)| (self.at(sample), y)).collect()
-    }
-
-    /// The output with both lines.
-    fn lines(&self, joint: &Joint, x: Axis) -> Panel {
-        /// Points of a signal: about two for each column that is seen.
-        const POINTS: usize = 600;
-        let drawn = self.drawn();
-        let signal = |values: &[f64]| self.timed(drawn.signal(values, POINTS));
-        let measured = signal(self.found.trial.output());
-        let smoothed = self.found.smoothed.map(signal);
-        let chosen = self.found.decision.breakpoint().map(|best| {
-            let q = drawn.breakpoint().unwrap_or(best.candidate.breakpoint as f64);
-            let candidate = self.found.decision.shown_candidate().unwrap_or(best.candidate);
-            drawn.lines(&candidate, q).map(|line| self.timed(line)).to_vec()
-        });
-        let chosen = chosen.unwrap_or_default();
-        let values =
-            measured.iter().chain(smoothed.iter().flatten()).chain(chosen.iter().flatten());
-        let y = Span::around(values.map(|place| place.1), 0.08);
-        let role = drawn.verdict();
-        let step = vec![self.at(self.found.decision.input_step.sample as f64)];
-        let q: Vec<f64> = drawn.breakpoint().map(|q| self.at(q)).into_iter().collect();
-        let mut marks = vec![
-            Mark::new(role, Shape::Lines(chosen, 4.0)).named("lines"),
-            Mark::new(Role::Measured, Shape::Lines(vec![measured], 1.2)).named("output"),
-        ];
-        marks.extend(smoothed.map(|line| {
-            Mark::new(Role::Smoothed, Shape::Lines(vec![line], 1.0)).named("smoothed")
-        }));
-        marks.push(Mark::new(Role::Input, Shape::Verticals(step, 1.2)).named("step"));
-        marks.push(Mark::new(role, Shape::Verticals(q, 1.2)).named("q"));
-        let before = self.found.decision.delay_before_review();
-        let p = self.found.decision.input_step.sample as f64;
-        marks.extend(before.map(|delay| {
-            let q = vec![self.at(p + delay)];
-            Mark::new(Role::Faint, Shape::Verticals(q, 1.2))
-        }));
-        let y = Axis::new(y, bracketed("output", joint.output_unit.as_deref()), 4.0);
-        Panel { x, y, height: 170, marks }
-    }
-
-    /// The squared error of every candidate.
-    fn errors(&self, joint: &Joint, x: Axis) -> Panel {
-        let drawn = self.drawn();
-        let candidates = &self.found.decision.candidates;
-        let curve = self.timed(drawn.errors(candidates.len()));
-        let shown = self.found.decision.shown_candidate();
-        let best = self.timed(shown.map(|shown| drawn.error(&shown)));
-        let moved = self.found.decision.delay_before_review().is_some();
-        let unit = joint.output_unit.as_ref().map(|unit| format!("{unit}²"));
-        let curve = Mark::new(Role::Error, Shape::Lines(vec![curve], 1.6));
-        Panel {
-            x,
-            y: Axis::logarithmic(drawn.error_span(), bracketed("SSE", unit.as_deref()), 3.0),
-            height: 76,
-            marks: vec![
-                curve.named("error of each candidate"),
-                Mark::new(Role::Error, Shape::Dots(best)).named(if moved {
-                    "at q"
-                } else {
-                    "least"
-                }),
-            ],
-        }
     }
 }
 

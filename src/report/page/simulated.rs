@@ -54,13 +54,9 @@ pub(crate) fn panels(
         marks: vec![
             unfitted.clone().named("not fitted"),
             borders.clone(),
-            Mark::new(Role::Measured, Shape::Lines(timeline.lines(|_, t| t.output()), 3.0))
-                .named("measured"),
-            Mark::new(
-                role,
-                Shape::Lines(timeline.lines(|index, _| simulated(compared, index)), 1.3),
-            )
-            .named("simulated"),
+            Mark::lines(Role::Measured, 3.0, timeline.lines(|_, t| t.output())).named("measured"),
+            Mark::lines(role, 1.3, timeline.lines(|index, _| simulated(compared, index)))
+                .named("simulated"),
         ],
     };
     let mut marks = vec![unfitted, borders];
@@ -73,7 +69,7 @@ pub(crate) fn panels(
     }
     marks.extend(noise(compared).map(|mark| mark.named("95 % of the noise")));
     let left = timeline.lines(|index, _| residual(compared, index));
-    marks.push(Mark::new(role, Shape::Lines(left, 1.0)).named("residual"));
+    marks.push(Mark::lines(role, 1.0, left).named("residual"));
     marks.extend(noise_edges(compared, timeline.ends()));
     let y = Axis::new(residuals(compared), bracketed("residual", unit), 6.0);
     [output, Panel { x: timeline.axis(), y, height: 110, marks }]
@@ -100,7 +96,7 @@ pub(super) fn earlier(improved: &ImprovedJoint<'_>, file: String) -> Option<Figu
             marks.push(worst.named("worst segments"));
         }
         marks.extend(noise(compared));
-        marks.push(Mark::new(Role::of_revision(place), Shape::Lines(lines, 1.0)).named(name));
+        marks.push(Mark::lines(Role::of_revision(place), 1.0, lines).named(name));
         marks.extend(noise_edges(compared, timeline.ends()));
         let y = Axis::new(residuals(compared), bracketed("residual", unit), 4.0);
         let x = if place + 1 < before.len() { axis.bare() } else { axis };
@@ -170,8 +166,8 @@ pub(crate) fn worst_panel(
         height: 190,
         marks: vec![
             Mark::new(Role::Attention, Shape::Spans(vec![ends.into()], 0.22)),
-            Mark::new(Role::Measured, Shape::Lines(vec![measured], 3.0)).named("measured"),
-            Mark::new(role, Shape::Lines(vec![simulated], 1.4)).named("simulated"),
+            Mark::lines(Role::Measured, 3.0, vec![measured]).named("measured"),
+            Mark::lines(role, 1.4, vec![simulated]).named("simulated"),
         ],
     })
 }
@@ -217,7 +213,7 @@ fn noise(compared: &ComparedJoint<'_>) -> Option<Mark> {
 fn noise_edges(compared: &ComparedJoint<'_>, (from, to): (f64, f64)) -> Option<Mark> {
     let band = sensor_noise(&compared.joint.trials)? * BAND;
     let edges = [-band, band].map(|edge| vec![(from, edge), (to, edge)]);
-    Some(Mark::new(Role::Noise, Shape::Lines(edges.to_vec(), 1.4)))
+    Some(Mark::lines(Role::Noise, 1.4, edges.to_vec()))
 }
 
 /// What parameters were not fitted to.

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::delay::{Check, Decision, Outcome};
-use crate::figure::segment::SegmentFigure;
+use crate::figure::segment::window;
 use crate::numerics::as_written;
 use crate::report::doubt::by_doubt;
 use crate::report::json::joined;
@@ -24,9 +24,10 @@ pub(super) fn page_json(name: &str, joints: &[EstimatedJoint<'_>], most: usize) 
 /// were fitted to the measured output; breakpoint and squared error of every candidate.
 fn step(doubted: &Doubted<'_>) -> Value {
     let Doubted { joint, trial, decision, doubt, .. } = doubted;
-    let drawn = SegmentFigure::new(trial, decision);
+    let (from, to) = window(trial, decision);
     let part = |values: &[f64]| {
-        drawn.visible(values).iter().map(|value| six_digits(*value)).collect::<Vec<_>>()
+        let visible = values.get(from - 1..to).unwrap_or_default().iter();
+        visible.map(|value| six_digits(*value)).collect::<Vec<_>>()
     };
     let (first, last) = (decision.segment.first, decision.segment.last);
     let errors = decision.candidates.iter().map(|c| (c.breakpoint, six_digits(c.sse)));
@@ -38,7 +39,7 @@ fn step(doubted: &Doubted<'_>) -> Value {
         "segment": [first, last],
         "fitted_to": fitted_to(decision).unwrap_or(last),
         "hold": decision.hold,
-        "first": drawn.window.0,
+        "first": from,
         "measured": part(trial.output()),
         "smoothed": doubted.smoothed.map(part).unwrap_or_default(),
         "errors": errors.collect::<Vec<_>>(),

@@ -192,7 +192,8 @@ impl Reported<'_> {
             for (index, (joint, result)) in study.joints().iter().zip(results).enumerate() {
                 match result {
                     Some(Ok(found)) => {
-                        models.extend(progress.improved(start, index, joint, found));
+                        let improved = progress.improved(start, index, joint, found);
+                        models.extend(improved.map(ImprovedJoint::since_its_beginning));
                     }
                     Some(Err(error)) => {
                         failures.push(format!("joint `{}`: no model: {}", joint.name, said(error)));
