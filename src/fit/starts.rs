@@ -5,15 +5,16 @@ use crate::model::{Component, JointModel, Value};
 
 /// Start values: those of the model, and the starts of effects that are still neutral.
 pub(super) fn starts(model: &JointModel, range: &RecordRange<'_>) -> Vec<Vec<f64>> {
-    /// Combinations that are tried at most: one simulation each. The most of one effect are 38.
-    const MOST: usize = 48;
+    /// Combinations that are tried at most, but for as many as one effect has by itself.
+    const MOST: usize = 16;
     let mut starts = vec![vec![model.gain.value, model.delay.value]];
     for component in model.components() {
         let own = component_starts(component, range);
         let with = |start: &Vec<f64>| {
             own.iter().map(|own| [start.as_slice(), own].concat()).collect::<Vec<_>>()
         };
-        starts = starts.iter().flat_map(with).take(MOST).collect();
+        let most = MOST.max(starts.len()).max(own.len());
+        starts = starts.iter().flat_map(with).take(most).collect();
     }
     starts
 }
