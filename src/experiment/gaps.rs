@@ -11,8 +11,12 @@ pub(crate) fn longest_gap_s(trials: &[Trial]) -> Option<f64> {
         let gap = behind.time_s(1) - before.time_s(before.len());
         (are_of_one(before, behind) && gap > 0.0).then(|| gap + before.period().seconds())
     };
-    let longest = trials.windows(2).filter_map(gap).max_by(f64::total_cmp)?;
-    Some(to_digits_by(longest, 3, f64::ceil))
+    trials.windows(2).filter_map(gap).max_by(f64::total_cmp).map(no_shorter)
+}
+
+/// A length of time to three digits, rounding left aside no shorter: who fills gaps up to it fills this one.
+pub(super) fn no_shorter(seconds: f64) -> f64 {
+    to_digits_by(seconds, 3, |digits| (digits * (1.0 - 1e-9)).ceil())
 }
 
 /// Whether both are parts of the same trial.

@@ -231,8 +231,8 @@ pub(super) fn is_remark(record: &csv::ByteRecord, delimiter: u8) -> bool {
     let cells = record.iter().map(<[u8]>::trim_ascii).filter(|cell| !cell.is_empty());
     let mut cells = cells.peekable();
     cells.peek().is_some()
-        && !is_over_lines(record)
         && cells.all(|cell| parse_time(cell, delimiter).is_err() && !is_of_thousands(cell))
+        && !is_over_lines(record)
 }
 
 /// Whether a cell goes over several lines: behind a quotation mark that is never closed lies the

@@ -3,12 +3,12 @@
 use super::cells::Log;
 use super::missing::Filled;
 use crate::experiment::error::{ReadError, ReadErrorKind};
+use crate::experiment::gaps::no_shorter;
 use crate::experiment::grid::{Grid, Piece, Repair, Signals};
 use crate::experiment::joint::{Joint, Signal};
 use crate::experiment::layout::JointLayout;
 use crate::experiment::table::TrialRows;
 use crate::experiment::trial::Trial;
-use crate::numerics::to_digits_by;
 
 /// Memory of a sample of a signal: the number as it was read, on its grid and in its trial, and
 /// what is made of it until its delays are known.
@@ -96,7 +96,7 @@ impl Log<'_> {
         // Where the clock starts anew no time passes.
         let gap = match longest.filter(|(seconds, _)| *seconds > 0.0) {
             Some((seconds, row)) => {
-                format!(" ({one} {} s, before row {row})", to_three_digits(seconds))
+                format!(" ({one} {} s, before row {row})", no_shorter(seconds))
             }
             None => String::new(),
         };
@@ -188,11 +188,6 @@ fn shown(mut split: Vec<String>) -> Vec<String> {
         split.push(format!("{more} more trials are split at long gaps"));
     }
     split
-}
-
-/// A length of time to three digits, no longer one shorter: who fills gaps up to it fills this one.
-fn to_three_digits(seconds: f64) -> f64 {
-    to_digits_by(seconds, 3, |digits| (digits * (1.0 - 1e-9)).ceil())
 }
 
 /// Names of the parts of a trial that was split: `a#1`, `a#2`, with as many marks as it

@@ -10,10 +10,11 @@ use std::ops::Range;
 use super::cells::{Log, Times};
 use crate::experiment::clock::filled_s;
 use crate::experiment::error::{ReadError, ReadErrorKind};
+use crate::experiment::gaps::no_shorter;
 use crate::experiment::grid::{Grid, Repair, hold};
 use crate::experiment::layout::JointLayout;
 use crate::experiment::trial::Trial;
-use crate::numerics::{median, to_digits_by};
+use crate::numerics::median;
 use crate::units::floor_to_index;
 
 /// What of an output is filled with lines.
@@ -99,8 +100,7 @@ impl Log<'_> {
             }
         }
         let is_short = longest_s <= LONGEST_S && samples <= SAMPLES * output.len() as f64;
-        let no_shorter = |digits: f64| (digits * (1.0 - 1e-9)).ceil();
-        (any_step && is_short).then(|| to_digits_by(longest_s, 3, no_shorter))
+        (any_step && is_short).then(|| no_shorter(longest_s))
     }
 
     /// The samples of `whole`, of the trial with this index, in the pauses of its logger.

@@ -6,6 +6,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use super::signal::Signal;
 use super::words::{Grade, Name, Side, parts};
 use crate::experiment::table::{Head, Header};
+use crate::units::floor_to_index;
 
 /// A joint that was found, with the reasons.
 pub(super) struct FoundJoint {
@@ -41,17 +42,24 @@ struct Pair {
     output: usize,
     /// What both names say of which joint it is.
     shared: BTreeSet<String>,
+    /// How the output's rate follows the input, where that is clear.
+    follows: Option<f64>,
     /// Whether no other input could be meant.
     is_only: bool,
 }
 
 impl Pair {
     fn alone(input: usize, output: usize) -> Self {
-        Self { input, output, shared: BTreeSet::new(), is_only: false }
+        Self { input, output, shared: BTreeSet::new(), follows: None, is_only: false }
     }
 
     fn reversed(self) -> Self {
         Self { input: self.output, output: self.input, ..self }
+    }
+
+    /// How much the output follows the input, in whichever direction.
+    fn strength(&self) -> f64 {
+        self.follows.map_or(0.0, f64::abs)
     }
 }
 
@@ -104,8 +112,7 @@ impl Columns<'_> {
         headers.filter_map(joint).collect()
     }
 
-    /// Inputs and outputs by their names that share words of a joint: those that share most first, and of
-    /// these the likeliest. Each column stands in one pair.
+    /// Inputs and outputs by their names that share words of a joint.
     fn by_names(&self) -> Vec<Pair> {
         let mut inputs: Vec<usize> = self.on(Side::Input).collect();
         let mut outputs: Vec<usize> = self.on(Side::Output).collect();
@@ -157,15 +164,11 @@ impl Columns<'_> {
                 pairs.push(Pair { shared, ..Pair::alone(*input, output) });
             }
         }
-        pairs.sort_by_key(|pair| {
-            let grades = [pair.input, pair.output].map(|column| self.likelihood(column));
-            (Reverse(pair.shared.len()), grades, pair.input)
-        });
-        each_column_once(pairs)
+        self.each_column_once(pairs)
     }
 
     /// The outputs that follow an input, and no other more, of the columns whose names say most; where names
-    /// say nothing, what holds levels drives. Each column stands in one pair.
+    /// say nothing, what holds levels drives.
     fn by_data(&self) -> Vec<Pair> {
         /// Pairs that are compared, which takes a second.
         const MOST: usize = 2_500;
@@ -177,25 +180,36 @@ impl Columns<'_> {
         if inputs.len() * outputs.len() > MOST {
             return Vec::new();
         }
-        let mut found = Vec::new();
-        for output in outputs {
-            let follows = |input: &usize| Some((self.following(*input, output)?.abs(), *input));
-            let of_inputs: Vec<(f64, usize)> = inputs.iter().filter_map(follows).collect();
-            let most = of_inputs.iter().fold(0.0, |most: f64, (follows, _)| most.max(*follows));
-            let near = of_inputs.into_iter().filter(|(follows, _)| is_alike(*follows, most));
-            found.extend(near.map(|(follows, input)| (follows, input, output)));
-        }
-        // Of a position and its speed, which follow alike, the likelier name stands first.
-        let fifths = |follows: f64| (5.0 * follows).floor();
-        found.sort_by(|(a, input, output), (b, other_input, other_output)| {
-            let by_data = fifths(*b).total_cmp(&fifths(*a));
-            let key = |input: usize, output: usize| (self.likelihood(output), input, output);
-            by_data.then_with(|| key(*input, *output).cmp(&key(*other_input, *other_output)))
-        });
         let is_only = inputs.len() == 1;
-        let pair = |(_, input, output)| Pair { is_only, ..Pair::alone(input, output) };
-        let pairs = found.into_iter().map(pair);
-        each_column_once(pairs.collect())
+        let mut pairs = Vec::new();
+        for output in outputs {
+            let pair = |input| self.followed(Pair { is_only, ..Pair::alone(input, output) });
+            let of_inputs: Vec<Pair> = inputs.iter().copied().map(pair).collect();
+            let most = of_inputs.iter().map(Pair::strength).fold(0.0, f64::max);
+            let is_near = |pair: &Pair| pair.follows.is_some() && is_alike(pair.strength(), most);
+            pairs.extend(of_inputs.into_iter().filter(is_near));
+        }
+        self.each_column_once(pairs)
+    }
+
+    /// The first of `pairs` that have columns which no pair before has: those that share most words come first,
+    /// of these the outputs that follow most, and the likeliest names.
+    fn each_column_once(&self, mut pairs: Vec<Pair>) -> Vec<Pair> {
+        /// A position and its speed, which differ by less, follow alike.
+        const ALIKE: f64 = 0.2;
+        pairs.sort_by_cached_key(|pair| {
+            let follows = floor_to_index(pair.strength() / ALIKE);
+            let columns = [pair.input, pair.output];
+            let names = columns.map(|column| self.likelihood(column));
+            (Reverse((pair.shared.len(), follows)), names, columns)
+        });
+        let mut taken = HashSet::new();
+        pairs.retain(|pair| {
+            let is_free = !taken.contains(&pair.input) && !taken.contains(&pair.output);
+            taken.extend([pair.input, pair.output].into_iter().filter(|_| is_free));
+            is_free
+        });
+        pairs
     }
 
     /// The columns whose names say most that they drive; else those that hold levels.
@@ -229,17 +243,14 @@ impl Columns<'_> {
             if is_reversed && self.grade(pair.input, Side::Input) == Grade::Beside {
                 continue;
             }
-            let pair = if is_reversed { pair.reversed() } else { pair };
-            let follows = self.following(pair.input, pair.output);
-            let is_sure = pair.is_only
-                && self.is_said(&pair, follows, others)
-                && !self.has_rival(&pair, follows, &free, count);
+            let pair = self.followed(if is_reversed { pair.reversed() } else { pair });
+            let is_sure =
+                pair.is_only && self.is_said(&pair, others) && !self.has_rival(&pair, &free, count);
             let name = self.joint_name(&pair);
             let is_speed = !pair.is_only && !pair.shared.is_empty();
-            if (is_sure || is_speed || follows.is_some()) && names.insert(name.clone()) {
-                let instead =
-                    if is_sure { Vec::new() } else { self.instead(&pair, follows, &taken) };
-                let why = self.reasons(&pair, follows);
+            if (is_sure || is_speed || pair.follows.is_some()) && names.insert(name.clone()) {
+                let instead = if is_sure { Vec::new() } else { self.instead(&pair, &taken) };
+                let why = self.reasons(&pair);
                 let (input, output) = (pair.input, pair.output);
                 joints.push(FoundJoint { name, input, output, why, is_sure, instead });
             }
@@ -250,11 +261,11 @@ impl Columns<'_> {
 
     /// Whether names say that a pair is a joint, with the data where they say it less clearly, where so many
     /// `others` move.
-    fn is_said(&self, pair: &Pair, follows: Option<f64>, others: usize) -> bool {
+    fn is_said(&self, pair: &Pair, others: usize) -> bool {
         let (input, output) =
             (self.grade(pair.input, Side::Input), self.grade(pair.output, Side::Output));
         let is_clear = input == Grade::Word || input == Grade::Letter && !pair.shared.is_empty();
-        let (follows, are_all) = (follows.is_some(), others == 0);
+        let (follows, are_all) = (pair.follows.is_some(), others == 0);
         match input.max(output) {
             Grade::Word | Grade::Letter => is_clear || are_all,
             Grade::Unit => follows && (is_clear || are_all),
@@ -265,11 +276,10 @@ impl Columns<'_> {
 
     /// Whether the output follows one of the `free` inputs clearly more, which is named like one of this joint,
     /// too.
-    fn has_rival(&self, pair: &Pair, follows: Option<f64>, free: &[usize], joints: usize) -> bool {
-        let own = follows.map_or(0.0, f64::abs);
+    fn has_rival(&self, pair: &Pair, free: &[usize], joints: usize) -> bool {
         let words = self.own(pair.output, joints);
         free.iter().filter(|input| !self.own(**input, joints).is_disjoint(&words)).any(|input| {
-            self.following(*input, pair.output).is_some_and(|f| !is_alike(own, f.abs()))
+            self.following(*input, pair.output).is_some_and(|f| !is_alike(pair.strength(), f.abs()))
         })
     }
 
@@ -294,15 +304,9 @@ impl Columns<'_> {
 
     /// What may as well be the output of this input, or the input of this output, of the columns that are not
     /// `taken`.
-    fn instead(
-        &self,
-        pair: &Pair,
-        follows: Option<f64>,
-        taken: &HashSet<usize>,
-    ) -> Vec<([usize; 2], String)> {
+    fn instead(&self, pair: &Pair, taken: &HashSet<usize>) -> Vec<([usize; 2], String)> {
         /// Pairs that are said.
         const SAID: usize = 3;
-        let own = follows.map_or(0.0, f64::abs);
         let free = self.moving.iter().copied().filter(|column| !taken.contains(column));
         let free = free.filter(|column| self.name(*column).is_some_and(|name| !name.is_neither()));
         let mut found = Vec::new();
@@ -310,7 +314,7 @@ impl Columns<'_> {
             let holds = self.signal(column).is_some_and(Signal::holds_levels);
             let as_joint = if holds { [column, pair.output] } else { [pair.input, column] };
             let [input, output] = as_joint;
-            if self.following(input, output).is_some_and(|f| is_alike(f.abs(), own)) {
+            if self.following(input, output).is_some_and(|f| is_alike(f.abs(), pair.strength())) {
                 found.push((as_joint, self.joint_name(&Pair::alone(input, output))));
             }
         }
@@ -319,14 +323,14 @@ impl Columns<'_> {
     }
 
     /// Why a pair is taken for a joint: of the input, and of the output.
-    fn reasons(&self, pair: &Pair, follows: Option<f64>) -> [String; 2] {
+    fn reasons(&self, pair: &Pair) -> [String; 2] {
         let mut why =
             [(pair.input, Side::Input), (pair.output, Side::Output)].map(|(column, side)| {
                 let by = self.name(column).filter(|name| name.side == Some(side)).map(|n| &*n.by);
                 let says = self.signal(column).map(Signal::says);
                 format!("{}{}", by.unwrap_or_default(), says.unwrap_or_default())
             });
-        if let Some(follows) = follows {
+        if let Some(follows) = pair.follows {
             let [_, output] = &mut why;
             *output = format!("{output}; its rate follows the input (correlation {follows:+.2})");
         }
@@ -420,6 +424,11 @@ impl Columns<'_> {
         self.moving.iter().copied().filter(is_free).filter(is_best).collect()
     }
 
+    /// The pair with how its output follows.
+    fn followed(&self, pair: Pair) -> Pair {
+        Pair { follows: self.following(pair.input, pair.output), ..pair }
+    }
+
     /// How the output's rate follows the input, where that is clear; a speed that is measured is none.
     fn following(&self, input: usize, output: usize) -> Option<f64> {
         let follows = self.signal(output)?.follows(self.signal(input)?)?;
@@ -437,15 +446,4 @@ impl Columns<'_> {
 /// Whether one follows about as much as the one that does most.
 fn is_alike(follows: f64, most: f64) -> bool {
     follows >= 0.8 * most
-}
-
-/// The first of `pairs` that have columns which no pair before has.
-fn each_column_once(mut pairs: Vec<Pair>) -> Vec<Pair> {
-    let mut taken = HashSet::new();
-    pairs.retain(|pair| {
-        let is_free = !taken.contains(&pair.input) && !taken.contains(&pair.output);
-        taken.extend([pair.input, pair.output].into_iter().filter(|_| is_free));
-        is_free
-    });
-    pairs
 }

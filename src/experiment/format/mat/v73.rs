@@ -17,6 +17,7 @@ use hdf5_pure::{
 use super::variable::{Content, Variable, damaged, object};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
+use crate::experiment::names::shown;
 use crate::experiment::table::LONGEST_NAME;
 
 /// Structures may lie in structures, but not without end.
@@ -40,13 +41,20 @@ struct Listing<'a> {
     size: u64,
     budget: &'a Budget,
     found: Vec<Variable>,
+    /// The structure that is being listed; empty for the file itself.
+    inside: String,
 }
 
 /// The variables of a file, their numbers still stored.
 pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
     let (file, reads) = open(path)?;
-    let mut listing = Listing { size: file.file_size(), budget, found: Vec::new() };
-    listing.group(&file.root(), "", 0)?;
+    let (size, found, inside) = (file.file_size(), Vec::new(), String::new());
+    let mut listing = Listing { size, budget, found, inside };
+    let listed = listing.group(&file.root(), "", 0);
+    listed.map_err(|fault| match listing.inside.trim_end_matches('.') {
+        "" => fault,
+        inside => fault.within(&format!("structure `{}`", shown(inside))),
+    })?;
     // All objects are known: their numbers lie where they were said to.
     reads.store(u64::MAX, Ordering::Relaxed);
     Ok(listing.found)
@@ -87,6 +95,7 @@ fn product(first: u64, others: &[u64]) -> Option<u64> {
 impl Listing<'_> {
     /// Adds what lies in a group, which is a structure; by name, so that the order is certain.
     fn group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), ReadError> {
+        prefix.clone_into(&mut self.inside);
         let mut datasets = group.datasets()?;
         datasets.sort();
         let count = datasets.len();
@@ -180,8 +189,8 @@ impl Source for Watched {
     fn read_at(&self, offset: u64, buf: &mut [u8]) -> Result<(), FormatError> {
         let one_less = |left: u64| left.checked_sub(1);
         if self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_less).is_err() {
-            let why = "its groups lie in one another in a circle, or the header of an object names its own \
-                       parts without end";
+            let why = "its structures lie in one another in a circle, or the header of an object in it names \
+                       its own parts without end";
             return Err(FormatError::Source(why.to_owned()));
         }
         self.file.read_at(offset, buf)

@@ -2,6 +2,8 @@
 
 use std::fmt::Display;
 
+use hdf5_pure::{Error, FormatError};
+
 use crate::experiment::error::ReadError;
 use crate::experiment::table::Header;
 
@@ -11,9 +13,13 @@ pub(super) fn damaged(reason: impl Display) -> ReadError {
     ReadError::format("MATLAB", reason, remedy)
 }
 
-impl From<hdf5_pure::Error> for ReadError {
-    fn from(error: hdf5_pure::Error) -> Self {
-        damaged(error)
+impl From<Error> for ReadError {
+    fn from(error: Error) -> Self {
+        match error {
+            // What the source of the bytes says is said here, and needs no words of the library before it.
+            Error::Format(FormatError::Source(reason)) => damaged(reason),
+            error => damaged(error),
+        }
     }
 }
 

@@ -23,10 +23,6 @@ const MOST_ROWS: i64 = 10;
 /// Usual intervals beyond which nothing is known between two messages, as in tables.
 const LONGEST: f64 = 3.0;
 
-/// Usual intervals by which messages must be behind the rows, more than they usually are, to belong to the
-/// next run of the clock.
-const BACK: f64 = 5.0;
-
 /// What is wanted of a topic.
 #[derive(Debug, Default)]
 pub(super) struct Topic {
@@ -203,33 +199,20 @@ impl Messages {
     /// Numbers the runs of the clock, which starts anew where a simulation is reset or a computer's clock set
     /// back. Runs that do not overlap are parts of one record in another order.
     ///
-    /// Where another topic starts anew does not show by itself: its runs begin where those of the clock do in
-    /// the file, and with the messages before it that are behind the clock already.
+    /// Where another topic starts anew need not show by itself, as that of few commands. Each of its messages is
+    /// of the run of that message of the clock, the last before it in the file or the next, which is nearer in
+    /// time.
     fn number_runs(&mut self, clock: usize) {
         let times: Vec<i64> = times_of(&self.list, clock).collect();
         let starts = restarts(&times);
-        let (Some(usual), false) = (interval(&times), starts.is_empty()) else { return };
-        let (mut rows, mut latest, mut behind) = (0, None, Vec::new());
-        for message in &mut self.list {
-            if message.topic == clock {
-                rows += 1;
-                latest = Some(message.time);
-            }
-            message.run = starts.partition_point(|start| *start < rows);
-            behind.push(latest.map_or(0.0, |latest| latest.saturating_sub(message.time) as f64));
-        }
-        for topic in self.topics.keys().filter(|topic| **topic != clock) {
-            let own =
-                || self.list.iter().zip(&behind).filter(|(message, _)| message.topic == *topic);
-            let usually = median(&own().map(|(_, behind)| *behind).collect::<Vec<_>>());
-            let limit = usually.unwrap_or_default() + BACK * usual;
-            let mut following = starts.len();
-            for (message, behind) in self.list.iter_mut().zip(&behind).rev() {
-                if message.topic == *topic {
-                    message.run = if *behind > limit { following } else { message.run };
-                    following = message.run;
-                }
-            }
+        let mut next = 0_usize;
+        for message in self.list.iter_mut().filter(|_| !starts.is_empty()) {
+            let apart = |row: &usize| times.get(*row).map(|time| time.abs_diff(message.time));
+            let around = [Some(next), next.checked_sub(1)].into_iter().flatten();
+            let nearest = around.min_by_key(|row| apart(row).unwrap_or(u64::MAX));
+            let row = nearest.unwrap_or_default();
+            message.run = starts.partition_point(|start| *start <= row);
+            next += usize::from(message.topic == clock);
         }
     }
 }
