@@ -6,6 +6,7 @@ use clap::Args as ClapArgs;
 
 use crate::cli::args::number::at_least_one;
 use crate::cli::args::{ReadingArgs, RunArgs};
+use crate::design::Band;
 use crate::experiment::format_names;
 use crate::numerics::to_decimals;
 
@@ -76,7 +77,7 @@ pub(crate) struct Args {
     /// `cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a
     /// band in which none is to lie
     #[arg(long, value_name = "cross|avoid|LO,HI", value_parser = band, allow_hyphen_values = true)]
-    pub(super) dead_band: Option<BandChoice>,
+    pub(super) dead_band: Option<Band>,
 
     /// Two effects to separate. The model has one of them, or a log is given
     #[arg(
@@ -121,17 +122,6 @@ fn data_help() -> String {
 /// Levels of an input, each once, ascending.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Levels(pub(crate) Vec<f64>);
-
-/// What becomes of the dead band, and which.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum BandChoice {
-    /// A level lies in that of the model.
-    Cross,
-    /// None does.
-    Avoid,
-    /// None lies in this one.
-    Given(f64, f64),
-}
 
 pub(crate) fn levels(text: &str) -> Result<Levels, String> {
     /// More than anybody plays.
@@ -191,12 +181,12 @@ fn pair(text: &str) -> Option<(f64, f64)> {
     (low <= high).then_some((low, high))
 }
 
-pub(crate) fn band(text: &str) -> Result<BandChoice, String> {
+pub(crate) fn band(text: &str) -> Result<Band, String> {
     match text {
-        "cross" => Ok(BandChoice::Cross),
-        "avoid" => Ok(BandChoice::Avoid),
+        "cross" => Ok(Band::Cross),
+        "avoid" => Ok(Band::Avoid),
         _ => {
-            let given = pair(text).map(|(low, high)| BandChoice::Given(low, high));
+            let given = pair(text).map(|(low, high)| Band::Given(low, high));
             given.ok_or_else(|| "expected cross, avoid, or two ends, as in -0.4,0.4".to_owned())
         }
     }
@@ -241,8 +231,8 @@ mod tests {
     fn pairs_ascend() {
         assert_eq!(ascending("0.9,2"), Ok((0.9, 2.0)));
         assert!(ascending("2,0.9").is_err() && ascending("2").is_err());
-        assert_eq!(band("-0.4,0.4"), Ok(BandChoice::Given(-0.4, 0.4)));
-        assert_eq!(band("avoid"), Ok(BandChoice::Avoid));
+        assert_eq!(band("-0.4,0.4"), Ok(Band::Given(-0.4, 0.4)));
+        assert_eq!(band("avoid"), Ok(Band::Avoid));
         assert!(band("across").is_err_and(|why| why.contains("avoid")));
     }
 }
