@@ -1,5 +1,5 @@
-//! How the options of a command are shown: the few that most people need first, the others under the
-//! question to which they are the answer.
+//! What all options have in common, and how they are shown: the few that most people need first, the
+//! others under the question to which they are the answer.
 
 use clap::{Arg, Command};
 
@@ -52,8 +52,17 @@ const QUESTIONS: [(&str, &str); 13] = [
     ("Many logs, memory and processors", "results shard summary threads max-memory"),
 ];
 
+/// `command` with options that take `-1` for their value, so that whoever typed it learns what is expected.
+pub(super) fn with_negative_numbers(command: Command) -> Command {
+    command.mut_args(|arg| {
+        let is_option = arg.get_long().is_some() && arg.get_action().takes_values();
+        arg.allow_negative_numbers(is_option)
+    })
+}
+
 /// The options of `command` in their order, the first ones alone in its short help.
 pub(super) fn arranged(command: Command) -> Command {
+    let command = with_negative_numbers(command);
     let name = command.get_name().to_owned();
     let Some((_, first)) = FIRST.iter().find(|(known, _)| *known == name) else {
         return command;

@@ -19,7 +19,7 @@ use crate::cli::console::{Ended, Host, Hosting, message};
 use crate::cli::each_log::end_with_parent;
 use crate::cli::exit::Completion;
 use crate::cli::failure::said;
-use crate::cli::help::arranged;
+use crate::cli::help::{arranged, with_negative_numbers};
 use crate::cli::output::meet_file_limits;
 use crate::cli::unknown::{neither_log_nor_command, with_tip};
 use crate::experiment::{Experiment, ReadError, is_named_like_a_log};
@@ -193,7 +193,8 @@ struct Reading {
 /// # Errors
 /// As [`run_within`].
 pub fn read_within(arguments: &[OsString], host: Arc<dyn Hosting>) -> Result<Experiment, Refused> {
-    let reading = Reading::try_parse_from(arguments);
+    let reading = with_negative_numbers(Reading::command()).try_get_matches_from(arguments);
+    let reading = reading.and_then(|found| Reading::from_arg_matches(&found));
     let reading = reading.map_err(|error| Refused::because(&error.to_string()))?;
     within(host, || read(reading.data.given(), &reading.data.options()?))
 }

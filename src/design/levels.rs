@@ -8,10 +8,12 @@ use crate::model::JointModel;
 /// What becomes of the band of inputs in which the joint rests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Band {
-    /// A level lies in it: steps begin and end at rest, and cross its ends.
-    Cross(f64, f64),
-    /// No level lies in it: every step moves the joint, or turns it.
-    Avoid(f64, f64),
+    /// A level lies in that of the model: steps begin and end at rest, and cross its ends.
+    Cross,
+    /// No level lies in that of the model: every step moves the joint, or turns it.
+    Avoid,
+    /// No level lies between these, as differences to rest.
+    Given(f64, f64),
 }
 
 /// Largest level where nothing is known of the joint.
@@ -61,20 +63,25 @@ pub(crate) fn default_hold_s(
 }
 
 impl Band {
-    /// `levels` with one in the band, or without any.
-    pub(crate) fn applied(self, levels: &[f64]) -> Vec<f64> {
-        let is_inside = |level: &f64, lower: f64, upper: f64| *level >= lower && *level <= upper;
+    /// `levels` with one in the band, or without any; that of the model is `rests`, where it has one.
+    pub(super) fn applied(
+        self,
+        levels: &[f64],
+        rests: impl FnOnce() -> Option<(f64, f64)>,
+    ) -> Option<Vec<f64>> {
+        let (lower, upper) = match self {
+            Self::Given(lower, upper) => (lower, upper),
+            Self::Cross | Self::Avoid => rests()?,
+        };
+        let is_inside = |level: &f64| *level >= lower && *level <= upper;
         let mut levels = levels.to_vec();
-        match self {
-            Self::Avoid(lower, upper) => levels.retain(|level| !is_inside(level, lower, upper)),
-            Self::Cross(lower, upper) => {
-                if !levels.iter().any(|level| is_inside(level, lower, upper)) {
-                    levels.push(two_digits(0.5 * (lower + upper)));
-                }
-            }
+        if self != Self::Cross {
+            levels.retain(|level| !is_inside(level));
+        } else if !levels.iter().any(is_inside) {
+            levels.push(two_digits(0.5 * (lower + upper)));
         }
         levels.sort_by(f64::total_cmp);
-        levels
+        Some(levels)
     }
 }
 
@@ -111,9 +118,11 @@ mod tests {
 
     #[test]
     fn a_band_is_crossed_or_avoided() {
-        let crossed = Band::Cross(-0.4, 0.6).applied(&[-2.0, 2.0]);
-        assert_eq!(crossed, [-2.0, 0.1, 2.0]);
-        assert_eq!(Band::Cross(-0.4, 0.6).applied(&[-2.0, 0.0, 2.0]), [-2.0, 0.0, 2.0]);
-        assert_eq!(Band::Avoid(-0.4, 0.6).applied(&[-2.0, 0.0, 0.6, 2.0]), [-2.0, 2.0]);
+        let applied = |band: Band, levels: &[f64]| band.applied(levels, || Some((-0.4, 0.6)));
+        assert_eq!(applied(Band::Cross, &[-2.0, 2.0]), Some(vec![-2.0, 0.1, 2.0]));
+        assert_eq!(applied(Band::Cross, &[-2.0, 0.0, 2.0]), Some(vec![-2.0, 0.0, 2.0]));
+        assert_eq!(applied(Band::Avoid, &[-2.0, 0.0, 0.6, 2.0]), Some(vec![-2.0, 2.0]));
+        assert_eq!(applied(Band::Given(-0.1, 3.0), &[-2.0, 0.0, 2.0]), Some(vec![-2.0]));
+        assert_eq!(Band::Avoid.applied(&[-2.0, 2.0], || None), None);
     }
 }

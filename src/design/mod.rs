@@ -53,7 +53,7 @@ pub use predict::{Prediction, TestRig, Uncertain};
 pub use random::{RandomSteps, random_steps, transitions};
 pub(crate) use refusal::rounded;
 pub use refusal::{NotKept, PlanError};
-pub(crate) use response::{response_s, resting_band};
+pub(crate) use response::response_s;
 pub use result::{Design, DesignError, OpenThreshold, Order, Rehearsal, Side};
 pub use schedule::{Hold, Schedule};
 pub use search::shortest;

@@ -31,7 +31,7 @@ pub fn plan(
     index: usize,
 ) -> Result<Plan, PlanError> {
     let planner = Planner { request, rig, known, logged };
-    let levels = planner.levels();
+    let levels = planner.levels()?;
     if levels.len() < 2 {
         return Err(planner.settles_elsewhere().unwrap_or(PlanError::TooFewLevels));
     }
@@ -82,14 +82,24 @@ struct Planner<'a> {
 
 impl Planner<'_> {
     /// The levels that suit the joint, or are asked for.
-    fn levels(&self) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`PlanError::NoDeadBand`].
+    fn levels(&self) -> Result<Vec<f64>, PlanError> {
         let PlanRequest { levels, largest, band, .. } = self.request;
         let levels = levels.clone().unwrap_or_else(|| match (largest, self.logged) {
             (None, Some(logged)) => self.logged_levels(logged),
             (Some(_), Some(logged)) => self.levels_of_its_signs(logged),
             _ => default_levels(self.model(), self.rig, self.largest()),
         });
-        band.map_or(levels.clone(), |band| band.applied(&levels))
+        let Some(band) = band else { return Ok(levels) };
+        let has_model = self.known.is_some();
+        band.applied(&levels, || self.resting_band()).ok_or(PlanError::NoDeadBand { has_model })
+    }
+
+    /// The inputs between which the joint rests, where a model has such a band.
+    fn resting_band(&self) -> Option<(f64, f64)> {
+        resting_band(self.model()?, self.rig, self.largest())
     }
 
     /// Rest, and levels of the log that move the joint.
@@ -101,8 +111,7 @@ impl Planner<'_> {
             }
             None => logged.clone(),
         };
-        let band = self.model().and_then(|model| resting_band(model, self.rig, self.largest()));
-        let mut levels = logged.beyond(band.unwrap_or((0.0, 0.0)));
+        let mut levels = logged.beyond(self.resting_band().unwrap_or((0.0, 0.0)));
         levels.push(0.0);
         levels.sort_by(f64::total_cmp);
         levels

@@ -28,7 +28,7 @@
 //! "Tests of separate families of hypotheses", Proc. 4th Berkeley Symposium (1961), 105-123.
 
 use crate::explain::{ALIKE, BEYOND_DOUBT, BEYOND_DOUBT_PERCENT};
-use crate::numerics::{fisher_tail, normal_below};
+use crate::numerics::{fisher_tail, halved, normal_below};
 
 /// What a model cannot follow of the data of another.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -134,14 +134,9 @@ fn critical(added: usize, freedom: usize) -> f64 {
     /// No test asks for more.
     const MOST: f64 = 1e4;
     const HALVINGS: usize = 40;
-    let (mut below, mut above) = (0.0, MOST);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (below + above);
-        let tail = fisher_tail(middle / added as f64, added, freedom).unwrap_or(0.0);
-        // The tail falls as λ grows: halving.
-        if tail > BEYOND_DOUBT { below = middle } else { above = middle }
-    }
-    above
+    // The tail falls as λ grows.
+    let tail = |lambda: f64| fisher_tail(lambda / added as f64, added, freedom).unwrap_or(0.0);
+    halved((0.0, MOST), HALVINGS, |lambda| tail(lambda) > BEYOND_DOUBT).1
 }
 
 #[cfg(test)]

@@ -9,6 +9,15 @@ pub enum PlanError {
     /// Fewer than two levels.
     #[error("fewer than two are left of the levels; an input needs two different ones or more")]
     TooFewLevels,
+    /// The ends of the dead band are not known.
+    #[error(
+        "the dead band is not known: {}",
+        if *.has_model { "the model has none" } else { "no model has it" }
+    )]
+    NoDeadBand {
+        /// Whether there is a model.
+        has_model: bool,
+    },
     /// No hold fits behind the rest with which an input begins.
     #[error(
         "an input of {duration_s} s has no room for a hold of {hold_s} s behind the rest before it"

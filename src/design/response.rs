@@ -4,6 +4,7 @@ use super::predict::TestRig;
 use super::schedule::{Hold, Schedule, samples_in};
 use crate::effect::Stage;
 use crate::model::{Component, JointModel};
+use crate::numerics::halved;
 
 /// Seconds in which a joint of this kind has its speed.
 const SETTLED_S: f64 = 3.0;
@@ -40,11 +41,7 @@ fn edge(model: &JointModel, rig: &TestRig, largest: f64) -> f64 {
     const HALVINGS: usize = 12;
     let speed = |level: f64| speeds(model, rig, level).last().copied().unwrap_or_default();
     let at_most = REST * speed(largest).abs();
-    let (mut rests, mut moves) = (0.0, 1.0);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (rests + moves);
-        if speed(middle * largest).abs() <= at_most { rests = middle } else { moves = middle }
-    }
+    let (rests, _) = halved((0.0, 1.0), HALVINGS, |part| speed(part * largest).abs() <= at_most);
     // An edge at zero is found a little above it, and one of a straight line at the limit.
     if rests <= 2.0 * REST { 0.0 } else { rests * largest.abs() }
 }

@@ -15,6 +15,7 @@ mod normal_equations;
 mod projection;
 pub(crate) mod rank;
 mod regression;
+mod root;
 mod rounding;
 mod statistics;
 #[cfg(test)]
@@ -31,6 +32,7 @@ pub(crate) use normal_equations::NormalEquations;
 pub(crate) use projection::Basis;
 pub(crate) use rank::{PseudoInverse, REGRESSORS};
 pub(crate) use regression::{Regression, product, residuals_of};
+pub(crate) use root::{halved, settle_at_root};
 pub(crate) use rounding::{
     as_written, decimal_exponent, to_decimals, to_digits, to_digits_by, to_multiple, to_nanoseconds,
 };

@@ -3,14 +3,15 @@
 use std::collections::HashSet;
 use std::fmt::Debug;
 
-use super::clock::{Clock, MIN_STEPS_PER_LAG, MIN_STEPS_PER_PERIOD, whole};
+use super::clock::{Clock, whole};
 use super::delay_law::DelayLaw;
 use super::error::{
-    BELOW_ONE, BETWEEN_ONES, FINITE, NOT_NEGATIVE, POSITIVE, Place, PlantError, SHARE,
+    BELOW_ONE, BETWEEN_ONES, EDGE, FINITE, LASTS_A_LAG, LASTS_A_PERIOD, NOT_NEGATIVE, NOT_ZERO,
+    POSITIVE, Place, PlantError, SHARE,
 };
 use super::input::InputSpec;
 use super::schema::SCHEMA;
-use super::spec::{JointSpec, PlantSpec, Ringing, Spikes, default};
+use super::spec::{JointSpec, PlantSpec, default};
 use crate::units::SamplePeriod;
 
 /// Samples of all joints together: 14 hours of a joint at 100 Hz. Keeps a slip of
@@ -89,11 +90,9 @@ impl JointSpec {
         self.input.check(clock, place)?;
         self.delay.check(clock, place)?;
         self.check_list(place)?;
-        self.check_range(clock, place)?;
-        self.check_statics(clock, place)?;
-        self.check_dynamics(clock, place)?;
+        self.check_numbers(clock, place)?;
+        self.check_range(place)?;
         self.check_cylinder(clock, place)?;
-        self.check_sensor(clock, place)?;
         self.effect.check("effect", place, clock)?;
         self.outside.check("outside", place, clock)
     }
@@ -124,8 +123,7 @@ impl JointSpec {
         }
     }
 
-    fn check_range(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
-        place.number("start", self.start, &FINITE, clock)?;
+    fn check_range(&self, place: &Place) -> Result<(), PlantError> {
         let Some(range) = self.range else {
             return Ok(());
         };
@@ -141,36 +139,29 @@ impl JointSpec {
         })
     }
 
-    fn check_statics(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
-        place.require("gain", self.gain, "finite, not zero", |gain| {
-            gain.is_finite() && gain.abs() > 0.0
-        })?;
-        if let Some(band) = self.dead_band {
-            place.require("dead_band", band, "[lower, upper], finite", |[lower, upper]| {
-                lower <= upper && lower.is_finite() && upper.is_finite()
-            })?;
+    fn check_numbers(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
+        let (ringing, spikes) = (self.ringing, self.spikes);
+        let numbers = [
+            ("start", Some(self.start), &FINITE),
+            ("gain", Some(self.gain), &NOT_ZERO),
+            ("valve_edge", Some(self.valve_edge), &EDGE),
+            ("saturation", self.saturation, &POSITIVE),
+            ("lag_s", self.lag_s, &LASTS_A_LAG),
+            ("ringing.period_s", ringing.map(|ringing| ringing.period_s), &LASTS_A_PERIOD),
+            ("ringing.damping", ringing.map(|ringing| ringing.damping), &BELOW_ONE),
+            ("noise", Some(self.noise), &NOT_NEGATIVE),
+            ("noise_correlation", Some(self.noise_correlation), &BETWEEN_ONES),
+            ("resolution", self.resolution, &POSITIVE),
+            ("spikes.share", spikes.map(|spikes| spikes.share), &SHARE),
+            ("spikes.size", spikes.map(|spikes| spikes.size), &NOT_NEGATIVE),
+        ];
+        for (key, number, allowed) in numbers {
+            number.map_or(Ok(()), |number| place.number(key, number, allowed, clock))?;
         }
-        place.require("valve_edge", self.valve_edge, "above 0, 1 or less", |edge| {
-            *edge > 0.0 && *edge <= 1.0
-        })?;
-        self.saturation.map_or(Ok(()), |limit| place.number("saturation", limit, &POSITIVE, clock))
-    }
-
-    fn check_dynamics(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
-        let lasts =
-            |seconds: f64, steps: f64| seconds.is_finite() && seconds >= steps * clock.substep_s();
-        if let Some(lag_s) = self.lag_s {
-            let allowed = "finite seconds, four time steps or more (sample_period_s / substeps)";
-            place.require("lag_s", lag_s, allowed, |lag_s| lasts(*lag_s, MIN_STEPS_PER_LAG))?;
-        }
-        let Some(Ringing { period_s, damping }) = self.ringing else {
-            return Ok(());
-        };
-        let allowed = "finite seconds, forty time steps or more (sample_period_s / substeps)";
-        place.require("ringing.period_s", period_s, allowed, |period_s| {
-            lasts(*period_s, MIN_STEPS_PER_PERIOD)
-        })?;
-        place.number("ringing.damping", damping, &BELOW_ONE, clock)
+        let Some(band) = self.dead_band else { return Ok(()) };
+        place.require("dead_band", band, "[lower, upper], finite", |[lower, upper]| {
+            lower <= upper && lower.is_finite() && upper.is_finite()
+        })
     }
 
     fn check_cylinder(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
@@ -211,19 +202,6 @@ impl JointSpec {
             }
         }
         Ok(())
-    }
-
-    fn check_sensor(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
-        place.number("noise", self.noise, &NOT_NEGATIVE, clock)?;
-        place.number("noise_correlation", self.noise_correlation, &BETWEEN_ONES, clock)?;
-        if let Some(resolution) = self.resolution {
-            place.number("resolution", resolution, &POSITIVE, clock)?;
-        }
-        let Some(Spikes { share, size }) = self.spikes else {
-            return Ok(());
-        };
-        place.number("spikes.share", share, &SHARE, clock)?;
-        place.number("spikes.size", size, &NOT_NEGATIVE, clock)
     }
 }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::clock::Clock;
-use super::error::{POSITIVE, Place, PlantError};
+use super::error::{NOT_NEGATIVE, POSITIVE, Place, PlantError};
 
 /// What sets the delay of each step. All times are in seconds.
 ///
@@ -106,8 +106,7 @@ impl DelayLaw {
     /// Refuses a negative delay, one that is not finite, and bounds in wrong order.
     pub(super) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         for (key, seconds) in self.bounds() {
-            let fits = |seconds: &f64| seconds.is_finite() && *seconds >= 0.0;
-            place.require(key, seconds, "finite seconds, not negative", fits)?;
+            place.number(key, seconds, &NOT_NEGATIVE, clock)?;
         }
         if let Self::Uniform { min, max } | Self::StepSize { min, max, .. } = self {
             place.require("delay.min", *min, "not above `delay.max`", |min| min <= max)?;

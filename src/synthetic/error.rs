@@ -135,6 +135,10 @@ pub(super) const NOT_NEGATIVE: Allowed =
     allowed("finite, not negative", |x, _| x.is_finite() && x >= 0.0);
 pub(super) const NOT_POSITIVE: Allowed =
     allowed("finite, zero or below", |x, _| x.is_finite() && x <= 0.0);
+pub(super) const NOT_ZERO: Allowed =
+    allowed("finite, not zero", |x, _| x.is_finite() && x.abs() > 0.0);
+/// The width of a rounded corner as a part of the largest level.
+pub(super) const EDGE: Allowed = allowed("above 0, 1 or less", |x, _| x > 0.0 && x <= 1.0);
 pub(super) const SHARE: Allowed = allowed("0 to 1", |x, _| (0.0..=1.0).contains(&x));
 pub(super) const BELOW_ONE: Allowed = allowed("0 or more, below 1", |x, _| (0.0..1.0).contains(&x));
 pub(super) const OPEN_SHARE: Allowed = allowed("above 0, below 1", |x, _| x > 0.0 && x < 1.0);

@@ -18,14 +18,14 @@ pub(crate) struct AlgorithmArgs {
 
     /// Samples that a segment reaches beyond its input steps, or seconds as in `0.1s`; `auto`
     /// chooses this and the next two from the record of each joint [default: 10]
-    #[arg(long, value_name = "N|Xs|auto", value_parser = or_auto(length), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N|Xs|auto", value_parser = or_auto(length))]
     alpha: Option<OrAuto<Length>>,
 
     /// Samples, or seconds, between two candidate breakpoints [default: 5]
-    #[arg(long, value_name = "N|Xs|auto", value_parser = or_auto(length), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N|Xs|auto", value_parser = or_auto(length))]
     beta: Option<OrAuto<Length>>,
 
-    #[arg(long, help = passband_help(), value_name = "HZ|none|auto", value_parser = or_auto(passband), allow_negative_numbers = true)]
+    #[arg(long, help = passband_help(), value_name = "HZ|none|auto", value_parser = or_auto(passband))]
     passband: Option<OrAuto<OrNone>>,
 
     #[command(flatten)]

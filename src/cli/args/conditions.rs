@@ -13,24 +13,24 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 /// The settings that are no part of how a breakpoint is searched.
 #[derive(Args, Debug)]
 pub(crate) struct ConditionArgs {
-    #[arg(long, help = confidence_help(), value_name = "X|none", value_parser = confidence, allow_negative_numbers = true)]
+    #[arg(long, help = confidence_help(), value_name = "X|none", value_parser = confidence)]
     confidence: Option<OrNone>,
 
     /// Confidence level of the interval of a delay
-    #[arg(long, value_name = "X", default_value_t = 0.95, value_parser = probability, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", default_value_t = 0.95, value_parser = probability)]
     interval: f64,
 
     /// Order of the low-pass
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = at_least_one, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = at_least_one)]
     pub(crate) filter_order: usize,
 
     /// Reject a step that is held for fewer samples (`τ_min`), or seconds as in `0.2s`
-    #[arg(long, value_name = "N|Xs", default_value = "0", value_parser = length_or_none, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N|Xs", default_value = "0", value_parser = length_or_none)]
     min_delay: Length,
 
     /// Look for delays up to this many samples only, or seconds as in `0.5s`: for holds so long
     /// that the output meets an end stop on its way
-    #[arg(long, value_name = "N|Xs", value_parser = length, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N|Xs", value_parser = length)]
     max_delay: Option<Length>,
 
     /// Reject a step when the output touches a limit
@@ -38,11 +38,11 @@ pub(crate) struct ConditionArgs {
     output_limits: Option<(f64, f64)>,
 
     /// Reject a step when the slope changes by less, in output units per sample
-    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold)]
     min_slope_change: f64,
 
     /// Reject a step unless the squared error of its lines is below this
-    #[arg(long, value_name = "X", value_parser = threshold, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = threshold)]
     max_sse: Option<f64>,
 
     /// Whether the first and the last step of a trial are judged
@@ -65,7 +65,7 @@ pub(crate) struct ConditionArgs {
 
     /// Count a change of the input as a step when it is more than this: for an input
     /// that was measured, and that has steps
-    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold)]
     min_step: f64,
 
     /// Take the input as steps, each of which has a delay, or as moving all the time, with one

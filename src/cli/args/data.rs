@@ -50,9 +50,7 @@ pub(crate) struct ReadingArgs {
     trial: Option<String>,
 
     /// Seconds between samples, for a log without a time column
-    #[arg(
-        long, value_name = "SECONDS", value_parser = number::period, allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "SECONDS", value_parser = number::period)]
     sample_period: Option<SamplePeriod>,
 
     /// A TOML file that maps the columns of a foreign log
@@ -60,16 +58,12 @@ pub(crate) struct ReadingArgs {
     columns: Option<PathBuf>,
 
     /// Put unevenly sampled logs on a grid of this period: output linear, input held
-    #[arg(
-        long, value_name = "SECONDS", value_parser = number::period, allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "SECONDS", value_parser = number::period)]
     resample: Option<SamplePeriod>,
 
     /// Fill gaps of the output up to this long; longer ones split the trial in two. An
     /// input that is missing is held
-    #[arg(
-        long, value_name = "SECONDS", value_parser = number::seconds, allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "SECONDS", value_parser = number::seconds)]
     fill: Option<f64>,
 
     #[command(flatten)]

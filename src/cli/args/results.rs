@@ -42,7 +42,7 @@ pub(crate) struct RunArgs {
     pub(crate) format: Format,
 
     /// Threads to use [default: all processors]
-    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
 
     /// No progress, no notices

@@ -8,12 +8,10 @@ use crate::report::{AddedJoint, ImprovedJoint, add_json};
 use crate::study::{Mode, add_to_joints};
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{
-    DataArgs, ModelFileArgs, ProtocolArgs, ResultArgs, check_models, find, name_of,
-};
+use crate::cli::args::{DataArgs, ModelFileArgs, ProtocolArgs, ResultArgs, find};
 use crate::cli::exit::Completion;
 use crate::cli::failure::outcomes;
-use crate::cli::run::{Session, Start, Study, revised};
+use crate::cli::run::{Start, Study};
 
 /// Add an effect to a model, and write its next revision
 ///
@@ -43,34 +41,28 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let effect = find(&args.effect, file.candidates())?;
     let target = args.model.target();
     let (data, output) = (&args.data, &args.output);
-    let session = Session::of_models("add", data, output, Some(target), args.model.kept())?;
-    let study = Study::of(session, &output.delay_settings())?;
-    check_models(&file, study.joints(), study.verbosity())?;
+    let study = Study::begin("add", data, output, (Some(target), args.model.kept()))?;
+    let start = Start::of(&study, &file, Some(target), Vec::new())?;
     args.model.check_target(&file, study.joints())?;
-    let starts = |joint: &Joint| file.joint(&joint.name).cloned();
+    let starts = |joint: &Joint| start.model(joint);
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
     let added = study.work("fitting", |bar, others| {
         let watched = protocol.watched(bar).beside(others);
         add_to_joints(study.joints(), &study.estimates, starts, watched, effect, &Threads)
     })?;
-    let name = name_of(Some(target));
-    let (model, effect) = (name.as_str(), effect.spec().id);
+    let (model, effect) = (start.name.as_str(), effect.spec().id);
     let (joints, failures) = outcomes(study.experiment(), &added, |_, joint, addition| {
-        let revision = file.revision(&joint.name).unwrap_or(0) + 1;
+        let revision = start.revision(joint) + 1;
         AddedJoint { joint, model, effect, revision, addition }
     })?;
     let improvements: Vec<Improvement> = joints.iter().map(improvement).collect();
-    let start = Start { file: &file, model, arguments: &[], estimates: &Vec::new() };
     let improved = joints.iter().zip(&improvements).enumerate();
     let improved: Vec<ImprovedJoint<'_>> = improved
         .filter_map(|(index, (added, found))| start.improved(index, added.joint, found))
         .collect();
     // What the model still lacks was not looked for.
-    let revised = revised(&file, &improved, &study.experiment().sources, |_| None)?;
-    if output.is_recorded() {
-        let alone = improved.iter().map(|joint| ImprovedJoint::of(joint.finding, joint.revisions));
-        study.record_revisions(output.recording.as_deref(), &alone.collect::<Vec<_>>())?;
-    }
+    let revised = start.revised(&improved, |_| None)?;
+    study.record_revisions(output.recording.as_deref(), &improved)?;
     args.model.write(&file, &revised, study.verbosity())?;
     let text = || add_text(&joints);
     study.end(&failures, text, || add_json(&target.display().to_string(), &joints, &failures))

@@ -11,12 +11,11 @@ use crate::study::{Mode, OfJoints, compare_joints, explain_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    DataArgs, EffectArgs, ProtocolArgs, ResultArgs, add_arguments, check_models, fresh_name,
-    name_of, read_model,
+    DataArgs, EffectArgs, ProtocolArgs, ResultArgs, add_arguments, fresh_name, read_model,
 };
 use crate::cli::exit::Completion;
 use crate::cli::failure::outcomes;
-use crate::cli::run::{Session, Start, Study, as_it_is};
+use crate::cli::run::{Start, Study, as_it_is};
 
 /// Say which physical effect a model lacks
 ///
@@ -48,11 +47,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let options = args.effects.options(file.candidates())?;
     let (data, output) = (&args.data, &args.output);
     let inputs = args.model.iter().cloned().collect();
-    let session = Session::of_models("explain", data, output, None, inputs)?;
-    let study = Study::of(session, &output.delay_settings())?;
+    let study = Study::begin("explain", data, output, (None, inputs))?;
     let joints = study.joints();
-    check_models(&file, joints, study.verbosity())?;
-    let starts = |joint: &Joint| file.joint(&joint.name).cloned();
+    let start = Start::of(&study, &file, args.model.as_deref(), args.add_arguments(joints))?;
+    let starts = |joint: &Joint| start.model(joint);
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
     let (explained, bests) = study.work("explaining", |bar, others| {
         let watched = protocol.watched(bar).beside(others);
@@ -61,10 +59,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         let bests = output.is_recorded().then(|| args.bests(&study, others, &explained));
         (explained, bests.unwrap_or_default())
     })?;
-    let arguments = args.add_arguments(joints);
-    let name = name_of(args.model.as_deref());
-    let estimates = &study.estimates;
-    let start = Start { file: &file, model: &name, arguments: &arguments, estimates };
     let explained = explained.into_iter().map(|found| Some(found?.map(as_it_is)));
     let explained: Vec<_> = explained.collect();
     let improved = |index, joint, found| start.improved(index, joint, found);
@@ -77,8 +71,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
             Some(ComparedJoint { joint, model, revision: 0, comparison })
         });
         let models: Vec<_> = findings.iter().map(|f| f.compared).chain(bests).collect();
-        let alone = improved.iter().map(|joint| ImprovedJoint::of(joint.finding, joint.revisions));
-        study.record(output.recording.as_deref(), &models, &alone.collect::<Vec<_>>())?;
+        study.record(output.recording.as_deref(), &models, &improved)?;
     }
     let text = || explain_text(&findings);
     study.end(&failures, text, || explain_json(&findings, &failures))

@@ -11,14 +11,13 @@ use crate::study::{Mode, improve_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, add_arguments, check_models,
-    name_of,
+    DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, add_arguments,
 };
 use crate::cli::console::{Interrupt, STOPPING, message};
 use crate::cli::each_log::{Each, FolderArgs};
 use crate::cli::exit::Completion;
 use crate::cli::failure::outcomes;
-use crate::cli::run::{Progress, Session, Start, Study, revised};
+use crate::cli::run::{Progress, Start, Study};
 
 /// Add to a model what it lacks, effect by effect
 ///
@@ -79,21 +78,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let target = args.model.target();
     let (data, output) = (&args.data, &args.output);
     let interrupt = Interrupt::watch(STOPPING);
-    let mut session = Session::of_models("improve", data, output, Some(target), args.model.kept())?;
-    session.stream = session.stream.expecting_revisions()?;
-    let study = Study::of(session, &output.delay_settings())?;
+    let study = Study::begin("improve", data, output, (Some(target), args.model.kept()))?;
     let joints = study.joints();
-    check_models(&file, joints, study.verbosity())?;
+    let arguments = add_arguments(data, &target.display().to_string(), joints);
+    let start = Start::of(&study, &file, Some(target), arguments)?;
     args.model.check_target(&file, joints)?;
-    // What follows the effect in the command that adds one more, for each joint.
-    let model = target.display().to_string();
-    let arguments = add_arguments(data, &model, joints);
-    let name = name_of(Some(target));
-    let estimates = &study.estimates;
-    let start = Start { file: &file, model: &name, arguments: &arguments, estimates };
-    let progress = Progress::new(&file, joints, study.verbosity(), Some(interrupt));
-    let stage = Stage::new(&study, start);
-    let starts = |joint: &Joint| file.joint(&joint.name).cloned();
+    let progress = Progress::new(&start, Some(interrupt));
+    let stage = Stage::new(&study, &start);
+    let starts = |joint: &Joint| start.model(joint);
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
     let done = |index, revision: &Step| {
         stage.show(index, revision);
@@ -101,16 +93,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     };
     let results = study.work("improving", |bar, others| {
         let watched = protocol.watched(bar).beside(others);
-        improve_joints(joints, estimates, starts, watched, &options, done, &Threads)
+        improve_joints(joints, &study.estimates, starts, watched, &options, done, &Threads)
     })?;
-    let improved = |index, joint, found| progress.improved(start, index, joint, found);
+    let improved = |index, joint, found| progress.improved(index, joint, found);
     let (improved, failures) = outcomes(study.experiment(), &results, improved)?;
     let improved: Vec<_> = improved.into_iter().flatten().collect();
-    if output.is_recorded() {
-        study.record_revisions(output.recording.as_deref(), &improved)?;
-    }
-    let sources = &study.experiment().sources;
-    let revised = revised(&file, &improved, sources, |joint| Some(joint.finding.verdict))?;
+    study.record_revisions(output.recording.as_deref(), &improved)?;
+    let revised = start.revised(&improved, |joint| Some(joint.finding.verdict))?;
     args.model.write(&file, &revised, study.verbosity())?;
     let text = || improve_text(&improved);
     let completion = study.end(&failures, text, || improve_json(&improved, &failures))?;
@@ -132,13 +121,13 @@ impl Args {
 /// The revisions so far, shown to whoever looks on.
 struct Stage<'a> {
     study: &'a Study<'a>,
-    start: Start<'a>,
+    start: &'a Start<'a>,
     /// Per joint.
     steps: Vec<Mutex<Vec<Step>>>,
 }
 
 impl<'a> Stage<'a> {
-    fn new(study: &'a Study<'a>, start: Start<'a>) -> Self {
+    fn new(study: &'a Study<'a>, start: &'a Start<'a>) -> Self {
         let steps = study.joints().iter().map(|_| Mutex::default()).collect();
         Self { study, start, steps }
     }

@@ -53,15 +53,15 @@ pub(crate) struct Args {
     seed: Option<u64>,
 
     /// Standard deviation of the noise of every joint [default: the plant file's, or 0.05]
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, value_name = "X")]
     noise: Option<f64>,
 
     /// Correlation of the noise of neighbouring samples [default: the plant file's, or 0]
-    #[arg(long, value_name = "PHI", allow_negative_numbers = true)]
+    #[arg(long, value_name = "PHI")]
     noise_correlation: Option<f64>,
 
     /// Length of the log [default: the plant file's, or 120]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS")]
     duration: Option<f64>,
 
     /// No progress, no notices

@@ -1,13 +1,15 @@
 //! The revisions of models: as they come, in recordings, and in the model file.
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-use super::estimates::Estimates;
-use crate::cli::console::{Interrupt, Verbosity};
+use super::study::Study;
+use crate::cli::args::{check_models, name_of};
+use crate::cli::console::Interrupt;
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Source};
 use crate::explain::{Change, Explanation, Improvement, Revision as Step, Verdict};
-use crate::model::{Fitted, FittedParameter, LogHash, ModelFile, Revision};
+use crate::model::{Fitted, FittedParameter, JointModel, LogHash, ModelFile, Revision};
 use crate::report::{
     Before, ComparedJoint, Finding, History, ImprovedJoint, errors_of, gone, revision_line,
 };
@@ -15,102 +17,131 @@ use crate::wording::parameter_units;
 
 /// Which revisions there are so far, reported as they come.
 pub(crate) struct Progress<'a> {
-    joints: &'a [Joint],
-    /// Per joint, the number of its first revision.
-    first: Vec<u32>,
+    start: &'a Start<'a>,
     /// Per joint, the number of its next revision, and whether it was stopped.
     next: Vec<(AtomicU32, AtomicBool)>,
-    verbosity: Verbosity,
     /// Who may stop it.
     interrupt: Option<Interrupt>,
 }
 
 impl<'a> Progress<'a> {
-    pub(crate) fn new(
-        file: &ModelFile,
-        joints: &'a [Joint],
-        verbosity: Verbosity,
-        interrupt: Option<Interrupt>,
-    ) -> Self {
-        let first = |joint: &Joint| file.revision(&joint.name).unwrap_or(0);
-        let first: Vec<u32> = joints.iter().map(first).collect();
-        let next = first.iter().map(|first| ((*first).into(), false.into())).collect();
-        Self { joints, first, next, verbosity, interrupt }
+    pub(crate) fn new(start: &'a Start<'a>, interrupt: Option<Interrupt>) -> Self {
+        let joints = start.study.joints().iter();
+        let next = joints.map(|joint| (start.revision(joint).into(), false.into())).collect();
+        Self { start, next, interrupt }
     }
 
     /// Reports a revision; whether to go on.
     pub(crate) fn done(&self, index: usize, revision: &Step) -> bool {
-        let Some((joint, (next, stopped))) = self.joints.get(index).zip(self.next.get(index))
-        else {
-            return true;
-        };
+        let study = self.start.study;
+        let of_joint = study.joints().get(index).zip(self.next.get(index));
+        let Some((joint, (next, stopped))) = of_joint else { return true };
         // Another start of the search begins with the first revision again.
         if revision.change == Change::Start {
-            next.store(self.first.get(index).copied().unwrap_or(0), Ordering::Relaxed);
+            next.store(self.start.revision(joint), Ordering::Relaxed);
         }
         let number = next.fetch_add(1, Ordering::Relaxed);
-        self.verbosity.say("improving", revision_line(joint, number, revision));
+        study.verbosity().say("improving", revision_line(joint, number, revision));
         let stops = self.interrupt.is_some_and(Interrupt::was_pressed);
         stopped.store(stops, Ordering::Relaxed);
         !stops
     }
 
     /// What is to be said of the joint at `index`, which somebody may have stopped.
-    pub(crate) fn improved<'b>(
-        &self,
-        start: Start<'b>,
-        index: usize,
-        joint: &'b Joint,
-        improvement: &'b Improvement,
-    ) -> Option<ImprovedJoint<'b>> {
-        let improved = start.improved(index, joint, improvement)?;
-        let next = self.next.get(index);
-        let is_stopped = next.is_some_and(|(_, stopped)| stopped.load(Ordering::Relaxed));
-        Some(if is_stopped { improved.stopped() } else { improved })
-    }
-}
-
-/// What models begin with, and what they are called.
-#[derive(Clone, Copy)]
-pub(crate) struct Start<'a> {
-    pub(crate) file: &'a ModelFile,
-    /// The name of the model in the output.
-    pub(crate) model: &'a str,
-    /// Per joint, what follows the effect in the command that adds one.
-    pub(crate) arguments: &'a [String],
-    /// Per joint, its delays.
-    pub(crate) estimates: &'a Estimates,
-}
-
-impl<'a> Start<'a> {
-    /// What is to be said of the joint at `index`, which was improved.
     pub(crate) fn improved(
-        self,
+        &self,
         index: usize,
         joint: &'a Joint,
         improvement: &'a Improvement,
     ) -> Option<ImprovedJoint<'a>> {
-        let Self { file, model, arguments, estimates } = self;
+        let improved = self.start.improved(index, joint, improvement)?;
+        let next = self.next.get(index);
+        let is_stopped = next.is_some_and(|(_, stopped)| stopped.load(Ordering::Relaxed));
+        // Where more is missing at the end, nothing but the limit has ended it, or whoever stopped it.
+        let reached_limit = improvement.verdict == Verdict::MissingEffect;
+        let improved = ImprovedJoint { reached_limit, ..improved };
+        Some(if is_stopped { improved.stopped() } else { improved })
+    }
+}
+
+/// What the models of a study begin with, and what they are called.
+pub(crate) struct Start<'a> {
+    study: &'a Study<'a>,
+    file: &'a ModelFile,
+    /// The name of the model in the output.
+    pub(crate) name: String,
+    /// Per joint, what follows the effect in the command that adds one.
+    arguments: Vec<String>,
+}
+
+impl<'a> Start<'a> {
+    /// The models of `file`, which is at `path`; refuses one that is of other joints than the logs.
+    pub(crate) fn of(
+        study: &'a Study<'a>,
+        file: &'a ModelFile,
+        path: Option<&Path>,
+        arguments: Vec<String>,
+    ) -> anyhow::Result<Self> {
+        check_models(file, study.joints(), study.verbosity())?;
+        Ok(Self { study, file, name: name_of(path), arguments })
+    }
+
+    /// The model with which a joint begins; a plain integrator where there is none.
+    pub(crate) fn model(&self, joint: &Joint) -> Option<JointModel> {
+        self.file.joint(&joint.name).cloned()
+    }
+
+    /// The number of its revision.
+    pub(crate) fn revision(&self, joint: &Joint) -> u32 {
+        self.file.revision(&joint.name).unwrap_or(0)
+    }
+
+    /// What is to be said of the joint at `index`, which was improved.
+    pub(crate) fn improved<'b>(
+        &'b self,
+        index: usize,
+        joint: &'b Joint,
+        improvement: &'b Improvement,
+    ) -> Option<ImprovedJoint<'b>> {
+        let Self { study, file, name, arguments } = self;
         let Improvement { revisions, verdict, attribution } = improvement;
         let last = revisions.last()?;
-        let first_revision = file.revision(&joint.name).unwrap_or(0);
+        let first_revision = self.revision(joint);
         let revision = (first_revision..).zip(revisions).last()?.0;
         let first = revisions.first().filter(|_| revisions.len() > 1);
         let finding = Finding {
-            compared: ComparedJoint { joint, model, revision, comparison: &last.comparison },
+            compared: ComparedJoint { joint, model: name, revision, comparison: &last.comparison },
             verdict: *verdict,
             ranking: last.ranking.as_slice(),
             add_arguments: arguments.get(index).map_or("", String::as_str),
             before: first.map(|first| Before::Model(&first.comparison)),
             attribution: Some(attribution),
-            delays: estimates.get(index).and_then(|estimate| estimate.as_ref().ok()),
+            delays: study.estimates.get(index).and_then(|estimate| estimate.as_ref().ok()),
         };
-        // Where more is missing at the end, nothing but the limit has ended it, or whoever stopped it.
-        let reached_limit = *verdict == Verdict::MissingEffect;
         let improved = ImprovedJoint::of(finding, revisions);
         let history =
             History { revisions: file.history(&joint.name), fitted: file.fitted(&joint.name) };
-        Some(ImprovedJoint { first_revision, history, reached_limit, ..improved })
+        Some(ImprovedJoint { first_revision, history, ..improved })
+    }
+
+    /// The file with all revisions of all joints, and with the verdict on each where `judged` has one. A
+    /// joint that has no new one stays as it is.
+    pub(crate) fn revised(
+        &self,
+        improved: &[ImprovedJoint<'_>],
+        judged: impl Fn(&ImprovedJoint<'_>) -> Option<Verdict>,
+    ) -> anyhow::Result<ModelFile> {
+        let Self { study, file, .. } = self;
+        let sources = &study.experiment().sources;
+        let revised_for =
+            |file, joint: &ImprovedJoint<'_>| revised_for(file, joint, judged(joint), sources);
+        let is_known = |joint: &&ImprovedJoint<'_>| file.joint(joint.name()).is_some();
+        let known = improved.iter().filter(is_known);
+        let file = known.clone().try_fold((*file).clone(), &revised_for)?;
+        let new = improved.iter().filter(|joint| !is_known(joint));
+        let new: Vec<ModelFile> =
+            new.map(|joint| revised_for(file.emptied(), joint)).collect::<anyhow::Result<_>>()?;
+        Ok(file.joined(&new)?)
     }
 }
 
@@ -119,25 +150,6 @@ pub(crate) fn as_it_is(explanation: Explanation) -> Improvement {
     let Explanation { base, verdict, ranking, attribution } = explanation;
     let revisions = vec![Step { change: Change::Start, comparison: base, ranking }];
     Improvement { revisions, verdict, attribution }
-}
-
-/// `file` with all revisions of all joints, and with the verdict on each where `judged` has one. A joint
-/// that has no new one stays as it is.
-pub(crate) fn revised(
-    file: &ModelFile,
-    improved: &[ImprovedJoint<'_>],
-    sources: &[Source],
-    judged: impl Fn(&ImprovedJoint<'_>) -> Option<Verdict>,
-) -> anyhow::Result<ModelFile> {
-    let revised_for =
-        |file, joint: &ImprovedJoint<'_>| revised_for(file, joint, judged(joint), sources);
-    let is_known = |joint: &&ImprovedJoint<'_>| file.joint(joint.name()).is_some();
-    let known = improved.iter().filter(is_known);
-    let file = known.clone().try_fold(file.clone(), &revised_for)?;
-    let new = improved.iter().filter(|joint| !is_known(joint));
-    let new: Vec<ModelFile> =
-        new.map(|joint| revised_for(file.emptied(), joint)).collect::<anyhow::Result<_>>()?;
-    Ok(file.joined(&new)?)
 }
 
 /// `file` with all revisions of a joint.
@@ -221,26 +233,4 @@ fn entry(revision: u32, added: Option<&str>, before: &Comparison, after: &Compar
         removed: removed.first().map(|id| (*id).to_owned()),
         errors: errors_of(after),
     }
-}
-
-/// `revision 0` and so on, to the last number there is.
-pub(super) fn revision_names(improved: &[ImprovedJoint<'_>]) -> Vec<String> {
-    let last = improved.iter().map(|joint| joint.finding.compared.revision).max().unwrap_or(0);
-    (0..=last).map(|number| format!("revision {number}")).collect()
-}
-
-/// The revisions of a joint, each as a model.
-pub(super) fn models<'a>(
-    improved: &ImprovedJoint<'a>,
-    names: &'a [String],
-) -> Vec<ComparedJoint<'a>> {
-    let joint = improved.finding.compared.joint;
-    let numbered = (improved.first_revision..).zip(improved.revisions);
-    let named = (0..).zip(names).map(|(number, name)| (number, name.as_str()));
-    let compared = |(number, revision): (u32, &'a Step)| {
-        let model = named.clone().find(|(own, _)| *own == number)?.1;
-        let comparison = &revision.comparison;
-        Some(ComparedJoint { joint, model, revision: number, comparison })
-    };
-    numbered.filter_map(compared).collect()
 }

@@ -1,15 +1,12 @@
 //! A command on logs, from reading them to its exit status.
 
-use std::path::{Path, PathBuf};
-
 use serde::Serialize;
 
 use super::estimates::Estimates;
 use crate::batch::Threads;
-use crate::cli::args::{DataArgs, OwnSettings, ResultArgs, RunArgs, read};
+use crate::cli::args::{DataArgs, OwnSettings, RunArgs, read};
 use crate::cli::console::{Bar, Verbosity, warn};
 use crate::cli::exit::Completion;
-use crate::cli::output::{OutputKind, Outputs};
 use crate::cli::viewer::Stream;
 use crate::delay::{Automatic, Settings};
 use crate::experiment::{Experiment, Joint, ReadOptions};
@@ -30,23 +27,6 @@ pub(crate) struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Reads `data` for `command`, also of the joints that are not asked for what they draw from
-    /// the supply that all share. Before that it refuses outputs that cannot be written, where the file
-    /// `written` is one and those of `inputs` are read, too, and reaches the viewer.
-    pub(crate) fn of_models(
-        command: &'static str,
-        data: &DataArgs,
-        args: &'a ResultArgs,
-        written: Option<&Path>,
-        inputs: Vec<PathBuf>,
-    ) -> anyhow::Result<Self> {
-        let outputs = Outputs::default().with(OutputKind::Recording, &args.recording);
-        let outputs = outputs.with(OutputKind::Toml, written);
-        outputs.check(&[data.files(), inputs].concat())?;
-        let stream = args.stream.open(args.run.verbosity())?;
-        Self::begin(command, data, &data.options_with_others()?, (&args.run, stream))
-    }
-
     /// Reads `data` for `command`.
     pub(crate) fn begin(
         command: &'static str,

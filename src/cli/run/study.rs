@@ -1,17 +1,18 @@
 //! Models fitted to the joints of logs: with the delays, in threads, shown and recorded.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::estimates::{Estimates, estimated, spikes_of};
-use super::revisions::{models, revision_names};
 use super::session::Session;
+use crate::cli::args::{DataArgs, ResultArgs};
 use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
-use crate::cli::output::Contents;
+use crate::cli::output::{Contents, OutputKind, Outputs};
 use crate::delay::{Automatic, Settings};
 use crate::experiment::{Experiment, Joint, Other};
+use crate::explain::Revision as Step;
 use crate::fit::Mended;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::study::{OtherResult, others_of};
@@ -26,6 +27,26 @@ pub(crate) struct Study<'a> {
 }
 
 impl<'a> Study<'a> {
+    /// The logs and delays for a `command` that fits models. Before that it refuses outputs that cannot be
+    /// written, where the model file `written` is one and those of `inputs` are read, too.
+    pub(crate) fn begin(
+        command: &'static str,
+        data: &DataArgs,
+        args: &'a ResultArgs,
+        (written, inputs): (Option<&Path>, Vec<PathBuf>),
+    ) -> anyhow::Result<Self> {
+        let outputs = Outputs::default().with(OutputKind::Recording, &args.recording);
+        let outputs = outputs.with(OutputKind::Toml, written);
+        outputs.check(&[data.files(), inputs].concat())?;
+        let mut stream = args.stream.open(args.run.verbosity())?;
+        if command == "improve" {
+            stream = stream.expecting_revisions()?;
+        }
+        let options = data.options_with_others()?;
+        let session = Session::begin(command, data, &options, (&args.run, stream))?;
+        Self::of(session, &args.delay_settings())
+    }
+
     /// Estimates the delays by `settings`, and shows them.
     pub(crate) fn of(session: Session<'a>, settings: &Settings) -> anyhow::Result<Self> {
         let settings = session.in_samples(settings);
@@ -152,4 +173,23 @@ fn notes_on_models(joints: &[Joint]) -> Vec<String> {
         said.map(|note| format!("joint `{}`: {note}", joint.name)).collect::<Vec<_>>()
     };
     joints.iter().flat_map(note).collect()
+}
+
+/// `revision 0` and so on, to the last number there is.
+fn revision_names(improved: &[ImprovedJoint<'_>]) -> Vec<String> {
+    let last = improved.iter().map(|joint| joint.finding.compared.revision).max().unwrap_or(0);
+    (0..=last).map(|number| format!("revision {number}")).collect()
+}
+
+/// The revisions of a joint, each as a model.
+fn models<'a>(improved: &ImprovedJoint<'a>, names: &'a [String]) -> Vec<ComparedJoint<'a>> {
+    let joint = improved.finding.compared.joint;
+    let numbered = (improved.first_revision..).zip(improved.revisions);
+    let named = (0..).zip(names).map(|(number, name)| (number, name.as_str()));
+    let compared = |(number, revision): (u32, &'a Step)| {
+        let model = named.clone().find(|(own, _)| *own == number)?.1;
+        let comparison = &revision.comparison;
+        Some(ComparedJoint { joint, model, revision: number, comparison })
+    };
+    numbered.filter_map(compared).collect()
 }

@@ -19,6 +19,7 @@
 //! with the angle, `s' = q` with a `q` that may jump, too, and is of no interest.
 
 use crate::delay::neutral::Transition;
+use crate::numerics::halved;
 
 /// Which of the responses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -204,11 +205,7 @@ impl Shape {
         let c = square * lag * (3.0 * mean + third).exp();
         // Time constants are the roots of x³ − a x² + b x − c; there is one from 0 to a of stable poles.
         let value = |x: f64| ((x - a) * x + b) * x - c;
-        let (mut low, mut high) = (0.0, a);
-        for _ in 0..60 {
-            let middle = f64::midpoint(low, high);
-            *(if value(middle) < 0.0 { &mut low } else { &mut high }) = middle;
-        }
+        let (_, high) = halved((0.0, a), 60, |x| value(x) < 0.0);
         let omega = (high / c).sqrt();
         let logs = [omega.ln(), (omega * (a - high) / 2.0).ln(), high.ln()];
         Self { logs, ..*self }

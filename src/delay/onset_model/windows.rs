@@ -9,6 +9,7 @@ use std::ops::Range;
 use super::dynamics::{Before, Fit, Jump, Response};
 use super::shape::{Shape, Shapes};
 use crate::delay::neutral::Transition;
+use crate::numerics::halved;
 use crate::units::{ceil_to_index, floor_to_index};
 
 /// Samples at the ends of a window at which there is no onset: with one sample beyond it, any
@@ -20,6 +21,9 @@ const SEEN: f64 = 10.0;
 
 /// How finely an onset is found, samples.
 const FINE: f64 = 0.002;
+
+/// Halvings of a sample after which an end of an interval is known as finely.
+const HALVINGS: usize = 10;
 
 /// Positions over a window that are looked at before the best one is searched finely.
 const COARSE: usize = 100;
@@ -341,11 +345,7 @@ impl Pass {
                     inside = distance;
                 }
             }
-            let (mut low, mut high) = (inside, inside + 1.0);
-            while high - low > FINE / 2.0 {
-                let middle = f64::midpoint(low, high);
-                *(if below(middle, sign) { &mut low } else { &mut high }) = middle;
-            }
+            let (low, high) = halved((inside, inside + 1.0), HALVINGS, |place| below(place, sign));
             f64::midpoint(low, high)
         };
         (side(-1.0), side(1.0))

@@ -6,6 +6,7 @@ use clap::Args as ClapArgs;
 
 use crate::cli::args::number::at_least_one;
 use crate::cli::args::{ReadingArgs, RunArgs};
+use crate::design::Band;
 use crate::experiment::format_names;
 use crate::numerics::to_decimals;
 
@@ -28,54 +29,35 @@ pub(crate) struct Args {
     pub(super) model: Option<PathBuf>,
 
     /// How far the numbers of a model may be off that no log confirms, in parts
-    #[arg(
-        long, value_name = "SHARE", value_parser = share, default_value_t = 0.1,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "SHARE", value_parser = share, default_value_t = 0.1)]
     pub(super) uncertainty: f64,
 
     /// The levels: a list, or a range with its step, as in -2,-1,0,1,2 or -2..2:0.5
-    #[arg(
-        long, value_name = "LIST", value_parser = levels, allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "LIST", value_parser = levels, allow_hyphen_values = true)]
     pub(super) levels: Option<Levels>,
 
     /// Largest magnitude of the input, or of its difference to where the joint rests, where levels
     /// are not given [default: that of the logs, else what suits the model, else 2]
-    #[arg(
-        long, value_name = "X", value_parser = above_zero, allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "X", value_parser = above_zero)]
     pub(super) largest: Option<f64>,
 
     /// Shortest and longest hold in seconds [default: longer than the model takes to respond,
     /// else 1,2.5]
-    #[arg(
-        long, value_name = "MIN,MAX", value_parser = ascending,
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "MIN,MAX", value_parser = ascending, allow_hyphen_values = true)]
     pub(super) hold: Option<(f64, f64)>,
 
     /// Length in seconds; with `--separate` the longest that is tried [default: 120, or less where
     /// the range cannot be kept as long; with `--separate` 60]
-    #[arg(
-        long, value_name = "SECONDS", value_parser = above_zero,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "SECONDS", value_parser = above_zero)]
     pub(super) duration: Option<f64>,
 
     /// Most trials, before each of which the joint is brought back to its start: 1 for an input
     /// without a break [default: as many as the range needs]
-    #[arg(
-        long, value_name = "N", value_parser = at_least_one, conflicts_with = "separate",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "separate")]
     pub(super) trials: Option<usize>,
 
     /// Samples per second [default: as the logs, but no more than 100 without `--separate`]
-    #[arg(
-        long, value_name = "HZ", value_parser = above_zero,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "HZ", value_parser = above_zero)]
     pub(super) rate: Option<f64>,
 
     /// Seed of everything random
@@ -85,25 +67,17 @@ pub(crate) struct Args {
     /// Lowest and highest output that the joint may come to; needs a model or a log. It is kept, by
     /// as much as predictions of the joint were off on parts of the log, or refused [default with
     /// `--separate` and a log: where the log has been]
-    #[arg(
-        long, value_name = "LO,HI", value_parser = ascending,
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "LO,HI", value_parser = ascending, allow_hyphen_values = true)]
     pub(super) output_range: Option<(f64, f64)>,
 
     /// The output at which it starts [default: the middle of the range; without one, of the log, or 0]
-    #[arg(
-        long, value_name = "X", value_parser = number, allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "X", value_parser = number)]
     pub(super) start: Option<f64>,
 
     /// `cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a
     /// band in which none is to lie
-    #[arg(
-        long, value_name = "cross|avoid|LO,HI", value_parser = band,
-        allow_hyphen_values = true
-    )]
-    pub(super) dead_band: Option<BandChoice>,
+    #[arg(long, value_name = "cross|avoid|LO,HI", value_parser = band, allow_hyphen_values = true)]
+    pub(super) dead_band: Option<Band>,
 
     /// Two effects to separate. The model has one of them, or a log is given
     #[arg(
@@ -113,23 +87,16 @@ pub(crate) struct Args {
     pub(super) separate: Vec<String>,
 
     /// The probability of success that is wanted
-    #[arg(
-        long, value_name = "SHARE", value_parser = power, default_value_t = 0.95,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "SHARE", value_parser = power, default_value_t = 0.95)]
     pub(super) power: f64,
 
     /// Standard deviation of the measurement noise [default: that of the log, else the error
     /// in the model file's history]
-    #[arg(
-        long, value_name = "X", value_parser = above_zero, allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "X", value_parser = above_zero)]
     pub(super) noise: Option<f64>,
 
     /// How often the experiment is rehearsed with either effect, in simulation
-    #[arg(
-        long, value_name = "N", value_parser = rehearsals, default_value_t = 40
-    )]
+    #[arg(long, value_name = "N", value_parser = rehearsals, default_value_t = 40)]
     pub(super) rehearsals: usize,
 
     /// Where the input goes: `time_s`, and `<joint>.input` of each joint
@@ -155,17 +122,6 @@ fn data_help() -> String {
 /// Levels of an input, each once, ascending.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Levels(pub(crate) Vec<f64>);
-
-/// What becomes of the dead band, and which.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum BandChoice {
-    /// A level lies in that of the model.
-    Cross,
-    /// None does.
-    Avoid,
-    /// None lies in this one.
-    Given(f64, f64),
-}
 
 pub(crate) fn levels(text: &str) -> Result<Levels, String> {
     /// More than anybody plays.
@@ -225,12 +181,12 @@ fn pair(text: &str) -> Option<(f64, f64)> {
     (low <= high).then_some((low, high))
 }
 
-pub(crate) fn band(text: &str) -> Result<BandChoice, String> {
+pub(crate) fn band(text: &str) -> Result<Band, String> {
     match text {
-        "cross" => Ok(BandChoice::Cross),
-        "avoid" => Ok(BandChoice::Avoid),
+        "cross" => Ok(Band::Cross),
+        "avoid" => Ok(Band::Avoid),
         _ => {
-            let given = pair(text).map(|(low, high)| BandChoice::Given(low, high));
+            let given = pair(text).map(|(low, high)| Band::Given(low, high));
             given.ok_or_else(|| "expected cross, avoid, or two ends, as in -0.4,0.4".to_owned())
         }
     }
@@ -275,8 +231,8 @@ mod tests {
     fn pairs_ascend() {
         assert_eq!(ascending("0.9,2"), Ok((0.9, 2.0)));
         assert!(ascending("2,0.9").is_err() && ascending("2").is_err());
-        assert_eq!(band("-0.4,0.4"), Ok(BandChoice::Given(-0.4, 0.4)));
-        assert_eq!(band("avoid"), Ok(BandChoice::Avoid));
+        assert_eq!(band("-0.4,0.4"), Ok(Band::Given(-0.4, 0.4)));
+        assert_eq!(band("avoid"), Ok(Band::Avoid));
         assert!(band("across").is_err_and(|why| why.contains("avoid")));
     }
 }

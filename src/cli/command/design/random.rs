@@ -1,18 +1,15 @@
 //! Random steps for each joint.
 
 use crate::batch::Threads;
-use crate::design::{
-    Band, Logged, Plan, PlanRequest, TestRig, Uncertain, default_largest, plan, reach, response_s,
-    resting_band,
-};
+use crate::design::{Band, Logged, Plan, PlanRequest, TestRig, Uncertain, plan, reach, response_s};
 use crate::experiment::Joint;
 use crate::report::{
     Basis, DesignedJoint, hold_note, left_out_note, no_range_note, shortened_note, trials_note,
 };
 use crate::study::{OfJoints, know_joints};
-use anyhow::{anyhow, bail};
+use anyhow::bail;
 
-use super::args::{Args, BandChoice, Levels};
+use super::args::{Args, Levels};
 use super::known::{Known, PROTOCOL};
 use crate::cli::console::Bar;
 use crate::cli::failure::said;
@@ -63,8 +60,7 @@ fn steps_of(
     }
     let logged = known.logged(&rig.name);
     let rest = known.rest(&rig.name);
-    let request = request(args, uncertain, &rig, logged)?;
-    let planned = plan(&request, &rig, uncertain, logged, index)?;
+    let planned = plan(&request(args, rest), &rig, uncertain, logged, index)?;
     let notes = notes(&planned, &rig, uncertain, rest);
     let basis = uncertain.map(|known| basis(known, &rig, logged, &planned));
     let Plan { schedule, prediction, .. } = planned;
@@ -72,30 +68,22 @@ fn steps_of(
     Ok(DesignedJoint { rig, schedule, rest, prediction, discrimination: None, basis, notes })
 }
 
-/// What is asked for, in differences to rest.
-fn request(
-    args: &Args,
-    uncertain: Option<&Uncertain>,
-    rig: &TestRig,
-    logged: Option<&Logged>,
-) -> anyhow::Result<PlanRequest> {
-    let rest = logged.map_or(0.0, |logged| logged.rest);
+/// What is asked for, in differences to `rest`.
+fn request(args: &Args, rest: f64) -> PlanRequest {
     let levels = args.levels.as_ref();
-    let levels = levels.map(|Levels(levels)| levels.iter().map(|u| u - rest).collect::<Vec<_>>());
-    let magnitude = |levels: &Vec<f64>| levels.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
-    let largest = levels.as_ref().map(magnitude).or(args.largest);
-    let largest = largest.or(logged.map(Logged::largest).filter(|largest| *largest > 0.0));
-    let largest = largest.unwrap_or_else(|| default_largest(model(uncertain), rig));
-    let band = args.dead_band.map(|choice| band(choice, uncertain, rig, (largest, rest)));
-    Ok(PlanRequest {
-        levels,
+    let about = |band| match band {
+        Band::Given(lower, upper) => Band::Given(lower - rest, upper - rest),
+        of_model => of_model,
+    };
+    PlanRequest {
+        levels: levels.map(|Levels(levels)| levels.iter().map(|u| u - rest).collect()),
         largest: args.largest,
-        band: band.transpose()?,
+        band: args.dead_band.map(about),
         hold_s: args.hold,
         duration_s: args.duration,
         trials: args.trials,
         seed: args.seed,
-    })
+    }
 }
 
 fn model(uncertain: Option<&Uncertain>) -> Option<&crate::model::JointModel> {
@@ -125,28 +113,4 @@ fn notes(plan: &Plan, rig: &TestRig, uncertain: Option<&Uncertain>, rest: f64) -
     let no_range = (rig.range.is_none() && uncertain.is_some()).then(no_range_note);
     let trials = Some(plan.schedule.trial_count()).filter(|count| *count > 1).map(trials_note);
     [trials, short, left_out, shortened, no_range].into_iter().flatten().collect()
-}
-
-/// What is to become of which dead band.
-fn band(
-    choice: BandChoice,
-    uncertain: Option<&Uncertain>,
-    rig: &TestRig,
-    (largest, rest): (f64, f64),
-) -> anyhow::Result<Band> {
-    let of_model = || {
-        let model = model(uncertain);
-        let band = model.and_then(|model| resting_band(model, rig, largest));
-        band.ok_or_else(|| match model {
-            Some(_) => anyhow!("--dead-band: the model has none; give its ends, as in -0.4,0.4"),
-            None => {
-                anyhow!("--dead-band: no model has it; give --model, or its ends, as in -0.4,0.4")
-            }
-        })
-    };
-    Ok(match choice {
-        BandChoice::Cross => of_model().map(|(lower, upper)| Band::Cross(lower, upper))?,
-        BandChoice::Avoid => of_model().map(|(lower, upper)| Band::Avoid(lower, upper))?,
-        BandChoice::Given(lower, upper) => Band::Avoid(lower - rest, upper - rest),
-    })
 }

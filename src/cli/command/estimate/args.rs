@@ -59,10 +59,7 @@ pub(crate) struct FollowArgs {
     pub(crate) is_on: bool,
 
     /// End, too, when the log has not grown for so long
-    #[arg(
-        long, value_name = "SECONDS", value_parser = number::threshold, requires = "is_on",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "SECONDS", value_parser = number::threshold, requires = "is_on")]
     pub(crate) idle: Option<f64>,
 }
 

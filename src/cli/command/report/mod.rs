@@ -21,14 +21,13 @@ pub(crate) use args::Args;
 use args::ModelArgs;
 use target::{Target, file_name};
 
-use crate::cli::args::{add_arguments, check_models, name_of, read_model};
+use crate::cli::args::{add_arguments, read_model};
 use crate::cli::console::{Bar, Interrupt, STOPPING, Verbosity, message};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, said};
 use crate::cli::output::write_bytes;
 use crate::cli::run::{
     self, Progress, Session, Start, Study, as_it_is, compared, estimated, log_hashes, others,
-    revised,
 };
 use crate::cli::typed::quoted;
 
@@ -94,9 +93,12 @@ fn report(args: &Args, target: Option<&Target>, shown: Shown) -> anyhow::Result<
     if shown == Shown::Everything {
         first_look::show_delays(args, &study)?;
     }
-    check_models(&file, study.joints(), study.verbosity())?;
-    let models = args.model.improved(&file, &study, &options)?;
-    Reported { args, file: &file, study: &study, shown }.report(models.as_ref(), target)
+    let path = args.model.model.as_ref().or(target.and_then(|target| target.model.as_ref()));
+    let path = path.map_or_else(|| "model.toml".to_owned(), |path| path.display().to_string());
+    let arguments = add_arguments(&args.data, &path, study.joints());
+    let start = Start::of(&study, &file, args.model.model.as_deref(), arguments)?;
+    let models = args.model.improved(&start, &file, &study, &options)?;
+    Reported { args, start: &start, study: &study, shown }.report(models.as_ref(), target)
 }
 
 impl ModelArgs {
@@ -113,15 +115,16 @@ impl ModelArgs {
     /// The model of each joint with what it lacks; none where no model is asked for.
     fn improved<'a>(
         &self,
+        start: &'a Start<'a>,
         file: &ModelFile,
-        study: &'a Study<'_>,
+        study: &Study<'_>,
         options: &Options,
     ) -> anyhow::Result<Option<Improved<'a>>> {
         let (joints, estimates) = (study.joints(), &study.estimates);
-        let starts = |joint: &Joint| file.joint(&joint.name).cloned();
+        let starts = |joint: &Joint| start.model(joint);
         let protocol = self.protocol.with(Mode::FitOrIntegrator);
         let interrupt = self.improve.then(|| Interrupt::watch(STOPPING));
-        let progress = Progress::new(file, joints, study.verbosity(), interrupt);
+        let progress = Progress::new(start, interrupt);
         let done = |index, revision: &Revision| progress.done(index, revision);
         let models = if self.improve {
             study.work("improving", |bar, others| {
@@ -160,7 +163,7 @@ type Improved<'a> = (OfJoints<Improvement>, Progress<'a>);
 /// What is asked, and what came of it.
 struct Reported<'a> {
     args: &'a Args,
-    file: &'a ModelFile,
+    start: &'a Start<'a>,
     study: &'a Study<'a>,
     shown: Shown,
 }
@@ -172,27 +175,19 @@ impl Reported<'_> {
         found: Option<&Improved<'_>>,
         target: Option<&Target>,
     ) -> anyhow::Result<Completion> {
-        let Self { args, file, study, .. } = *self;
+        let study = self.study;
         let experiment = study.experiment();
-        let name = name_of(args.model.model.as_deref());
         let mut failures = run::failures(experiment, &study.estimates);
         let joints = estimated(experiment, &study.estimates);
         if joints.is_empty() {
             return Err(nothing_usable(failures.last()));
         }
-        let written = target.and_then(|target| target.model.as_ref());
-        let model = args.model.model.as_ref().or(written);
-        let model =
-            model.map_or_else(|| "model.toml".to_owned(), |path| path.display().to_string());
-        let arguments = add_arguments(&args.data, &model, &experiment.joints);
-        let estimates = &study.estimates;
-        let start = Start { file, model: &name, arguments: &arguments, estimates };
         let mut models = Vec::new();
         if let Some((results, progress)) = found {
             for (index, (joint, result)) in study.joints().iter().zip(results).enumerate() {
                 match result {
                     Some(Ok(found)) => {
-                        let improved = progress.improved(start, index, joint, found);
+                        let improved = progress.improved(index, joint, found);
                         models.extend(improved.map(ImprovedJoint::since_its_beginning));
                     }
                     Some(Err(error)) => {
@@ -286,9 +281,7 @@ impl Reported<'_> {
 
     /// The model file with the fitted models in it.
     fn revised(&self, models: &[ImprovedJoint<'_>]) -> anyhow::Result<ModelFile> {
-        let sources = &self.study.experiment().sources;
-        let judged = |joint: &ImprovedJoint<'_>| Some(joint.finding.verdict);
-        let mut file = revised(self.file, models, sources, judged)?;
+        let mut file = self.start.revised(models, |joint| Some(joint.finding.verdict))?;
         for joint in models.iter().filter(|joint| joint.revisions.len() == 1) {
             let compared = &joint.finding.compared;
             file = file.refitted(&compared.joint.name, &compared.comparison.fit.model)?;

@@ -49,7 +49,7 @@ pub(crate) struct Args {
     passband: Option<Values<OrNone>>,
 
     /// Delays that differ by so many samples more than β or their intervals allow still agree
-    #[arg(long, value_name = "SAMPLES", default_value_t = 2.0, value_parser = number::threshold, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SAMPLES", default_value_t = 2.0, value_parser = number::threshold)]
     tolerance: f64,
 
     #[command(flatten)]
