@@ -109,7 +109,7 @@ mod tests {
         let record =
             RecordRange { input_levels: &levels, input_abs_max: 1.0, ..RecordRange::default() };
         let between = InputQuantization.jumps(0, &record);
-        let multiples = |step: &f64| levels.map(|level| (level / step + 0.5).floor());
+        let multiples = |step: &f64| levels.map(|level| (level / step + 0.5).floor().to_bits());
         let met: Vec<_> = between.iter().map(multiples).collect();
         assert!(met.windows(2).all(|pair| pair[0] != pair[1]), "{met:?}");
         let least = between.iter().copied().fold(f64::INFINITY, f64::min);

@@ -59,7 +59,7 @@ impl Space {
         });
         let (flats, slopes) = flats.unzip();
         let reach = free.iter().map(|index| reach(model, *index, range)).collect();
-        Self { flats, slopes, free, bounds, reach }
+        Self { free, bounds, flats, slopes, reach }
     }
 
     /// Whether an effect switches with a free parameter between some of its values.

@@ -14,12 +14,14 @@ use Place::{Recording, Terminal};
 /// A row of the table of a joint, with its name.
 pub(crate) type Level<'a> = (&'a str, &'a DelayRow);
 
+pub(super) type LevelFact = Fact<fn(&Level<'_>) -> Value>;
+
 const PEOPLE: &[Place] = &[Terminal, Recording];
 
 /// All of it, in the order of the columns of `--table`: levels are means of a bin, low and high bound
 /// the median at 95 %.
 #[rustfmt::skip]
-pub(super) const LEVEL: &[Fact<fn(&Level<'_>) -> Value>] = &[
+pub(super) const LEVEL: &[LevelFact] = &[
     fact("joint", Text, Table, ("joint", "", Unit::None, &[Recording]), |(joint, _)| (*joint).into()),
     fact("transition", Text, Table, ("transition", "", Unit::None, PEOPLE), |(_, row)| row.transition.id().into()),
     fact("level_from", Real, Table, UNSAID, |(_, row)| row.level_from.into()),

@@ -17,11 +17,13 @@ use Part::{Json, People};
 /// A candidate for a model of a joint.
 type Ranked<'a> = (&'a Joint, &'a Candidate);
 
+type RankedFact = Fact<fn(&Ranked<'_>) -> Value>;
+
 const SHOWN: &[Place] = &[Place::Terminal];
 
 /// All that is said of a candidate, in the order of the fields of a ranking.
 #[rustfmt::skip]
-const RANKING: &[Fact<fn(&Ranked<'_>) -> Value>] = &[
+const RANKING: &[RankedFact] = &[
     fact("effect", Text, Json, ("effect", "", Unit::None, SHOWN), |(_, it)| it.name().into()),
     fact("effects", Text, Json, UNSAID, |(_, it)| json!(it.effects)),
     fact("equation", Text, Json, UNSAID, |(_, it)| specs(it).map(|spec| spec.equation).collect()),
