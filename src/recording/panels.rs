@@ -263,11 +263,25 @@ fn flagged(plot: &Plot, flags: &[(f64, String)]) -> Vec<(Vec2D, String)> {
         let collides = |line: usize| {
             taken.iter().any(|(at, other, room)| *at == line && (x - other).abs() < half + room)
         };
-        let line = (0..).find(|line| !collides(*line)).unwrap_or(0);
+        let line = (0..=taken.len()).find(|line| !collides(*line)).unwrap_or(0);
         taken.push((line, x, half));
         (Vec2D::new(x, plot.bottom + 2.0 + 40.0 * line as f32), text.clone())
     };
     flags.iter().map(place).collect()
+}
+
+/// Whether the models of a drawing stay, or are others at each tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Models {
+    Stay,
+    Follow,
+}
+
+/// Whether something is drawn below all else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Depth {
+    Ground,
+    Above,
 }
 
 /// What an entity is called: by its mark, and of a model in a drawing that stays by its number, so
@@ -279,8 +293,8 @@ struct Key {
 }
 
 impl Key {
-    fn is_of(&self, mark: &Mark, is_fixed: bool) -> bool {
-        self.name == name(mark) && self.model == model(mark, is_fixed)
+    fn is_of(&self, mark: &Mark, models: Models) -> bool {
+        self.name == name(mark) && self.model == model(mark, models)
     }
 
     fn path(&self) -> String {
@@ -307,10 +321,10 @@ fn name(mark: &Mark) -> &str {
     mark.part.as_deref().or(mark.name.as_deref()).unwrap_or(of_shape)
 }
 
-fn model(mark: &Mark, is_fixed: bool) -> Option<usize> {
+fn model(mark: &Mark, models: Models) -> Option<usize> {
     match mark.role {
-        Role::Model if is_fixed => Some(0),
-        Role::Revision(one) if is_fixed => Some(one.place() + 1),
+        Role::Model if models == Models::Stay => Some(0),
+        Role::Revision(one) if models == Models::Stay => Some(one.place() + 1),
         _ => None,
     }
 }
@@ -319,29 +333,30 @@ fn model(mark: &Mark, is_fixed: bool) -> Option<usize> {
 struct Part {
     key: Key,
     radius: f32,
-    is_ground: bool,
+    depth: Depth,
     rows: Vec<Drawn>,
 }
 
 /// The entities of a drawing, which is made row by row.
 struct Parts {
-    is_fixed: bool,
+    models: Models,
     rows: usize,
     all: Vec<Part>,
 }
 
 impl Parts {
     fn of(layers: &Layers<'_>) -> Self {
-        Self { is_fixed: layers.is_fixed(), rows: 0, all: Vec::new() }
+        let models = if layers.is_fixed() { Models::Stay } else { Models::Follow };
+        Self { models, rows: 0, all: Vec::new() }
     }
 
     fn add_row<'m>(&mut self, marks: impl Iterator<Item = (&'m Mark, &'m Plot)>) {
         self.rows += 1;
         for (mark, plot) in marks {
-            let known = self.all.iter().position(|part| part.key.is_of(mark, self.is_fixed));
+            let known = self.all.iter().position(|part| part.key.is_of(mark, self.models));
             let place = known.unwrap_or(self.all.len());
             if known.is_none() {
-                self.all.push(Part::of(mark, self.is_fixed));
+                self.all.push(Part::of(mark, self.models));
             }
             if let Some(part) = self.all.get_mut(place) {
                 part.rows.resize_with(self.rows, Drawn::default);
@@ -350,25 +365,28 @@ impl Parts {
         }
     }
 
-    fn push(self, layers: &mut Layers<'_>, is_ground: bool) -> Result<Self, RecordError> {
+    fn push(self, layers: &mut Layers<'_>, depth: Depth) -> Result<Self, RecordError> {
         let (now, later): (Vec<_>, Vec<_>) =
-            self.all.into_iter().partition(|part| part.is_ground == is_ground);
+            self.all.into_iter().partition(|part| part.depth == depth);
         now.into_iter().try_for_each(|part| part.push(layers, self.rows))?;
         Ok(Self { all: later, ..self })
     }
 }
 
 impl Part {
-    fn of(mark: &Mark, is_fixed: bool) -> Self {
+    fn of(mark: &Mark, models: Models) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
         let radius = match mark.shape {
             Shape::Lines(_, width) | Shape::Verticals(_, width) => width as f32,
             Shape::Spans(..) | Shape::Bars(_) | Shape::Area(_) => HATCH,
             _ => 1.0,
         };
-        let key = Key { name: name(mark).to_owned(), model: model(mark, is_fixed) };
-        let is_ground = matches!(mark.shape, Shape::Spans(..) | Shape::Area(_));
-        Self { key, radius, is_ground, rows: Vec::new() }
+        let key = Key { name: name(mark).to_owned(), model: model(mark, models) };
+        let depth = match mark.shape {
+            Shape::Spans(..) | Shape::Area(_) => Depth::Ground,
+            _ => Depth::Above,
+        };
+        Self { key, radius, depth, rows: Vec::new() }
     }
 
     fn push(mut self, layers: &mut Layers<'_>, rows: usize) -> Result<(), RecordError> {
@@ -401,9 +419,9 @@ pub(super) fn add(
         grids.push(grid.concat());
         texts.push(labels.concat());
     }
-    let before = parts.push(layers, true)?;
+    let before = parts.push(layers, Depth::Ground)?;
     layers.strips("grid", 0.7, grids)?;
-    before.push(layers, false)?;
+    before.push(layers, Depth::Above)?;
     layers.texts("texts", texts)
 }
 
@@ -416,7 +434,7 @@ pub(super) fn add_marks(
     for row in rows {
         parts.add_row(row.iter().map(|(mark, plot)| (mark, plot)));
     }
-    parts.push(layers, true)?.push(layers, false).map(drop)
+    parts.push(layers, Depth::Ground)?.push(layers, Depth::Above).map(drop)
 }
 
 #[cfg(test)]
@@ -453,7 +471,9 @@ mod tests {
         drawn.add(&Mark::lines(Role::Model, 1.0, vec![curve.clone()]), &plot);
         drawn.add(&Mark::dots(Role::Model, curve), &plot);
         assert_eq!((drawn.strips.len(), drawn.dots.len()), (2, 2));
-        let along = |(strip, _): &Strip| strip.windows(2).any(|pair| pair[0].y() == pair[1].y());
+        let along = |(strip, _): &Strip| {
+            strip.windows(2).any(|pair| pair[0].y().total_cmp(&pair[1].y()).is_eq())
+        };
         assert!(!drawn.strips.iter().any(along), "a piece along the frame");
     }
 

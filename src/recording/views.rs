@@ -108,9 +108,12 @@ const LANES: &str =
 /// What plots along the record are called: they are empty on timelines that have no samples.
 const ALONG: &str = "Along sample, time or decision";
 
+/// A drawing: its name, its path, the parts that each model has, and its size.
+type Drawing = (&'static str, &'static str, &'static [&'static str], (f32, f32));
+
 /// What the residual of models depends on: name, path, the parts that each model has, and size.
 #[rustfmt::skip]
-const DRAWINGS: [(&str, &str, &[&str], (f32, f32)); 3] = [
+const DRAWINGS: [Drawing; 3] = [
     ("Residual against four quantities: points, and their mean", paths::SCATTER, &["lines"], scatter::SIZE),
     ("Share of the error: bars; of the time: white", paths::ERROR_SHARE, &["squared_error"], error_share::SIZE),
     ("Correlation: that of noise stays between the lines (99 %)", paths::CORRELATION, &["band", "lines"], correlogram::SIZE),

@@ -172,6 +172,7 @@ struct Grid {
 
 /// What stands at the sides of a plot: seconds at the left of a row of plots, samples of so many seconds
 /// at its right.
+#[derive(Clone, Copy)]
 struct Scales {
     seconds: bool,
     samples: Option<f64>,

@@ -29,6 +29,9 @@ pub(super) struct Held {
 /// Level of the input, and the speed that a model makes of it.
 pub(super) type Law = Vec<Place>;
 
+/// A law with its name, where there is one.
+pub(super) type NamedLaw = Option<(String, Law)>;
+
 /// What shows the effect that comes next, of one revision.
 pub(super) struct Figure {
     /// Names of the axes, with units.
@@ -37,7 +40,7 @@ pub(super) struct Figure {
     pub(super) y: Span,
     pub(super) points: Vec<Held>,
     /// What the revision makes of it, the one before, and the candidate that comes next, with names.
-    pub(super) laws: [Option<(String, Law)>; 3],
+    pub(super) laws: [NamedLaw; 3],
 }
 
 impl Figure {
@@ -46,7 +49,7 @@ impl Figure {
         let own = Role::of_revision(at);
         let roles = [own, Role::of_revision(at.saturating_sub(1)), role(palette::PROPOSED)];
         let laws = self.laws.iter().zip(roles).zip(["law", "before", "proposed"]);
-        let law = |((law, role), part): ((&Option<(String, Law)>, Role), &'static str)| {
+        let law = |((law, role), part): ((&NamedLaw, Role), &'static str)| {
             let (name, law) = law.clone()?;
             let law = if law.is_empty() { Vec::new() } else { vec![law] };
             Some(Mark::lines(role, 2.4, law).named(name).part(part))

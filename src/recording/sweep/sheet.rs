@@ -131,7 +131,7 @@ impl<'s> Page<'s> {
             let dots = own.map(|(x, step, group)| {
                 let mut name = group.name(step);
                 if is_named {
-                    name += &format!(": {}", group.in_words(self.swept));
+                    name = format!("{name}: {}", group.in_words(self.swept));
                 }
                 ((*x, group.delay * step.period_s), group.radius(step), name)
             });
