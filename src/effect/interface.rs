@@ -151,9 +151,10 @@ pub trait Effect: Debug + Send + Sync {
         vec![self.spec().parameters.iter().map(|parameter| parameter.start(record)).collect()]
     }
 
-    /// Values of one of its parameters, ascending, one between each two at which it does something else
-    /// at a level of the input, where the error does depend on it between them too; none where it does
-    /// not jump so. A descent comes to none of them but the next.
+    /// Values of one of its parameters that a fit tries besides a descent, which crosses no jump: one
+    /// between each two at which the effect does otherwise at some level of the input, ascending.
+    ///
+    /// None where it does not jump. A threshold needs none: it jumps at the levels themselves.
     fn jumps(&self, _parameter: usize, _record: &RecordRange<'_>) -> Vec<f64> {
         Vec::new()
     }

@@ -93,10 +93,10 @@ impl Problem<'_, '_> {
         self.here.take();
     }
 
-    /// Moves a variable to the best of the values between which an effect switches with it; whether that
+    /// Moves a variable across the jumps of its effect to the best value between two of them; whether that
     /// is another one.
     pub(super) fn cross_flat(&mut self, variable: usize) -> bool {
-        let values = self.space.flats.get(variable).map_or(&[][..], Vec::as_slice);
+        let values = self.space.between_jumps(variable);
         let Some(index) = self.best_within(variable, values) else { return false };
         values.get(index).is_some_and(|value| self.is_better_with(&[(variable, *value)]))
     }
@@ -138,7 +138,7 @@ impl Problem<'_, '_> {
         /// Values of each that are tried: all levels of most experiments.
         const COARSE: usize = 12;
         let some = |variable: usize| -> Vec<f64> {
-            let values = self.space.flats.get(variable).map_or(&[][..], Vec::as_slice);
+            let values = self.space.between_jumps(variable);
             values.iter().step_by(values.len().div_ceil(COARSE).max(1)).copied().collect()
         };
         let (firsts, seconds) = (some(one), some(two));

@@ -66,12 +66,12 @@ impl<'p, 'r> Search<'p, 'r> {
         Self { cost, termination, slopes, ..self }
     }
 
-    /// Moves the parameters with which an effect switches at levels of the input to their best.
+    /// Moves the parameters with which an effect jumps to their best.
     pub(super) fn across_flats(mut self) -> Self {
         /// One may have to wait for another.
         const PASSES: usize = 3;
         for _ in 0..PASSES {
-            let flats = self.switched_variables();
+            let flats = self.jumping_variables();
             let crossed = flats.iter().filter(|index| self.problem.cross_flat(**index)).count();
             if crossed == 0 && !self.problem.cross_two_flats(&flats) {
                 break;
@@ -82,11 +82,12 @@ impl<'p, 'r> Search<'p, 'r> {
         self
     }
 
-    /// The variables with which an effect switches, of thresholds those on which nothing else depends.
-    fn switched_variables(&self) -> Vec<usize> {
+    /// The variables with which an effect jumps; of thresholds, those on which nothing else depends.
+    fn jumping_variables(&self) -> Vec<usize> {
         let space = self.problem.space;
-        let all = (0..self.problem.free.len()).filter(|index| space.is_switched(*index));
-        let (sloped, levels): (Vec<_>, Vec<_>) = all.partition(|index| space.slopes(*index));
+        let all =
+            (0..self.problem.free.len()).filter(|index| !space.between_jumps(*index).is_empty());
+        let (sloped, levels): (Vec<_>, Vec<_>) = all.partition(|index| space.is_sloped(*index));
         let residuals = self.problem.residuals();
         let mut slopes = DMatrix::zeros(residuals.len(), self.problem.free.len());
         self.problem.put_slopes(&mut slopes, &levels, &residuals);

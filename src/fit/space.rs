@@ -13,14 +13,20 @@ pub(super) struct Space {
     /// Index in [`JointModel::values`] of each free parameter.
     pub(super) free: Vec<usize>,
     pub(super) bounds: Vec<Bounds>,
-    /// For each of them the values between which an effect switches at a level of the input; none for
-    /// what does not.
-    pub(super) flats: Vec<Vec<f64>>,
-    /// Whether the error depends on a value between those, too, and not in jumps alone.
-    slopes: Vec<bool>,
+    /// For each of them how the effect jumps with it.
+    jumps: Vec<Jumps>,
     /// For each of them the values that the record reaches, where it is a level of the input or
     /// a limit of the output.
     reach: Vec<Bounds>,
+}
+
+/// How an effect jumps with one of its parameters.
+#[derive(Clone, Debug, Default)]
+struct Jumps {
+    /// A value between each two jumps; none where there are none.
+    between: Vec<f64>,
+    /// Whether the error depends on the parameter between two jumps, too.
+    is_sloped: bool,
 }
 
 impl Space {
@@ -53,23 +59,23 @@ impl Space {
                 (index, Bounds { low, high })
             })
             .unzip();
-        let flats = free.iter().zip(&bounds).map(|(index, bounds)| {
-            let (flats, slopes) = switches(model, *index, range);
-            (bounds.within(&flats), slopes)
+        let jumps = free.iter().zip(&bounds).map(|(index, bounds)| {
+            let jumps = jumps(model, *index, range);
+            Jumps { between: bounds.within(&jumps.between), ..jumps }
         });
-        let (flats, slopes) = flats.unzip();
+        let jumps = jumps.collect();
         let reach = free.iter().map(|index| reach(model, *index, range)).collect();
-        Self { free, bounds, flats, slopes, reach }
+        Self { free, bounds, jumps, reach }
     }
 
-    /// Whether an effect switches with a free parameter between some of its values.
-    pub(super) fn is_switched(&self, free: usize) -> bool {
-        self.flats.get(free).is_some_and(|flats| !flats.is_empty())
+    /// A value of a free parameter between each two at which the effect jumps; none where it does not.
+    pub(super) fn between_jumps(&self, free: usize) -> &[f64] {
+        self.jumps.get(free).map_or(&[], |jumps| &jumps.between)
     }
 
-    /// Whether the error depends on such a parameter between these values, too.
-    pub(super) fn slopes(&self, free: usize) -> bool {
-        self.slopes.get(free).is_some_and(|slopes| *slopes)
+    /// Whether the error depends on such a parameter between two jumps, too.
+    pub(super) fn is_sloped(&self, free: usize) -> bool {
+        self.jumps.get(free).is_some_and(|jumps| jumps.is_sloped)
     }
 
     /// What a fit could do with a free parameter, which it left at `value`.
@@ -87,9 +93,8 @@ impl Space {
     pub(super) fn holding(&self, values: &[f64]) -> Self {
         let pairs = self.free.iter().zip(&self.bounds);
         let bounds = pairs.map(|(index, bounds)| bounds.holding(values[*index]));
-        let (free, bounds) = (self.free.clone(), bounds.collect());
-        let (flats, slopes) = (self.flats.clone(), self.slopes.clone());
-        Self { free, bounds, flats, slopes, reach: self.reach.clone() }
+        let (free, jumps, reach) = (self.free.clone(), self.jumps.clone(), self.reach.clone());
+        Self { free, bounds: bounds.collect(), jumps, reach }
     }
 
     /// The free ones of all `values`, within their bounds.
@@ -130,19 +135,18 @@ fn reach(model: &JointModel, index: usize, range: &RecordRange<'_>) -> Bounds {
     }
 }
 
-/// The values between which an effect of `model` switches at a level of the input with this one, and
-/// whether the error depends on it between them, too.
-///
-/// A threshold does the same anywhere in the gap between two levels.
-fn switches(model: &JointModel, index: usize, range: &RecordRange<'_>) -> (Vec<f64>, bool) {
-    let Some((component, parameter)) = place(model, index) else { return (Vec::new(), false) };
+/// How an effect of `model` jumps with one of its values. A threshold does the same anywhere in the gap
+/// between two levels of the input.
+fn jumps(model: &JointModel, index: usize, range: &RecordRange<'_>) -> Jumps {
+    let Some((component, parameter)) = place(model, index) else { return Jumps::default() };
     let effect = component.effect();
-    if parameter.dimension == Dimension::Input && effect.spec().stage != Stage::Spool {
-        return (range.thresholds(usize::MAX), false);
+    let spec = effect.spec();
+    if parameter.dimension == Dimension::Input && spec.stage != Stage::Spool {
+        return Jumps { between: range.thresholds(usize::MAX), is_sloped: false };
     }
-    let parameters = effect.spec().parameters;
-    let at = parameters.iter().position(|one| std::ptr::eq(one, parameter));
-    (at.map_or_else(Vec::new, |at| effect.jumps(at, range)), true)
+    let at = spec.parameters.iter().position(|one| std::ptr::eq(one, parameter));
+    let between = at.map_or_else(Vec::new, |at| effect.jumps(at, range));
+    Jumps { between, is_sloped: true }
 }
 
 /// The effect of which a value of `model` is a parameter, and this.

@@ -382,10 +382,7 @@ impl Part {
             _ => 1.0,
         };
         let key = Key { name: name(mark).to_owned(), model: model(mark, models) };
-        let depth = match mark.shape {
-            Shape::Spans(..) | Shape::Area(_) => Depth::Ground,
-            _ => Depth::Above,
-        };
+        let depth = if mark.is_ground() { Depth::Ground } else { Depth::Above };
         Self { key, radius, depth, rows: Vec::new() }
     }
 

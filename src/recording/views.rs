@@ -111,7 +111,7 @@ const ALONG: &str = "Along sample, time or decision";
 /// A drawing: its name, its path, the parts that each model has, and its size.
 type Drawing = (&'static str, &'static str, &'static [&'static str], (f32, f32));
 
-/// What the residual of models depends on: name, path, the parts that each model has, and size.
+/// What the residual of models depends on.
 #[rustfmt::skip]
 const DRAWINGS: [Drawing; 3] = [
     ("Residual against four quantities: points, and their mean", paths::SCATTER, &["lines"], scatter::SIZE),

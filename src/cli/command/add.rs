@@ -11,7 +11,7 @@ use clap::Args as ClapArgs;
 use crate::cli::args::{DataArgs, ModelFileArgs, ProtocolArgs, ResultArgs, find};
 use crate::cli::exit::Completion;
 use crate::cli::failure::outcomes;
-use crate::cli::run::{Start, Study};
+use crate::cli::run::{Shown, Start, Study};
 
 /// Add an effect to a model, and write its next revision
 ///
@@ -41,7 +41,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let effect = find(&args.effect, file.candidates())?;
     let target = args.model.target();
     let (data, output) = (&args.data, &args.output);
-    let study = Study::begin("add", data, output, (Some(target), args.model.kept()))?;
+    let study =
+        Study::begin(("add", Shown::AtTheEnd), data, output, (Some(target), args.model.kept()))?;
     let start = Start::of(&study, &file, Some(target), Vec::new())?;
     args.model.check_target(&file, study.joints())?;
     let starts = |joint: &Joint| start.model(joint);

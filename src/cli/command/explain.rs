@@ -15,7 +15,7 @@ use crate::cli::args::{
 };
 use crate::cli::exit::Completion;
 use crate::cli::failure::outcomes;
-use crate::cli::run::{Start, Study, as_it_is};
+use crate::cli::run::{Shown, Start, Study, as_it_is};
 
 /// Say which physical effect a model lacks
 ///
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let options = args.effects.options(file.candidates())?;
     let (data, output) = (&args.data, &args.output);
     let inputs = args.model.iter().cloned().collect();
-    let study = Study::begin("explain", data, output, (None, inputs))?;
+    let study = Study::begin(("explain", Shown::AtTheEnd), data, output, (None, inputs))?;
     let joints = study.joints();
     let start = Start::of(&study, &file, args.model.as_deref(), args.add_arguments(joints))?;
     let starts = |joint: &Joint| start.model(joint);

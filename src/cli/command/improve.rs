@@ -17,7 +17,7 @@ use crate::cli::console::{Interrupt, STOPPING, message};
 use crate::cli::each_log::{Each, FolderArgs};
 use crate::cli::exit::Completion;
 use crate::cli::failure::outcomes;
-use crate::cli::run::{Progress, Start, Study};
+use crate::cli::run::{Progress, Shown, Start, Study};
 
 /// Add to a model what it lacks, effect by effect
 ///
@@ -78,7 +78,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let target = args.model.target();
     let (data, output) = (&args.data, &args.output);
     let interrupt = Interrupt::watch(STOPPING);
-    let study = Study::begin("improve", data, output, (Some(target), args.model.kept()))?;
+    let study = Study::begin(
+        ("improve", Shown::ByRevision),
+        data,
+        output,
+        (Some(target), args.model.kept()),
+    )?;
     let joints = study.joints();
     let arguments = add_arguments(data, &target.display().to_string(), joints);
     let start = Start::of(&study, &file, Some(target), arguments)?;

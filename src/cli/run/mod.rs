@@ -10,4 +10,4 @@ pub(crate) use against::{compared, left_over, others};
 pub(crate) use estimates::{Estimates, estimated, failures, notes};
 pub(crate) use revisions::{Progress, Start, as_it_is, log_hashes};
 pub(crate) use session::Session;
-pub(crate) use study::Study;
+pub(crate) use study::{Shown, Study};

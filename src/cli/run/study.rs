@@ -26,11 +26,20 @@ pub(crate) struct Study<'a> {
     pub(crate) settings: Settings,
 }
 
+/// When a viewer that looks on is shown models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shown {
+    /// When all of them are there.
+    AtTheEnd,
+    /// Each revision when it is there.
+    ByRevision,
+}
+
 impl<'a> Study<'a> {
     /// The logs and delays for a `command` that fits models. Before that it refuses outputs that cannot be
     /// written, where the model file `written` is one and those of `inputs` are read, too.
     pub(crate) fn begin(
-        command: &'static str,
+        (command, shown): (&'static str, Shown),
         data: &DataArgs,
         args: &'a ResultArgs,
         (written, inputs): (Option<&Path>, Vec<PathBuf>),
@@ -39,7 +48,7 @@ impl<'a> Study<'a> {
         let outputs = outputs.with(OutputKind::Toml, written);
         outputs.check(&[data.files(), inputs].concat())?;
         let mut stream = args.stream.open(args.run.verbosity())?;
-        if command == "improve" {
+        if shown == Shown::ByRevision {
             stream = stream.expecting_revisions()?;
         }
         let options = data.options_with_others()?;
