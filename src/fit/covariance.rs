@@ -5,6 +5,10 @@
 //! `S = Γ₀ + Σ_l w_l (Γ_l + Γ_lᵀ)` with Bartlett's weights. On white residuals it is the
 //! usual `σ² (JᵀJ)⁻¹`; where residuals are correlated the usual one is too small.
 //!
+//! A parameter with which an effect jumps lies between the two jumps beside it, a width `w` apart. That is
+//! one more observation of it, with the variance `w²/12` of a uniform distribution: without it, neither it
+//! nor a gain of which only its product with it matters would be known at all.
+//!
 //! # References
 //! W. K. Newey and K. D. West, "A simple, positive semi-definite, heteroskedasticity and
 //! autocorrelation consistent covariance matrix", Econometrica 55 (1987), 703-708.
@@ -13,9 +17,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::bounds::Bounds;
 use super::evaluation::Evaluation;
 use super::record::FitRecord;
+use super::space::Space;
 use crate::model::JointModel;
 use crate::numerics::{PseudoInverse, column_products, rank};
 
@@ -28,14 +32,14 @@ pub(super) struct Covariance {
 }
 
 impl Covariance {
-    /// The covariance at `model`, evaluated as `here`, of its parameters with the indices
-    /// `free`, which keep `bounds`.
+    /// The covariance at `model`, evaluated as `here`, of its parameters that are free in `space`.
     pub(super) fn of(
         record: &FitRecord<'_>,
         model: &JointModel,
         here: &Evaluation,
-        (free, bounds): (&[usize], &[Bounds]),
+        space: &Space,
     ) -> Self {
+        let (free, bounds) = (&space.free, &space.bounds);
         let residuals = record.training(&here.residuals);
         let values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
         let mut jacobian = DMatrix::zeros(residuals.len(), free.len());
@@ -58,7 +62,12 @@ impl Covariance {
             }
         }
         let noise = residuals.norm() / (residuals.len() as f64).sqrt();
-        let sums = Sums::of(jacobian, &residuals);
+        let mut sums = Sums::of(jacobian, &residuals);
+        for (place, index) in free.iter().enumerate() {
+            if let Some(width) = space.width_between_jumps(place, values[*index]) {
+                sums.observe(place, noise, width / 12.0_f64.sqrt());
+            }
+        }
         let at_bound = free.iter().zip(bounds).zip(&sums.lengths);
         let at_bound = at_bound.map(|((index, bounds), length)| {
             bounds.is_at(values[*index], noise / length.max(f64::MIN_POSITIVE))
@@ -115,6 +124,14 @@ impl Sums {
         let products = column_products(&jacobian);
         let long_run = long_run(&jacobian, residuals);
         Self { samples: residuals.len(), lengths, products, long_run }
+    }
+
+    /// Adds an observation of one parameter with this deviation, beside residuals of the deviation `noise`.
+    fn observe(&mut self, parameter: usize, noise: f64, deviation: f64) {
+        let length = self.lengths[parameter];
+        let slope = if length > 0.0 { noise / (deviation * length) } else { 0.0 };
+        self.products[(parameter, parameter)] += slope.powi(2);
+        self.long_run[(parameter, parameter)] += (slope * noise).powi(2);
     }
 
     /// Of these parameters, the others being known: `(JᵀJ)⁻¹ S (JᵀJ)⁻¹`.
@@ -250,6 +267,20 @@ mod tests {
         let twice = &ramp * 2.0;
         let errors = std_errors(&[ramp, twice, DVector::zeros(n)], &residuals);
         assert_eq!(errors, [None, None, None]);
+    }
+
+    #[test]
+    fn of_a_product_both_factors_are_known_as_well_as_one_is_observed() {
+        let n = 1000;
+        let residuals = DVector::from_vec(noise(n));
+        let ramp = DVector::from_fn(n, |k, _| k as f64);
+        let twice = &ramp * 2.0;
+        let mut sums = Sums::of(DMatrix::from_columns(&[ramp, twice]), &residuals);
+        let deviation = residuals.norm() / (n as f64).sqrt();
+        sums.observe(1, deviation, 0.3);
+        let errors = with_bounds(&sums, &[false, false]).into_iter().map(Option::unwrap);
+        let errors: Vec<f64> = errors.collect();
+        assert!((errors[1] / 0.3 - 1.0).abs() < 0.01 && (errors[0] / 0.6 - 1.0).abs() < 0.01);
     }
 
     #[test]

@@ -268,7 +268,7 @@ impl Search<'_, '_> {
         let Problem { record, space, .. } = &self.problem;
         let model = self.problem.model_now();
         let evaluation = self.problem.here();
-        let covariance = Covariance::of(record, &model, evaluation, (&space.free, &space.bounds));
+        let covariance = Covariance::of(record, &model, evaluation, space);
         let parameter = |(index, (name, value)): (usize, (String, f64))| {
             let free = space.free.iter().position(|free| *free == index);
             let status = free.map_or(Status::Fixed, |free| space.status(&covariance, free, value));

@@ -73,6 +73,16 @@ impl Space {
         self.jumps.get(free).map_or(&[], |jumps| &jumps.between)
     }
 
+    /// About how far apart the jumps beside `value` of a free parameter are, where the error depends on it between
+    /// them, too.
+    pub(super) fn width_between_jumps(&self, free: usize, value: f64) -> Option<f64> {
+        let between = self.between_jumps(free);
+        let above = between.partition_point(|place| *place < value);
+        let (low, high) = (above.checked_sub(1)?, above.min(between.len() - 1));
+        let [low, high] = [between.get(low)?, between.get(high)?];
+        (self.is_sloped(free) && low < high).then_some(high - low)
+    }
+
     /// Whether the error depends on such a parameter between two jumps, too.
     pub(super) fn is_sloped(&self, free: usize) -> bool {
         self.jumps.get(free).is_some_and(|jumps| jumps.is_sloped)
