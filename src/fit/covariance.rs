@@ -19,6 +19,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::evaluation::Evaluation;
 use super::record::FitRecord;
+use super::result::Status;
 use super::space::Space;
 use crate::model::JointModel;
 use crate::numerics::{PseudoInverse, column_products, rank};
@@ -76,9 +77,15 @@ impl Covariance {
         Self { std_errors: with_bounds(&sums, &at_bound), at_bound }
     }
 
-    /// Whether a parameter has come to lie on a bound.
-    pub(super) fn is_at_bound(&self, free: usize) -> bool {
-        self.at_bound[free]
+    /// What a fit could do with a free parameter of `space`, which it left at `value`.
+    pub(super) fn status(&self, space: &Space, free: usize, value: f64) -> Status {
+        let is_lost = |error| space.bounds[free].is_lost_in(error);
+        match self.std_error(free) {
+            _ if space.is_beyond_reach(free, value) => Status::BeyondReach,
+            _ if self.at_bound[free] => Status::AtBound,
+            Some(error) if !is_lost(error) => Status::Fitted,
+            _ => Status::Undetermined,
+        }
     }
 
     pub(super) fn std_error(&self, free: usize) -> Option<f64> {

@@ -271,7 +271,7 @@ impl Search<'_, '_> {
         let covariance = Covariance::of(record, &model, evaluation, space);
         let parameter = |(index, (name, value)): (usize, (String, f64))| {
             let free = space.free.iter().position(|free| *free == index);
-            let status = free.map_or(Status::Fixed, |free| space.status(&covariance, free, value));
+            let status = free.map_or(Status::Fixed, |free| covariance.status(space, free, value));
             let std_error = free.and_then(|free| covariance.std_error(free));
             let std_error = std_error.filter(|_| status == Status::Fitted);
             Parameter { name, value, std_error, status }

@@ -3,8 +3,6 @@
 use nalgebra::DVector;
 
 use super::bounds::Bounds;
-use super::covariance::Covariance;
-use super::result::Status;
 use crate::effect::{Dimension, Parameter, RecordRange, Stage};
 use crate::model::{Component, JointModel};
 
@@ -88,15 +86,9 @@ impl Space {
         self.jumps.get(free).is_some_and(|jumps| jumps.is_sloped)
     }
 
-    /// What a fit could do with a free parameter, which it left at `value`.
-    pub(super) fn status(&self, covariance: &Covariance, free: usize, value: f64) -> Status {
-        let is_lost = |error| self.bounds[free].is_lost_in(error);
-        match covariance.std_error(free) {
-            _ if self.reach[free].clamped(value).total_cmp(&value).is_ne() => Status::BeyondReach,
-            _ if covariance.is_at_bound(free) => Status::AtBound,
-            Some(error) if !is_lost(error) => Status::Fitted,
-            _ => Status::Undetermined,
-        }
+    /// Whether the record never reaches such a value of a free parameter.
+    pub(super) fn is_beyond_reach(&self, free: usize, value: f64) -> bool {
+        self.reach[free].clamped(value).total_cmp(&value).is_ne()
     }
 
     /// This space with the values that lie outside of their bounds held where they are.
