@@ -37,6 +37,10 @@ pub struct Spec {
     /// What it remembers where the signal was long held.
     #[serde(skip)]
     pub start: Start,
+    /// Whether what it remembers changes more slowly than the speed: where a simulation goes on from a measured
+    /// speed, it keeps it.
+    #[serde(skip)]
+    pub has_slow_memory: bool,
     /// Ids of effects that look alike in a record.
     pub confused_with: &'static [&'static str],
     /// Ids of effects that it contains: to add it to a model is to put it in their
@@ -106,6 +110,7 @@ impl Spec {
             parameters: &[],
             memory: 0,
             start: Start::Own,
+            has_slow_memory: false,
             confused_with: &[],
             absorbs: &[],
             looks_like_both: &[],
@@ -153,6 +158,12 @@ impl Spec {
     #[must_use]
     pub const fn starting_at_signal(self) -> Self {
         Self { start: Start::Signal, ..self }
+    }
+
+    /// Its memory [is slow](Self::has_slow_memory).
+    #[must_use]
+    pub const fn with_slow_memory(self) -> Self {
+        Self { has_slow_memory: true, ..self }
     }
 
     /// [Confused](Self::confused_with) with these.

@@ -53,12 +53,6 @@ pub(super) struct LeftOut {
 /// carries a tenth of the misfit is there under one name or another, and its bound is said.
 const UNDETERMINED: f64 = 0.1;
 
-impl LeftOut {
-    pub(super) fn has_consequence(&self) -> bool {
-        self.share >= CONSEQUENCE
-    }
-}
-
 impl Grown<'_, '_> {
     /// Each effect that was added left out in turn, the largest share first.
     pub(super) fn left_out(&self, workers: &impl Workers) -> Vec<LeftOut> {
@@ -80,7 +74,12 @@ impl Grown<'_, '_> {
         let mut components = self.whole.model.components().iter();
         let component = components.find(|component| component.effect().spec().id == one.effect);
         let is_known = component.is_some_and(|component| is_determined(self.whole, component));
-        !one.has_consequence() || !is_known && one.share < UNDETERMINED
+        !self.has_consequence(one) || !is_known && one.share < UNDETERMINED
+    }
+
+    /// Whether what was left out has a practical consequence.
+    fn has_consequence(&self, one: &LeftOut) -> bool {
+        self.misfit.has_consequence(one.fit.errors, Errors::of(self.record, self.whole))
     }
 
     /// What is attributed to which effect.
@@ -96,7 +95,7 @@ impl Grown<'_, '_> {
         left_out: &[LeftOut],
         workers: &impl Workers,
     ) -> Vec<(Change, FitOutcome)> {
-        let found = left_out.iter().filter(|one| one.has_consequence());
+        let found = left_out.iter().filter(|one| self.has_consequence(one));
         let others =
             |one: &LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
         let (free, lawful): (Vec<_>, Vec<_>) = found.partition(|one| self.is_any_form(one.effect));
@@ -114,7 +113,8 @@ impl Grown<'_, '_> {
 
     /// The exchange that leaves as little and is as likely with the fewest parameters, where it
     /// needs fewer than the model: of such models the simpler one is named. A friction without
-    /// inertia is a dead band.
+    /// inertia is a dead band. In the place of an effect that does not show the feature after which it is
+    /// named it need not be as likely: a resonance that does not swing is a lag, and its second pole a detail.
     pub(super) fn simpler<'f>(
         &self,
         exchanged: &'f [(Change, FitOutcome)],
@@ -132,7 +132,9 @@ impl Grown<'_, '_> {
             self.leaves_as_little(fit)
                 && are_distinguished(fit, change.new_effect().as_slice(), &range)
                 && generalizes(own, fit.errors)
-                && (is_as_likely(fit) || self.is_to_limiting_case(*change))
+                && (is_as_likely(fit)
+                    || self.is_to_limiting_case(*change)
+                    || matches!(change, Change::Replaced { old, .. } if self.is_any_form(old)))
         });
         as_little.min_by_key(|(_, fit)| count(fit))
     }
@@ -155,7 +157,7 @@ impl Grown<'_, '_> {
         mut refinements: Vec<&'static str>,
     ) -> Attribution {
         let (found, small): (Vec<_>, Vec<_>) =
-            left_out.iter().partition(|one| one.has_consequence());
+            left_out.iter().partition(|one| self.has_consequence(one));
         let alternatives = |one: &LeftOut| {
             let as_little = exchanged.iter().filter_map(|(change, fit)| match *change {
                 Change::Replaced { old, new } if old == one.effect => {

@@ -10,7 +10,7 @@ use super::determined::{implausible, is_determined, is_reached};
 use super::judgement::{Judgement, Refusal};
 use super::likeness::are_distinguished;
 use super::limiting_case::limiting_case_of;
-use super::misfit::{CONSEQUENCE, Errors, Misfit, generalizes};
+use super::misfit::{Errors, Misfit, generalizes};
 use super::options::Options;
 use crate::fit::{Fit, FitRecord};
 
@@ -86,8 +86,8 @@ impl<'a, 'r> Judge<'a, 'r> {
         if !judged.generalises {
             return Some(Refusal::DoesNotGeneralise);
         }
-        let is_small = judged.consequence_percent < 100.0 * CONSEQUENCE;
-        (is_small && !options.keeps_refinements).then_some(Refusal::NoConsequence)
+        let matters = self.misfit.has_consequence(self.own, candidate.fit.errors);
+        (!matters && !options.keeps_refinements).then_some(Refusal::NoConsequence)
     }
 
     /// Judges all of a ranking, of which the first that nothing speaks against is added and those
@@ -173,8 +173,9 @@ mod tests {
         };
         assert_eq!(with(|one| one.determined = false, None), Some(Refusal::Undetermined));
         assert_eq!(with(|one| one.generalises = false, None), Some(Refusal::DoesNotGeneralise));
-        let small = with(|one| one.consequence_percent = 0.1, None);
-        assert_eq!(small, Some(Refusal::NoConsequence));
+        let mut small = candidate.clone();
+        small.fit.errors = judge.own;
+        assert_eq!(judge.refusal(&small, &sound, None), Some(Refusal::NoConsequence));
         let implausible = Refusal::Implausible("factor".to_owned());
         assert_eq!(with(|_| (), Some("factor")), Some(implausible));
         assert_eq!(with(|_| (), None), None);

@@ -34,8 +34,7 @@ pub(super) fn free_forms(
 }
 
 /// The effects of `options` that could be missing from `model`, are a steady law, and
-/// [refine](Spec::refines) one that is not in it. One with a memory is not at once worth its name: a
-/// friction by direction is a dead band and a gain by direction, too.
+/// [refine](Spec::refines) one that is not in it.
 pub(super) fn steady_refinements(
     record: &FitRecord<'_>,
     model: &JointModel,
@@ -43,7 +42,6 @@ pub(super) fn steady_refinements(
 ) -> Vec<&'static dyn Effect> {
     let refines = |effect: &&&'static dyn Effect| {
         effect.is_steady()
-            && effect.spec().memory == 0
             && could_be_missing(record, model, **effect)
             && !is_due(model, effect.spec(), options)
     };

@@ -10,7 +10,7 @@ use super::span::{Span, thinned_places, thinned_to};
 use crate::delay::{Candidate, Decision, Line, Verdict};
 use crate::experiment::Trial;
 use crate::units::floor_to_index;
-use crate::wording::{bracketed, number, samples_text};
+use crate::wording::{bracketed, interval, number, samples_text};
 
 /// Errors less than this part of the largest are drawn at it: the fit is exact there. Chosen
 /// so that a curve over nine decades is still read.
@@ -317,9 +317,8 @@ impl<'a> SegmentFigure<'a> {
     pub(crate) fn delay_text(&self, period_s: f64) -> String {
         let Some(delay) = self.decision.delay() else { return String::new() };
         let own = self.decision.fine.filter(|_| self.decision.delay_before_review().is_none());
-        let interval = own.map_or_else(String::new, |fine| {
-            format!(" ({} … {})", number(fine.low), number(fine.high))
-        });
+        let interval =
+            own.map_or_else(String::new, |fine| format!(" ({})", interval((fine.low, fine.high))));
         format!("δ = {}{interval} = {} s", samples_text(delay), number(delay * period_s))
     }
 

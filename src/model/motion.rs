@@ -105,6 +105,11 @@ impl<'a> Running<'a> {
     fn step(&mut self, at: &Moment) -> f64 {
         self.effect.step(&self.parameters, &mut self.memory, at)
     }
+
+    /// What a step would give now, without one.
+    fn foreseen(&self, at: &Moment) -> f64 {
+        self.effect.step(&self.parameters, &mut self.memory.clone(), at)
+    }
 }
 
 /// The state of a joint between two instants.
@@ -121,8 +126,6 @@ pub(super) struct Joint<'a> {
     limits: Vec<Running<'a>>,
     /// Effects between the angle and its sensor.
     sensor: Vec<Running<'a>>,
-    /// Whether an effect of the load remembers anything.
-    load_remembers: bool,
     /// What the load added to the commanded velocity in the last interval.
     load_adds: f64,
     surroundings: Surroundings<'a>,
@@ -140,7 +143,6 @@ impl<'a> Joint<'a> {
         let output = model.stage(Stage::Output);
         let (limits, sensor): (Vec<_>, Vec<_>) =
             output.partition(|component| component.effect().spec().acts_on_state);
-        let load: Vec<_> = stage(Stage::Load).collect();
         let drive = [Stage::Spool, Stage::Input, Stage::Dynamics];
         let drive: Vec<_> = drive.into_iter().flat_map(stage).collect();
         let is_steady = |running: &&Running<'_>| running.effect.is_steady();
@@ -149,8 +151,7 @@ impl<'a> Joint<'a> {
             steady: drive.iter().take_while(is_steady).count(),
             held: None,
             drive,
-            load_remembers: load.iter().any(|running| !running.memory.is_empty()),
-            load,
+            load: stage(Stage::Load).collect(),
             load_adds: 0.0,
             limits: limits.into_iter().map(running).collect(),
             sensor: sensor.into_iter().map(running).collect(),
@@ -172,7 +173,7 @@ impl<'a> Joint<'a> {
 
     /// Puts all memory into the state of an input that has long been held.
     pub(super) fn settle(&mut self, input: f64, period_s: f64) {
-        self.settled_drive(0, input, period_s);
+        self.settle_drive(input, period_s);
         let mut at = self.moment(self.angle, 0.0, period_s);
         for running in &mut self.limits {
             running.settle(&at);
@@ -187,16 +188,14 @@ impl<'a> Joint<'a> {
         self.measured = at.signal;
     }
 
-    /// The effective input after `signal` has long been held before the effect at `from` of the drive,
-    /// and the memory that it left in this and those behind it.
-    fn settled_drive(&mut self, from: usize, signal: f64, period_s: f64) -> f64 {
+    /// Puts the memory of the drive into the state after `signal` has long been held.
+    fn settle_drive(&mut self, signal: f64, period_s: f64) {
         self.held = None;
         let mut at = self.moment(signal, 0.0, period_s);
-        for running in self.drive.iter_mut().skip(from) {
+        for running in &mut self.drive {
             running.settle(&at);
             at.signal = running.step(&at);
         }
-        at.signal
     }
 
     /// Sets the output anew, and the speed where it is known.
@@ -218,12 +217,14 @@ impl<'a> Joint<'a> {
     }
 
     /// Puts the dynamics into the state of a held signal that makes `speed` here. What is before them and
-    /// remembers the turns of the input, as a play, stays as it is.
+    /// remembers the turns of the input, as a play, stays as it is; so does a memory that is slower than
+    /// the speed, of which the speed of now says nothing.
     ///
     /// The speed rises with the signal, or falls if the gain is negative; where it can not be
     /// reached the nearest one is taken.
     fn settle_at_speed(&mut self, speed: f64, time_s: f64, period_s: f64) {
         let sign = self.gain.signum();
+        self.held = None;
         let above = |signal: f64| sign * (self.steady_speed(signal, time_s, period_s) - speed);
         settle_at_root(above);
         self.velocity = speed;
@@ -232,8 +233,20 @@ impl<'a> Joint<'a> {
     /// The speed after `signal` has long been held before the dynamics, whose memory is as after it.
     fn steady_speed(&mut self, signal: f64, time_s: f64, period_s: f64) -> f64 {
         let mut at = self.moment(signal, time_s, period_s);
-        at.signal = self.gain * self.settled_drive(self.steady, signal, period_s);
-        if self.load_remembers { at.signal } else { through(&mut self.load, at) }
+        for running in self.drive.iter_mut().skip(self.steady) {
+            at.signal = if running.effect.spec().has_slow_memory {
+                running.foreseen(&at)
+            } else {
+                running.settle(&at);
+                running.step(&at)
+            };
+        }
+        at.signal *= self.gain;
+        for running in &self.load {
+            at.measured = running.measured;
+            at.signal = running.foreseen(&at);
+        }
+        at.signal
     }
 
     fn moment(&self, signal: f64, time_s: f64, dt: f64) -> Moment {

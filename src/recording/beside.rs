@@ -5,7 +5,7 @@ use super::recorded::Recording;
 use crate::delay::{Decision, Verdict};
 use crate::report::EstimatedJoint;
 use crate::study::{JointDifferences, JointResult, StepPair, StepResult};
-use crate::wording::{number, verdict_in_short};
+use crate::wording::{interval, number, verdict_in_short};
 
 /// Another result on one joint.
 #[derive(Debug)]
@@ -84,7 +84,7 @@ impl Shown {
     fn delay(self) -> String {
         let delay = self.delay.map_or_else(|| "none".to_owned(), number);
         match self.interval {
-            Some((low, high)) => format!("{delay} ({} … {})", number(low), number(high)),
+            Some(ends) => format!("{delay} ({})", interval(ends)),
             None => delay,
         }
     }

@@ -9,7 +9,7 @@ use super::{DataTable, Doubted, EstimatedJoint, Kind};
 use crate::delay::{Candidate, Condition, Decision, Method, ReviewerVerdict, Settings};
 use crate::experiment::Joint;
 use crate::numerics::to_nanoseconds;
-use crate::wording::{doubt_percent, doubt_sentence, number, remedy_text, unit_suffix};
+use crate::wording::{doubt_percent, doubt_sentence, interval, number, remedy_text, unit_suffix};
 use Kind::{Real, Samples, Text, Whole};
 use Part::{Json, Paper, People, Table};
 use Place::{Doubtful, Recording, Report, Terminal, Verdict};
@@ -168,16 +168,16 @@ impl Doubted<'_> {
 
     /// The delay's interval: `11.2 … 12.9`, samples.
     fn interval(&self) -> Option<String> {
-        self.decision.fine.map(|fine| format!("{} … {}", number(fine.low), number(fine.high)))
+        self.decision.fine.map(|fine| interval((fine.low, fine.high)))
     }
 
     /// The interval in samples and in seconds, with its confidence.
     fn bounds(&self) -> Option<String> {
         let (fine, period_s) = (self.decision.fine?, self.trial.period().seconds());
-        let [low, high] = [fine.low, fine.high].map(|end| end * period_s);
+        let seconds = interval((fine.low * period_s, fine.high * period_s));
         let percent = number(100.0 * fine.confidence);
         let samples = self.interval()?;
-        Some(format!("{samples} samples = {low:.5} … {high:.5} s, at {percent} %"))
+        Some(format!("{samples} samples = {seconds} s, at {percent} %"))
     }
 
     /// How often noise alone looks as much like a reaction; where tested.

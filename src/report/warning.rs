@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::EstimatedJoint;
 use crate::delay::{AgainstState, Obstacle, ResponseOfKind, Verdict};
 use crate::numerics::{chi_square_tail, median, quantile};
-use crate::wording::{measure, number, p_text, percent};
+use crate::wording::{measure, p_text, percent, rounded};
 
 /// A warning on the delays of a joint.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -57,7 +57,7 @@ impl EstimatedJoint<'_> {
             ),
             Obstacle::Leads(lead_s) => Warning::new(
                 "output_leads_input",
-                format!("the output leads its input by {} s (median)", number(lead_s)),
+                format!("the output leads its input by {} s (median)", rounded(lead_s)),
                 &format!(
                     ": it reacts before the step, so the clocks of the two columns differ, or the \
                      input is logged late. Shift one of them; {accepted}"
@@ -67,7 +67,7 @@ impl EstimatedJoint<'_> {
                 "delay_longer_than_holds",
                 format!(
                     "the delay of {} s (median) is longer than most holds of the input",
-                    number(delay_s)
+                    rounded(delay_s)
                 ),
                 &format!(
                     ", so each reaction falls into a later hold. Hold levels for longer than the \
@@ -92,7 +92,7 @@ impl EstimatedJoint<'_> {
             format!(
                 "no response shape fits: the best, `{}`, leaves {} times the sensor noise{}",
                 model.shape(),
-                number(model.misfit()),
+                rounded(model.misfit()),
                 if is_alike { ", alike at the steps of a kind" } else { "" }
             )
         };
@@ -108,8 +108,8 @@ impl EstimatedJoint<'_> {
         let scatter = Scatter::of(&delays).filter(Scatter::is_more_than_noise)?;
         let short = format!(
             "the delay varies from {} to {} s (10 to 90 % of {} steps), more than its intervals explain",
-            number(scatter.low_s),
-            number(scatter.high_s),
+            rounded(scatter.low_s),
+            rounded(scatter.high_s),
             delays.len()
         );
         Some(Warning::new("delay_varies", short, &depends_on(&self.against_state())))

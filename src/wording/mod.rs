@@ -28,8 +28,8 @@ pub(crate) use misfit::{correlation_sentences, lack_of_fit};
 pub(crate) use model_difference::model_difference_sentences;
 pub use number::number;
 pub(crate) use number::{
-    bracketed, measure, range_text, rounded, samples_text, to_place, unit_suffix, with_error,
-    with_unit,
+    bracketed, interval, measure, range_text, rounded, samples_text, to_place, unit_suffix,
+    with_error, with_unit,
 };
 pub(crate) use parameter::{parameter_units, parameter_value};
 pub(crate) use probability::{p_cell, p_text, percent};

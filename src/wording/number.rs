@@ -88,6 +88,14 @@ pub(crate) fn with_error(value: f64, std_error: f64) -> String {
     }
 }
 
+/// An interval to the digits that its width leaves: `13.92 … 14.08`.
+pub(crate) fn interval((low, high): (f64, f64)) -> String {
+    let width = high - low;
+    let is_known = width.is_finite() && width > 0.0;
+    let decimals = if is_known { (1 - decimal_exponent(width)).max(0) } else { 9 };
+    format!("{} … {}", to_place(low, decimals), to_place(high, decimals))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -98,6 +106,13 @@ mod tests {
         let expected = ["0", "104", "0.15", "-0.012346", "123457", "1.23e-9", "5e12"];
         assert_eq!(shown.map(number), expected);
         assert_eq!([0.050_622, 1.8021, 1234.0].map(rounded), ["0.0506", "1.8", "1234"]);
+    }
+
+    #[test]
+    fn an_interval_has_the_digits_that_its_width_leaves() {
+        let shown = [(13.9231, 14.0784), (-0.5, 2312.4), (0.1, 0.1), (0.012_345, 0.012_399)];
+        let expected = ["13.92 … 14.08", "-1 … 2312", "0.1 … 0.1", "0.012345 … 0.012399"];
+        assert_eq!(shown.map(interval), expected);
     }
 
     #[test]
