@@ -36,7 +36,7 @@ static SPEC: Spec = Spec::new(
 ])
 .memory(1 + DECAY_MEMORY)
 .starting_at_signal()
-.with_slow_memory()
+.slower_than_speed()
 .confused_with(&["actuator_lag", "leakage", "thermal_drift", "accumulator_droop"])
 .equations(
     Equations::new(&[

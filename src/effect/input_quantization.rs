@@ -67,12 +67,13 @@ impl Effect for InputQuantization {
         vec![(0.0, record.size(Dimension::Input).min(UNLIMITED))]
     }
 
-    /// Half a multiple of the largest input apart: with the next but one a half of all levels comes to
-    /// another multiple.
+    /// A hundredth apart: of twenty or more levels one comes to another multiple with every few hundredths, so
+    /// that of the right step is met, and whether it is the right one is asked of one simulation each.
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        const APART: f64 = 0.99;
         let largest = record.size(Dimension::Input);
-        let halves = (3..).map(|halves| 0.5 * f64::from(halves));
-        halves.take_while(|count| *count <= FINEST).map(|count| vec![largest / count]).collect()
+        let steps = std::iter::successors(Some(largest / 1.5), |step| Some(APART * step));
+        steps.take_while(|step| *step >= largest / FINEST).map(|step| vec![step]).collect()
     }
 
     /// At `level / (n + 1/2)` a level comes to another multiple.

@@ -100,7 +100,7 @@ pub(crate) use registry::find_among;
 pub use registry::{REGISTRY, UnknownEffect, by_id, find};
 pub use resonance::Resonance;
 pub use signal_gain::signal_gain;
-pub use spec::{LimitingCase, Spec, Start};
+pub use spec::{LimitingCase, Pace, Spec, Start};
 pub use spool_lag::SpoolLag;
 pub use spool_rate_limit::SpoolRateLimit;
 pub use stage::Stage;

@@ -37,10 +37,9 @@ pub struct Spec {
     /// What it remembers where the signal was long held.
     #[serde(skip)]
     pub start: Start,
-    /// Whether what it remembers changes more slowly than the speed: where a simulation goes on from a measured
-    /// speed, it keeps it.
+    /// How fast what it remembers changes.
     #[serde(skip)]
-    pub has_slow_memory: bool,
+    pub pace: Pace,
     /// Ids of effects that look alike in a record.
     pub confused_with: &'static [&'static str],
     /// Ids of effects that it contains: to add it to a model is to put it in their
@@ -88,6 +87,16 @@ pub enum Start {
     Signal,
 }
 
+/// How fast what an effect remembers changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// As fast as the speed of the joint: it is known where that is.
+    OfSpeed,
+    /// More slowly: of it the speed of now says nothing, and a simulation that goes on from a measured
+    /// speed keeps it.
+    Slower,
+}
+
 /// What an effect is where one of its parameters is 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LimitingCase {
@@ -110,7 +119,7 @@ impl Spec {
             parameters: &[],
             memory: 0,
             start: Start::Own,
-            has_slow_memory: false,
+            pace: Pace::OfSpeed,
             confused_with: &[],
             absorbs: &[],
             looks_like_both: &[],
@@ -160,10 +169,10 @@ impl Spec {
         Self { start: Start::Signal, ..self }
     }
 
-    /// Its memory [is slow](Self::has_slow_memory).
+    /// What it remembers [changes more slowly](Pace::Slower) than the speed.
     #[must_use]
-    pub const fn with_slow_memory(self) -> Self {
-        Self { has_slow_memory: true, ..self }
+    pub const fn slower_than_speed(self) -> Self {
+        Self { pace: Pace::Slower, ..self }
     }
 
     /// [Confused](Self::confused_with) with these.

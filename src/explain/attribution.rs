@@ -113,8 +113,7 @@ impl Grown<'_, '_> {
 
     /// The exchange that leaves as little and is as likely with the fewest parameters, where it
     /// needs fewer than the model: of such models the simpler one is named. A friction without
-    /// inertia is a dead band. In the place of an effect that does not show the feature after which it is
-    /// named it need not be as likely: a resonance that does not swing is a lag, and its second pole a detail.
+    /// inertia is a dead band.
     pub(super) fn simpler<'f>(
         &self,
         exchanged: &'f [(Change, FitOutcome)],
@@ -132,9 +131,7 @@ impl Grown<'_, '_> {
             self.leaves_as_little(fit)
                 && are_distinguished(fit, change.new_effect().as_slice(), &range)
                 && generalizes(own, fit.errors)
-                && (is_as_likely(fit)
-                    || self.is_to_limiting_case(*change)
-                    || matches!(change, Change::Replaced { old, .. } if self.is_any_form(old)))
+                && (is_as_likely(fit) || self.is_to_limiting_case(*change))
         });
         as_little.min_by_key(|(_, fit)| count(fit))
     }

@@ -1,7 +1,7 @@
 //! A joint as a simulation moves it on, from one instant to the next.
 
 use super::{Arrival, Component, JointModel};
-use crate::effect::{Effect, Moment, Stage};
+use crate::effect::{Effect, Moment, Pace, Stage};
 use crate::experiment::Signal;
 use crate::numerics::settle_at_root;
 
@@ -234,7 +234,7 @@ impl<'a> Joint<'a> {
     fn steady_speed(&mut self, signal: f64, time_s: f64, period_s: f64) -> f64 {
         let mut at = self.moment(signal, time_s, period_s);
         for running in self.drive.iter_mut().skip(self.steady) {
-            at.signal = if running.effect.spec().has_slow_memory {
+            at.signal = if running.effect.spec().pace == Pace::Slower {
                 running.foreseen(&at)
             } else {
                 running.settle(&at);
