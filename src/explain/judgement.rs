@@ -67,7 +67,10 @@ impl Judgement {
         let share = self.consequence_percent;
         match &self.refusal {
             None => {
-                format!("significant, determined, and removes {share:.0} % of the initial error")
+                let decimals = usize::from(share < 1.0);
+                format!(
+                    "significant, determined, and removes {share:.decimals$} % of the initial error"
+                )
             }
             Some(Refusal::NotSignificant) => {
                 "the reduction is not significant, or too small".to_owned()

@@ -198,7 +198,9 @@ impl Simulated {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{ActuatorLag, DeadBand, Effect, GravityLoad, Resonance};
+    use crate::effect::{
+        AccumulatorDroop, ActuatorLag, Creep, DeadBand, Effect, GravityLoad, Resonance,
+    };
     use crate::model::Component;
 
     #[test]
@@ -241,6 +243,34 @@ mod tests {
             let alone = simulate(model, arrivals, samples, 0.01, &restarts, &surroundings);
             assert_eq!(all, alone);
             assert_eq!(output.output, alone.output);
+        }
+    }
+
+    #[test]
+    fn what_is_slower_than_the_speed_goes_on_at_a_restart() {
+        let slow: [(&'static dyn Effect, [f64; 2]); 2] =
+            [(&Creep, [0.4, 0.8]), (&AccumulatorDroop, [0.03, 2.0])];
+        for (effect, values) in slow {
+            let part = |effect: &'static dyn Effect, values: &[f64]| {
+                Component::new(effect, values.iter().map(|value| (*value).into()).collect())
+            };
+            let model = JointModel::integrator(8.0, 0.1).with(part(effect, &values).unwrap());
+            let model = model.with(part(&ActuatorLag, &[0.1]).unwrap());
+            let input: Vec<f64> = (0..300).map(|k| if k < 50 { 0.0 } else { 1.5 }).collect();
+            let surroundings = Surroundings::default();
+            let whole = simulate_input(&model, &input, 0.01, 0.0, &surroundings);
+            let here = 140;
+            let speed = f64::midpoint(whole.velocity[here - 1], whole.velocity[here]);
+            let speeds = [Restart { sample: here, output: whole.output[here], speed: Some(speed) }];
+            let arrivals = Commands::new(&input, 0.01).arriving(&model, 0.0, None);
+            let again = simulate(&model, &arrivals, input.len(), 0.01, &speeds, &surroundings);
+            let id = effect.spec().id;
+            let way = whole.output[299] - whole.output[here];
+            let off = again.output[299] - whole.output[299];
+            assert!(off.abs() < 2e-3 * way, "{id}: off by {off} on a way of {way}");
+            // It is not steady there, or nothing would be shown.
+            let steady = speed * 0.01 * (299 - here) as f64;
+            assert!((way - steady).abs() > 2e-2 * way, "{id}: {steady} {way}");
         }
     }
 }
