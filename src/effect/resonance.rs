@@ -74,6 +74,11 @@ impl Effect for Resonance {
         Swing::recall(known, omega, damping, at.dt_s).advance(at.signal, state, rate)
     }
 
+    /// Whether it swings: from critical damping on it is two lags.
+    fn shows_its_form(&self, parameters: &[f64], _record: &RecordRange<'_>) -> bool {
+        parameters.get(1).is_none_or(|damping| *damping < 1.0)
+    }
+
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
         let mut bounds: Vec<_> = SPEC.parameters.iter().map(|each| each.bounds(record)).collect();
         if let [_, damping] = bounds.as_mut_slice() {

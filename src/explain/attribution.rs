@@ -79,7 +79,8 @@ impl Grown<'_, '_> {
 
     /// Whether what was left out has a practical consequence.
     fn has_consequence(&self, one: &LeftOut) -> bool {
-        self.misfit.has_consequence(one.fit.errors, Errors::of(self.record, self.whole))
+        let own = Errors::of(self.record, self.whole);
+        one.share >= CONSEQUENCE || self.misfit.has_consequence(one.fit.errors, own)
     }
 
     /// What is attributed to which effect.
@@ -113,7 +114,8 @@ impl Grown<'_, '_> {
 
     /// The exchange that leaves as little and is as likely with the fewest parameters, where it
     /// needs fewer than the model: of such models the simpler one is named. A friction without
-    /// inertia is a dead band.
+    /// inertia is a dead band. In the place of an effect that does not show the feature after which it is
+    /// named it need not be as likely: a resonance that does not swing is a lag, and its second pole a detail.
     pub(super) fn simpler<'f>(
         &self,
         exchanged: &'f [(Change, FitOutcome)],
@@ -131,7 +133,9 @@ impl Grown<'_, '_> {
             self.leaves_as_little(fit)
                 && are_distinguished(fit, change.new_effect().as_slice(), &range)
                 && generalizes(own, fit.errors)
-                && (is_as_likely(fit) || self.is_to_limiting_case(*change))
+                && (is_as_likely(fit)
+                    || self.is_to_limiting_case(*change)
+                    || matches!(change, Change::Replaced { old, .. } if self.is_any_form(old)))
         });
         as_little.min_by_key(|(_, fit)| count(fit))
     }

@@ -87,7 +87,7 @@ impl Misfit {
         /// The part of the squared error beyond the noise.
         const OF_WHAT_IS_LEFT: f64 = 0.25;
         let is_part_of_rest = || self.part_of_rest(worse, better) >= OF_WHAT_IS_LEFT;
-        self.share_of_either(worse, better) >= CONSEQUENCE
+        self.share(worse, better) >= CONSEQUENCE
             || self.is_far_from_noise(worse) && is_part_of_rest()
     }
 
