@@ -67,8 +67,9 @@ impl Effect for InputQuantization {
         vec![(0.0, record.size(Dimension::Input).min(UNLIMITED))]
     }
 
-    /// A hundredth apart: of twenty or more levels one comes to another multiple with every few hundredths, so
-    /// that of the right step is met, and whether it is the right one is asked of one simulation each.
+    /// A hundredth apart, from the step whose one multiple the largest input is rounded to. Of twenty levels
+    /// some is rounded to another multiple wherever the step changes by a few hundredths, so that a start farther
+    /// from the right step rounds some of them wrongly.
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
         const APART: f64 = 0.99;
         let largest = record.size(Dimension::Input);

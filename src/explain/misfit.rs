@@ -84,11 +84,10 @@ impl Misfit {
     /// beyond a few times the noise and it takes a part of what is left, however small a part of the
     /// misfit that is.
     pub(super) fn has_consequence(self, worse: Errors, better: Errors) -> bool {
-        /// The part of the squared error beyond the noise.
+        /// The part of the squared error beyond the noise. Chosen: an eighth of the error.
         const OF_WHAT_IS_LEFT: f64 = 0.25;
-        let is_part_of_rest = || self.part_of_rest(worse, better) >= OF_WHAT_IS_LEFT;
         self.share(worse, better) >= CONSEQUENCE
-            || self.is_far_from_noise(worse) && is_part_of_rest()
+            || self.is_far_from_noise(worse) && self.takes(OF_WHAT_IS_LEFT, worse, better)
     }
 
     /// Whether an effect is credible without which the error is that of `without`, and with it that of
@@ -101,18 +100,17 @@ impl Misfit {
         /// The part of the squared error that it takes at least. Chosen: of misfits from outside the
         /// catalogue the nearest effect takes less.
         const HALF: f64 = 0.5;
-        self.part_of_rest(without, with) >= HALF
+        self.takes(HALF, without, with)
     }
 
-    /// What of the squared error of `worse` beyond the noise is not there in `better`, as a part of it.
-    fn part_of_rest(self, worse: Errors, better: Errors) -> f64 {
+    /// Whether so large a part of the squared error of `worse` beyond the noise is not there in `better`.
+    fn takes(self, part: f64, worse: Errors, better: Errors) -> bool {
         /// The noise, in parts of its estimate, at most. Chosen: that of 132 simulated records was 1.03
         /// times its estimate at most.
         const NOISE: f64 = 1.1;
         let noise = NOISE * self.noise;
         let beyond = |errors: Errors| (errors.whole.powi(2) - noise.powi(2)).max(0.0);
-        let rest = beyond(worse);
-        if rest > 0.0 { 1.0 - beyond(better) / rest } else { 1.0 }
+        beyond(worse) - beyond(better) >= part * beyond(worse)
     }
 
     /// Whether a model leaves more than a few times the noise.

@@ -106,7 +106,7 @@ impl<'a> Running<'a> {
         self.effect.step(&self.parameters, &mut self.memory, at)
     }
 
-    /// What a step would give now, without one.
+    /// What a step would give; the memory stays as it is.
     fn foreseen(&self, at: &Moment) -> f64 {
         self.effect.step(&self.parameters, &mut self.memory.clone(), at)
     }
