@@ -3,8 +3,10 @@
 use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, sensor_noise};
 use crate::fit::{Fit, FitRecord, Part};
 
-/// The share of the misfit from which an effect has a practical consequence.
-pub(crate) const CONSEQUENCE: f64 = 0.01;
+/// The share of the misfit from which an effect has a practical consequence: what other effects leave whose
+/// law is not quite that of the plant is as large. Of 171 simulated records with laws of another form
+/// than the catalogue's, 1 of 312 effects that act took less, and 5 of 33 that do not.
+pub(crate) const CONSEQUENCE: f64 = 0.03;
 
 /// The part of the misfit below which what a model leaves is explained.
 const HARDLY: f64 = 0.05;

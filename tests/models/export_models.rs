@@ -62,8 +62,9 @@ const EFFECTS: [(&str, &str); 32] = [
     ("input_quantization", "step = 0.35"),
     (
         "valve_curve",
-        "inner = 0.3, outer = 0.6, negative_inner = 0.6, negative_outer = 0.9, \
-         negative_factor = 0.8, reach = 2.0",
+        "share_1 = 0.3, share_2 = 0.6, share_3 = 0.9, share_4 = 0.5, share_5 = 0.8, \
+         negative_share_1 = 0.6, negative_share_2 = 0.9, negative_share_3 = 0.5, \
+         negative_share_4 = 0.7, negative_share_5 = 0.95, negative_factor = 0.8, reach = 2.0",
     ),
     ("spool_rate_limit", "seconds_per_input = 0.23"),
     ("creep", "share = 0.4, time_constant = 0.8"),
