@@ -64,7 +64,7 @@ static SPEC: Spec = Spec::new(
     .neutral(1.0),
 ])
 .memory(SLIDING_MEMORY)
-.confused_with(&["coulomb_friction", "direction_gain"])
+.confused_with(&["coulomb_friction", "direction_gain", "gravity_load"])
 .absorbing(&["coulomb_friction", "actuator_lag"])
 .refining("coulomb_friction")
 .limiting_case("time_constant", &["dead_band", "direction_gain"])

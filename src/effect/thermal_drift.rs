@@ -19,6 +19,10 @@ use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, 
 #[derive(Clone, Copy, Debug)]
 pub struct ThermalDrift;
 
+/// Time constant of a change of the oil's temperature, seconds, at least. Chosen: a third of the minute that
+/// oil stays in a small reservoir.
+const FASTEST_S: f64 = 20.0;
+
 static SPEC: Spec =
     Spec::new("thermal_drift", Stage::Load, "the gain drifts over the record as the oil warms")
         .equation("out = in (1 + rate time_constant (1 - exp(-t / time_constant)))")
@@ -28,6 +32,7 @@ static SPEC: Spec =
                 .between(-10.0, 10.0),
             Parameter::new("time_constant", "time to 63 % of the drift", Dimension::Seconds)
                 .between(0.0, UNLIMITED)
+                .plausible(FASTEST_S, f64::INFINITY)
                 .neutral(UNLIMITED),
         ])
         .confused_with(&["supply_droop"])

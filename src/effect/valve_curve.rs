@@ -71,6 +71,7 @@ static SPEC: Spec = Spec::new(
     "asymmetric_saturation",
     "flow_curve",
     "direction_gain",
+    "stiction",
 ])
 .absorbing(&[
     "dead_band",

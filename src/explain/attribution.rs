@@ -21,9 +21,10 @@
 use super::candidate::ALIKE;
 use super::contribution::{Attribution, Contribution};
 use super::determined::is_determined;
+use super::eligible::{could_be_missing, is_due};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
-use super::likeness::are_distinguished;
+use super::likeness::{are_distinguished, looks_like};
 use super::limiting_case::limiting_case;
 use super::misfit::{CONSEQUENCE, Errors, Misfit, generalizes};
 use super::options::Options;
@@ -31,7 +32,9 @@ use super::outcome::FitOutcome;
 use super::removal::{changed, fitted_with, replacements};
 use super::revision::Change;
 use super::workers::Workers;
-use crate::fit::{AssessedModel, Fit, FitRecord};
+use crate::effect::RecordRange;
+use crate::fit::{AssessedModel, Fit, FitRecord, Score};
+use crate::model::Component;
 
 /// A model, and the one to which its effects were added.
 pub(super) struct Grown<'a, 'r> {
@@ -75,6 +78,32 @@ impl Grown<'_, '_> {
         let component = components.find(|component| component.effect().spec().id == one.effect);
         let is_known = component.is_some_and(|component| is_determined(self.whole, component));
         !self.has_consequence(one) || !is_known && one.share < UNDETERMINED
+    }
+
+    /// The effects that look like `effect` and would not show beside it in the whole model, of which
+    /// `score` is.
+    fn hidden_beside<'s>(
+        &'s self,
+        effect: &'static str,
+        score: &'s Score<'_>,
+    ) -> impl Iterator<Item = &'static str> + 's {
+        let model = &self.whole.model;
+        let alike = self.options.effects.iter().filter(move |other| {
+            let spec = other.spec();
+            looks_like(effect, spec.id)
+                && !spec.is_free_form
+                && could_be_missing(self.record, model, **other)
+                && is_due(model, spec, self.options)
+        });
+        let hidden = alike.filter(move |other| {
+            score.hides(&model.with(Component::neutral(**other)), &self.range())
+        });
+        hidden.map(|other| other.spec().id)
+    }
+
+    /// How large the signals of the record are for the whole model.
+    fn range(&self) -> RecordRange<'_> {
+        self.record.range_for(&self.whole.model)
     }
 
     /// Whether what was left out has a practical consequence.
@@ -159,14 +188,16 @@ impl Grown<'_, '_> {
     ) -> Attribution {
         let (found, small): (Vec<_>, Vec<_>) =
             left_out.iter().partition(|one| self.has_consequence(one));
+        let score = Score::of(self.record, &self.whole.model, &self.range());
         let alternatives = |one: &LeftOut| {
             let as_little = exchanged.iter().filter_map(|(change, fit)| match *change {
                 Change::Replaced { old, new } if old == one.effect => {
-                    (self.share(fit) < self.hardly(one)).then_some(new)
+                    (self.share(fit) < self.hardly(one)).then(|| new.to_owned())
                 }
                 _ => None,
             });
-            as_little.collect()
+            let hidden = score.iter().flat_map(|score| self.hidden_beside(one.effect, score));
+            as_little.chain(hidden.map(|id| format!("{} + {id}", one.effect))).collect()
         };
         let contribution = |one: &LeftOut| Contribution {
             effect: one.effect,
@@ -206,7 +237,7 @@ impl Grown<'_, '_> {
     /// Whether an effect of the whole model has a free form, or does not show the feature after which it
     /// is named.
     fn is_any_form(&self, id: &'static str) -> bool {
-        let range = self.record.range_for(&self.whole.model);
+        let range = self.range();
         let effect = [id];
         let mut component = components_of(&self.whole.model, &effect);
         component.any(|one| {

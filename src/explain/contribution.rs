@@ -10,8 +10,9 @@ pub struct Contribution {
     /// The error that the model has without it, the rest fitted again, output units: on the part that
     /// was not fitted, where there is one.
     pub error_without: f64,
-    /// Effects that leave as little in its place.
-    pub alternatives: Vec<&'static str>,
+    /// Effects that leave as little in its place; `leakage + input_offset` where the second would not show
+    /// beside it.
+    pub alternatives: Vec<String>,
 }
 
 /// To which effects the fall of the error is attributed.

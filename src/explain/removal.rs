@@ -43,42 +43,34 @@ pub(super) struct Removal<'a> {
     pub(super) misfit: Misfit,
 }
 
-/// A change of one effect, with a further effect that is then added or without.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Exchange {
-    pub(super) change: Change,
-    pub(super) then: Option<&'static str>,
-}
+/// Changes that are made together: one, or that of an effect for two others, or of several for one.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Exchange(pub(super) Vec<Change>);
 
 impl Exchange {
     fn alone(change: Change) -> Self {
-        Self { change, then: None }
+        Self(vec![change])
     }
 
     /// Whether it brings two effects for one, or a finer form of one: what is as likely keeps its usual
     /// name.
-    fn is_unusual(self) -> bool {
-        let is_finer = match self.change {
-            Change::Replaced { new, .. } => {
-                by_id(new).is_some_and(|new| new.spec().refines.is_some())
-            }
-            _ => false,
-        };
-        is_finer || self.then.is_some()
+    fn is_unusual(&self) -> bool {
+        let new: Vec<_> = self.new_effects().collect();
+        let is_finer = |id: &&str| by_id(id).is_some_and(|new| new.spec().refines.is_some());
+        new.len() > 1 || new.iter().any(is_finer)
     }
 
     /// The effects that it brings.
-    fn new_effects(self) -> impl Iterator<Item = &'static str> {
-        self.change.new_effect().into_iter().chain(self.then)
+    fn new_effects(&self) -> impl Iterator<Item = &'static str> {
+        self.0.iter().filter_map(|change| change.new_effect())
     }
 
     /// `model` after it, once for each start of what is new.
-    fn applied(self, model: &JointModel) -> Vec<JointModel> {
-        let then = |model: JointModel| match self.then {
-            Some(id) => changed(&model, Change::Added(id)),
-            None => vec![model],
+    fn applied(&self, model: &JointModel) -> Vec<JointModel> {
+        let then = |models: Vec<JointModel>, change: &Change| {
+            models.iter().flat_map(|model| changed(model, *change)).collect()
         };
-        changed(model, self.change).into_iter().flat_map(then).collect()
+        self.0.iter().fold(vec![model.clone()], then)
     }
 }
 
@@ -92,16 +84,16 @@ impl Removal<'_> {
         workers: &impl Workers,
     ) -> Option<(Exchange, Fit)> {
         let exchanges = self.changes(record, &whole.model);
-        let with = |exchange: &Exchange| {
-            let exchange = *exchange;
-            exchange.applied(&whole.model).into_iter().map(move |model| (exchange, model))
+        let with = |(index, exchange): (usize, &Exchange)| {
+            exchange.applied(&whole.model).into_iter().map(move |model| (index, model))
         };
-        let models: Vec<_> = exchanges.iter().flat_map(with).collect();
+        let models: Vec<_> = exchanges.iter().enumerate().flat_map(with).collect();
         let tried = fitted_after(record, whole, &models, workers);
         let noise = NoiseMemory::of(record, whole);
         let own = Errors::of(record, whole);
         let of_whole = noise.evidence(record, whole);
-        let judged = tried.into_iter().filter_map(|(change, fit)| {
+        let judged = tried.into_iter().filter_map(|(index, fit)| {
+            let exchange = &exchanges[index];
             let evidence = noise.evidence(record, &fit.on(record));
             let does_harm =
                 of_whole.is_nearer_over_windows(&evidence, HARM) || !generalizes(own, fit.errors);
@@ -109,21 +101,21 @@ impl Removal<'_> {
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
                 || self.misfit.has_consequence(own, fit.errors);
-            let leaves_less = !change.is_unusual() || fit.cost < LESS * whole.cost;
+            let leaves_less = !exchange.is_unusual() || fit.cost < LESS * whole.cost;
             // Two in the place of one have to be ahead of the one, too.
-            let hurdle = if change.is_unusual() { ALIKE } else { 0.0 };
+            let hurdle = if exchange.is_unusual() { ALIKE } else { 0.0 };
             let behind = evidence.criterion() - of_whole.criterion() + hurdle;
-            let new: Vec<&str> = change.new_effects().collect();
+            let new: Vec<&str> = exchange.new_effects().collect();
             let is_known = components_of(&fit.model, &new).all(|one| is_determined(&fit, one))
                 && are_distinguished(&fit, &new, &record.range_for(&fit.model))
                 && limiting_case_of(record, &fit, &new, self.options).is_none();
             (behind < 0.0 && leaves_less && !does_harm && is_worth_it && is_known)
-                .then_some((behind, (change, fit)))
+                .then_some((behind, (exchange, fit)))
         });
         let (_, better) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        self.kept.extend(better.0.new_effects());
         let (exchange, fit) = better;
-        Some((exchange, fit.on(record)))
+        self.kept.extend(exchange.new_effects());
+        Some((exchange.clone(), fit.on(record)))
     }
 
     /// Removals of effects that may go, and exchanges for those that look like them.
@@ -138,7 +130,8 @@ impl Removal<'_> {
         let removals = old.iter().map(|id| Change::Removed(id));
         let single = removals.chain(old.iter().flat_map(|old| others(old))).map(Exchange::alone);
         let of_two = added.iter().flat_map(|old| by_two(record, model, old, self.options));
-        single.chain(of_two).collect()
+        let of_all = in_place_of_all(record, model, &added, self.options);
+        single.chain(of_two).chain(of_all).collect()
     }
 }
 
@@ -155,11 +148,38 @@ fn by_two(
         effect.is_some_and(|effect| could_be_missing(record, &rest, *effect))
     };
     let pairs = by_id(old).map_or(&[][..], |effect| effect.spec().looks_like_both).iter();
-    let exchange = |[new, then]: &[&'static str; 2]| Exchange {
-        change: Change::Replaced { old, new },
-        then: Some(*then),
+    let exchange = |[new, then]: &[&'static str; 2]| {
+        Exchange(vec![Change::Replaced { old, new: *new }, Change::Added(then)])
     };
     pairs.filter(|both| both.iter().all(is_able)).map(exchange).collect()
+}
+
+/// The exchanges of several of the `added` effects for one that looks like each of them: what one effect
+/// does, several follow together that were added before it could show.
+fn in_place_of_all(
+    record: &FitRecord<'_>,
+    model: &JointModel,
+    added: &[&'static str],
+    options: &Options,
+) -> Vec<Exchange> {
+    let exchange = |effect: &&'static dyn Effect| {
+        let spec = effect.spec();
+        let is_like = |id: &&&'static str| {
+            looks_like(spec.id, id)
+                || spec.refines.is_some_and(|simple| looks_like(simple, id))
+                || spec.looks_like_both.iter().any(|both| both.contains(id))
+        };
+        let (first, others) = match added.iter().filter(is_like).collect::<Vec<_>>()[..] {
+            [first, ref others @ ..] if !others.is_empty() => (*first, others.to_vec()),
+            _ => return None,
+        };
+        let rest = others.iter().fold(model.without(first), |rest, id| rest.without(id));
+        let replaced = Change::Replaced { old: first, new: spec.id };
+        let removed = others.into_iter().map(|id| Change::Removed(id));
+        could_be_missing(record, &rest, *effect)
+            .then(|| Exchange(std::iter::once(replaced).chain(removed).collect()))
+    };
+    options.effects.iter().filter_map(exchange).collect()
 }
 
 /// Exchanges of `old` for each effect that looks like it and could be in its place.

@@ -15,7 +15,7 @@ use super::judgement::Refusal;
 use super::misfit::{Errors, Misfit};
 use super::options::{Options, Tried};
 use super::ranking::{Scope, rank, rank_free_forms};
-use super::removal::Removal;
+use super::removal::{Exchange, Removal, changed};
 use super::revision::Change;
 use super::verdict::Verdict;
 use super::workers::Workers;
@@ -218,11 +218,7 @@ fn exchanged(
     visit: &mut impl FnMut(&Step) -> bool,
 ) -> ControlFlow<Ended, Step> {
     while let Some((exchange, fit)) = removal.better(record, &step.fit, workers) {
-        let first = |second| on_the_way(record, exchange.change, &fit.model, second);
-        let between = exchange.then.and_then(first);
-        let then = exchange.then.filter(|_| between.is_some());
-        let change = then.map_or(exchange.change, Change::Added);
-        for next in between.into_iter().chain([Step::new(record, change, fit)]) {
+        for next in steps_to(record, &step.fit.model, &exchange, fit) {
             if !visit(&step) {
                 let is_adequate = step.is_adequate();
                 let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
@@ -237,6 +233,26 @@ fn exchanged(
         }
     }
     ControlFlow::Continue(step)
+}
+
+/// The steps of an `exchange` that makes the model of `fit` of `model`: one for each of its changes,
+/// which need not be better on the way, or one for all where these cannot be fitted.
+fn steps_to(
+    record: &FitRecord<'_>,
+    model: &JointModel,
+    exchange: &Exchange,
+    fit: Fit,
+) -> Vec<Step> {
+    let Some((last, before)) = exchange.0.split_last() else { return Vec::new() };
+    let mut model = model.clone();
+    let on_the_way = |change: &Change| {
+        model = changed(&model, *change).into_iter().next()?;
+        let fit = fit_to_compare(record, &model, &record.range_for(&model)).ok()?;
+        Some(Step::new(record, *change, fit))
+    };
+    let between: Option<Vec<Step>> = before.iter().map(on_the_way).collect();
+    let change = if between.is_some() { *last } else { exchange.0[0] };
+    between.into_iter().flatten().chain([Step::new(record, change, fit)]).collect()
 }
 
 /// The model of `whole` without the `second` of two effects: a step on the way to both, after `change`,

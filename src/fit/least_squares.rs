@@ -135,9 +135,14 @@ pub fn survey(
     let samples = coarse.training_samples();
     let _turn = turn::wait_for(samples * space.free.len());
     let short = coarse.shortened();
+    // Between which levels an effect jumps is chosen on the whole record: few of its steps decide, and the
+    // part that is fitted may have none of them.
+    let whole = space.has_jumps().then(|| record.coarser_for(model).unsplit().shortened());
+    let across = whole.as_ref().unwrap_or(&short);
     let searches = rough(&short, &coarse, model, &space, range).into_iter();
     let ended = |search: Search<'_, '_>| {
-        let search = search.across_flats().onto(&coarse).descended(comparing(samples));
+        let crossed = search.onto(across).across_flats();
+        let search = crossed.onto(&coarse).descended(comparing(samples));
         Survey { model: search.problem.model_now(), cost: search.cost }
     };
     let found = searches.map(ended).min_by(|a, b| a.cost.total_cmp(&b.cost));

@@ -292,6 +292,12 @@ impl<'a> FitRecord<'a> {
         }
     }
 
+    /// This record with all windows for training.
+    pub(super) fn unsplit(&self) -> Self {
+        let fitted = |window: &Window| Window { part: Part::Training, ..*window };
+        Self { windows: self.windows.iter().map(fitted).collect(), ..self.clone() }
+    }
+
     /// This record with training windows of no more than a few steps of the input.
     pub(super) fn shortened(&self) -> Self {
         let windows = self.part(Part::Training).flat_map(|window| {

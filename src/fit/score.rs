@@ -65,13 +65,32 @@ impl<'r> Score<'r> {
         Some(Self { record, raw, slopes, unit })
     }
 
+    /// Whether what the neutral effects of `model` would do, the parameters of the model of the score do
+    /// as well: beside these the record cannot show them. An offset of the input beside a leakage is an
+    /// angle of balance.
+    #[must_use]
+    pub fn hides(&self, model: &JointModel, range: &RecordRange<'_>) -> bool {
+        /// The part of its size that is left of a change. Chosen: of a change that is linear in its
+        /// parameter 1e-6 is left, and of effects that a record can show a hundredth and more.
+        const NOTHING: f64 = 1e-3;
+        let change = |start: &Vec<f64>| self.change(&model.with_values(start));
+        let changes: Vec<_> = starts(model, range).iter().map(change).collect();
+        let is_hidden =
+            |change: &DVector<f64>| residual(&self.slopes, change).norm() < NOTHING * change.norm();
+        !changes.is_empty() && changes.iter().all(is_hidden)
+    }
+
+    /// By how much the residual of `model` is less than that of the model of the score.
+    fn change(&self, model: &JointModel) -> DVector<f64> {
+        &self.raw - self.record.training(&self.record.evaluate_residuals(model).residuals)
+    }
+
     /// The directions of the effects of `model` that are neutral; the model of the score has
     /// none of them.
     #[must_use]
     pub fn directions(&self, model: &JointModel, range: &RecordRange<'_>) -> Directions {
         let direction = |start: Vec<f64>| {
-            let residuals = self.record.evaluate_residuals(&model.with_values(&start)).residuals;
-            let change = &self.raw - self.record.training(&residuals);
+            let change = self.change(&model.with_values(&start));
             let size = change.norm();
             let direction = unit(residual(&self.slopes, &change), size)?;
             let share = direction.dot(&self.unit);

@@ -71,6 +71,11 @@ impl Space {
         self.jumps.get(free).map_or(&[], |jumps| &jumps.between)
     }
 
+    /// Whether an effect jumps with a free parameter.
+    pub(super) fn has_jumps(&self) -> bool {
+        self.jumps.iter().any(|jumps| !jumps.between.is_empty())
+    }
+
     /// About how far apart the jumps beside `value` of a free parameter are, where the error depends on it between
     /// them, too.
     pub(super) fn width_between_jumps(&self, free: usize, value: f64) -> Option<f64> {
