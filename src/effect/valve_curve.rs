@@ -80,6 +80,14 @@ static SPEC: Spec = Spec::new(
     "flow_curve",
     "direction_gain",
 ])
+.looking_like_both(&[
+    ["dead_band", "flow_curve"],
+    ["dead_band", "input_saturation"],
+    ["dead_band", "asymmetric_saturation"],
+    ["flow_curve", "input_saturation"],
+    ["flow_curve", "direction_gain"],
+    ["input_saturation", "direction_gain"],
+])
 .free_form()
 .steady()
 .equations(Equations::new(&["a1 = if(signal < 0, negative_share_1, share_1)

@@ -126,8 +126,10 @@ impl Grown<'_, '_> {
         workers: &impl Workers,
     ) -> Vec<(Change, FitOutcome)> {
         let found = left_out.iter().filter(|one| self.has_consequence(one));
-        let others =
-            |one: &LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
+        let others = |one: &LeftOut| {
+            let is_any_form = self.is_any_form(one.effect);
+            replacements(self.record, &self.whole.model, one.effect, self.options, is_any_form)
+        };
         let (free, lawful): (Vec<_>, Vec<_>) = found.partition(|one| self.is_any_form(one.effect));
         let changes = |of: Vec<&LeftOut>| of.into_iter().flat_map(others).collect::<Vec<Change>>();
         let mut exchanged = fitted_with(self.record, self.whole, &changes(lawful), workers);

@@ -10,7 +10,7 @@ use super::outcome::FitOutcome;
 use super::pairs::pairs;
 use super::screening::fit_best;
 use super::workers::Workers;
-use crate::diagnosis::NEAR_NOISE;
+use crate::diagnosis::{NEAR_NOISE, sensor_noise};
 use crate::effect::{Effect, RecordRange};
 use crate::fit::{Fit, FitRecord};
 use crate::model::{Component, JointModel};
@@ -59,18 +59,31 @@ pub(super) fn rank(
     if shows(&paired) { paired } else { search.beside_free_forms(&ranking, workers) }
 }
 
-/// A [`rank`]ing of laws beside the effects of a free form, each in the place of the laws that it
-/// absorbs: what no law explains may follow a curve of any form.
-pub(super) fn rank_free_forms(
+/// What is tried beside single effects, none of which can be added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Beside {
+    /// Pairs of effects.
+    Pairs,
+    /// Effects of a free form, each in the place of the laws that it absorbs: what no law explains may
+    /// follow a curve of any form.
+    FreeForms,
+}
+
+/// A [`rank`]ing of `singles` beside what else may explain the record.
+pub(super) fn rank_beside(
     record: &FitRecord<'_>,
     base: &Fit,
-    noise_floor: f64,
     options: &Options,
-    laws: &[Candidate],
+    (singles, what): (&[Candidate], Beside),
     workers: &impl Workers,
 ) -> Vec<Candidate> {
     let range = record.range_for(&base.model);
-    Search::new(record, base, noise_floor, options, &range).beside_free_forms(laws, workers)
+    let noise = sensor_noise(&record.measured().trials).unwrap_or(0.0);
+    let search = Search::new(record, base, noise, options, &range);
+    match what {
+        Beside::Pairs => search.beside_pairs(singles, workers),
+        Beside::FreeForms => search.beside_free_forms(singles, workers),
+    }
 }
 
 /// A model, and what may be missing from it.

@@ -1,6 +1,7 @@
 //! What can be removed from a model, or exchanged, after an effect was added.
 
 use super::candidate::ALIKE;
+use super::comparison::MUCH_LESS;
 use super::determined::is_determined;
 use super::eligible::{could_be_missing, is_due};
 use super::evidence::NoiseMemory;
@@ -29,6 +30,9 @@ const WORSE: f64 = 1.3;
 /// of the cost without, whatever the criterion says, which is less sure where more is missing. Chosen:
 /// 2 % of the error, as a single effect has to explain.
 const LESS: f64 = 0.96;
+
+/// The same with a curve of any form in the place of laws.
+const MUCH_LESS_COST: f64 = MUCH_LESS * MUCH_LESS;
 
 /// Changes that are fitted, at most. Chosen: each more costs a fit.
 const FINALISTS: usize = 6;
@@ -60,6 +64,18 @@ impl Exchange {
         new.len() > 1 || new.iter().any(is_finer)
     }
 
+    /// Whether it brings a curve of any form.
+    fn has_free_form(&self) -> bool {
+        self.new_effects().any(|id| by_id(id).is_some_and(|new| new.spec().is_free_form))
+    }
+
+    /// Whether it brings laws in the place of a curve of any form.
+    fn is_for_free_form(&self) -> bool {
+        let is_free = |id| by_id(id).is_some_and(|effect| effect.spec().is_free_form);
+        let mut changes = self.0.iter();
+        changes.any(|change| matches!(change, Change::Replaced { old, .. } if is_free(old)))
+    }
+
     /// The effects that it brings.
     fn new_effects(&self) -> impl Iterator<Item = &'static str> {
         self.0.iter().filter_map(|change| change.new_effect())
@@ -83,14 +99,14 @@ impl Removal<'_> {
         whole: &Fit,
         workers: &impl Workers,
     ) -> Option<(Exchange, Fit)> {
-        let exchanges = self.changes(record, &whole.model);
+        let own = Errors::of(record, whole);
+        let exchanges = self.changes(record, &whole.model, self.misfit.is_far_from_noise(own));
         let with = |(index, exchange): (usize, &Exchange)| {
             exchange.applied(&whole.model).into_iter().map(move |model| (index, model))
         };
         let models: Vec<_> = exchanges.iter().enumerate().flat_map(with).collect();
         let tried = fitted_after(record, whole, &models, workers);
         let noise = NoiseMemory::of(record, whole);
-        let own = Errors::of(record, whole);
         let of_whole = noise.evidence(record, whole);
         let judged = tried.into_iter().filter_map(|(index, fit)| {
             let exchange = &exchanges[index];
@@ -101,7 +117,12 @@ impl Removal<'_> {
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
                 || self.misfit.has_consequence(own, fit.errors);
-            let leaves_less = !exchange.is_unusual() || fit.cost < LESS * whole.cost;
+            let most = match exchange {
+                _ if exchange.has_free_form() => MUCH_LESS_COST,
+                _ if exchange.is_unusual() => LESS,
+                _ => f64::INFINITY,
+            };
+            let leaves_less = fit.cost < most * whole.cost;
             // Two in the place of one have to be ahead of the one, too.
             let hurdle = if exchange.is_unusual() { ALIKE } else { 0.0 };
             let behind = evidence.criterion() - of_whole.criterion() + hurdle;
@@ -109,8 +130,12 @@ impl Removal<'_> {
             let is_known = components_of(&fit.model, &new).all(|one| is_determined(&fit, one))
                 && are_distinguished(&fit, &new, &record.range_for(&fit.model))
                 && limiting_case_of(record, &fit, &new, self.options).is_none();
-            (behind < 0.0 && leaves_less && !does_harm && is_worth_it && is_known)
-                .then_some((behind, (exchange, fit)))
+            let is_better = behind < 0.0 && leaves_less && !does_harm && is_worth_it;
+            // Laws need not be as likely as a curve of any form.
+            let is_law = exchange.is_for_free_form()
+                && fit.parameters.len() < whole.parameters.len()
+                && !self.misfit.has_consequence(fit.errors, own);
+            ((is_better || is_law) && is_known).then_some((behind, (exchange, fit)))
         });
         let (_, better) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let (exchange, fit) = better;
@@ -120,11 +145,12 @@ impl Removal<'_> {
 
     /// Removals of effects that may go, and exchanges for those that look like them.
     ///
-    /// The effect that was chosen last was chosen among all single ones, but not among pairs.
-    fn changes(&self, record: &FitRecord<'_>, model: &JointModel) -> Vec<Exchange> {
+    /// The effect that was chosen last was chosen among all single ones, but not among pairs. Of a model
+    /// that `is_far` from the noise finer forms are tried, too: what they refine may not have shown.
+    fn changes(&self, record: &FitRecord<'_>, model: &JointModel, is_far: bool) -> Vec<Exchange> {
         let was_added = |id: &&'static str| !self.given.contains(id);
         let may_go = |id: &&'static str| was_added(id) && !self.kept.contains(id);
-        let others = |old: &'static str| replacements(record, model, old, self.options);
+        let others = |old: &'static str| replacements(record, model, old, self.options, is_far);
         let added: Vec<&'static str> = ids(model).into_iter().filter(was_added).collect();
         let old: Vec<&'static str> = added.iter().copied().filter(may_go).collect();
         let removals = old.iter().map(|id| Change::Removed(id));
@@ -182,12 +208,14 @@ fn in_place_of_all(
     options.effects.iter().filter_map(exchange).collect()
 }
 
-/// Exchanges of `old` for each effect that looks like it and could be in its place.
+/// Exchanges of `old` for each effect that looks like it and could be in its place, and for `finer` forms
+/// whose simple one is not in the model.
 pub(super) fn replacements(
     record: &FitRecord<'_>,
     model: &JointModel,
     old: &'static str,
     options: &Options,
+    finer: bool,
 ) -> Vec<Change> {
     let alike = options.effects.iter();
     let alike = alike.filter(move |effect| looks_like(old, effect.spec().id));
@@ -196,7 +224,7 @@ pub(super) fn replacements(
         let spec = effect.spec();
         could_be_missing(record, &rest, **effect)
             && !spec.is_free_form
-            && (is_due(&rest, spec, options) || is_as_simple_a_form(spec, old))
+            && (finer || is_due(&rest, spec, options) || is_as_simple_a_form(spec, old))
     });
     let replaced = |effect: &&'static dyn Effect| Change::Replaced { old, new: effect.spec().id };
     able.map(replaced).collect()

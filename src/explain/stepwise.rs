@@ -14,7 +14,7 @@ use super::extension::ids;
 use super::judgement::Refusal;
 use super::misfit::{Errors, Misfit};
 use super::options::{Options, Tried};
-use super::ranking::{Scope, rank, rank_free_forms};
+use super::ranking::{Beside, Scope, rank, rank_beside};
 use super::removal::{Exchange, Removal, changed};
 use super::revision::Change;
 use super::verdict::Verdict;
@@ -140,11 +140,14 @@ pub(super) fn add_stepwise(
         let mut judge = Judge::new(record, &step.fit, misfit, options);
         judge.are_levels_few = matched_by_many;
         let mut found = judge.judge_all(&mut step.ranking);
-        if found.is_none()
-            && !step.is_adequate()
-            && let Some((index, ranking)) = curve_beside(&step.ranking, record, &judge, workers)
-        {
-            (found, step.ranking) = (Some(index), ranking);
+        for what in [Beside::Pairs, Beside::FreeForms] {
+            if found.is_none()
+                && !step.is_adequate()
+                && let Some((index, ranking)) =
+                    found_beside(what, &step.ranking, record, &judge, workers)
+            {
+                (found, step.ranking) = (Some(index), ranking);
+            }
         }
         if found.is_none() && step.ranking.iter().any(Candidate::is_significant) {
             let refused = step.ranking.iter().find(|candidate| candidate.judgement.is_sound());
@@ -184,28 +187,30 @@ pub(super) fn add_stepwise(
     }
 }
 
-/// The ranking of `laws`, of which none is added though some show, beside curves of any form, and
-/// the place of the one that is added.
+/// The ranking of `singles`, of which none is added though some show, beside pairs or curves of any
+/// form, and the place of the one that is added.
 ///
-/// Where such a curve does not come near the noise either, it is not the curve that is missing, unless a
-/// law of the model is one: then it takes the place of that.
-fn curve_beside(
-    laws: &[Candidate],
+/// Where these do not come near the noise either, they are not what is missing, unless a law of the model
+/// is a curve: then one of any form takes the place of that. Pairs are tried where the model is far from
+/// the noise.
+fn found_beside(
+    what: Beside,
+    singles: &[Candidate],
     record: &FitRecord<'_>,
     judge: &Judge<'_, '_>,
     workers: &impl Workers,
 ) -> Option<(usize, Vec<Candidate>)> {
-    if !laws.iter().any(Candidate::is_significant) {
+    let is_far = |errors| judge.misfit.is_far_from_noise(errors);
+    let is_due = what == Beside::FreeForms || is_far(Errors::of(record, judge.base));
+    if !is_due || !singles.iter().any(Candidate::is_significant) {
         return None;
     }
-    let floor = sensor_noise(&record.measured().trials).unwrap_or(0.0);
-    let mut ranking = rank_free_forms(record, judge.base, floor, judge.options, laws, workers);
+    let mut ranking = rank_beside(record, judge.base, judge.options, (singles, what), workers);
     let index = judge.judge_all(&mut ranking)?;
-    let curve = &ranking[index];
-    let comes_near = !judge.misfit.is_far_from_noise(curve.fit.errors);
-    let change = Change::between(&judge.base.model, &curve.fit.model, curve.newest());
-    let takes_a_place = matches!(change, Change::Replaced { .. });
-    (comes_near || takes_a_place).then_some((index, ranking))
+    let found = &ranking[index];
+    let change = Change::between(&judge.base.model, &found.fit.model, found.newest());
+    let takes_a_place = what == Beside::FreeForms && matches!(change, Change::Replaced { .. });
+    (takes_a_place || !is_far(found.fit.errors)).then_some((index, ranking))
 }
 
 /// `step` with effects removed or exchanged for as long as that is better; how the search ended
