@@ -162,7 +162,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(400))]
         #[test]
         fn the_equations_of_each_effect_are_what_it_does(
-            parts in proptest::collection::vec(0.0..1.0, 8),
+            parts in proptest::collection::vec(0.0..1.0, 12),
             held in -4.0..4.0,
             signals in proptest::collection::vec((-4.0..4.0, -50.0..50.0, -9.0..9.0, 0.0..1.0), 12),
             dt_s in prop_oneof![Just(0.01), Just(1e-4), 0.001..0.3],
