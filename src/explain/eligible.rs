@@ -33,15 +33,17 @@ pub(super) fn free_forms(
     options.effects.iter().filter(is_one).copied().collect()
 }
 
-/// The effects of `options` that could be missing from `model` and [refine](Spec::refines) one that is
-/// not in it.
-pub(super) fn refinements(
+/// The effects of `options` that could be missing from `model`, are a steady law, and
+/// [refine](Spec::refines) one that is not in it.
+pub(super) fn steady_refinements(
     record: &FitRecord<'_>,
     model: &JointModel,
     options: &Options,
 ) -> Vec<&'static dyn Effect> {
     let refines = |effect: &&&'static dyn Effect| {
-        could_be_missing(record, model, **effect) && !is_due(model, effect.spec(), options)
+        effect.is_steady()
+            && could_be_missing(record, model, **effect)
+            && !is_due(model, effect.spec(), options)
     };
     options.effects.iter().filter(refines).copied().collect()
 }

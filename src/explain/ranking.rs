@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::comparison::{MUCH_LESS, compared};
-use super::eligible::{eligible, free_forms, refinements};
+use super::eligible::{eligible, free_forms, steady_refinements};
 use super::extension::Extension;
 use super::limiting_case::put_limiting_cases_first;
 use super::options::Options;
@@ -108,7 +108,7 @@ impl<'a, 'r> Search<'a, 'r> {
         range: &'a RecordRange<'a>,
     ) -> Self {
         let effects = eligible(record, &base.model, options);
-        let refinements = refinements(record, &base.model, options);
+        let refinements = steady_refinements(record, &base.model, options);
         Self { record, base, noise_floor, effects, refinements, options, range }
     }
 
@@ -119,7 +119,15 @@ impl<'a, 'r> Search<'a, 'r> {
             let limit = costs.first().map_or(0.0, |best| HOPELESS * best);
             costs.iter().filter(|cost| **cost <= limit).count().clamp(least, most)
         };
-        let mut extensions = self.with_best(&self.effects, kept, workers);
+        let with = |effect: &&'static dyn Effect| {
+            let id = effect.spec().id;
+            let models = self.base.model.placements(&Component::neutral(*effect));
+            models.into_iter().map(move |model| (id, model))
+        };
+        let models: Vec<_> = self.effects.iter().flat_map(with).collect();
+        let fits = fit_best(self.record, &models, self.range, kept, workers);
+        let extension = |(id, fit)| Extension { effects: vec![id], fit };
+        let mut extensions: Vec<Extension> = fits.into_iter().map(extension).collect();
         if let Some(other) = self.as_first_order() {
             extensions.retain(|one| one.effects != other.effects || one.fit.cost < other.fit.cost);
             let is_known = extensions.iter().any(|one| one.effects == other.effects);
@@ -133,23 +141,6 @@ impl<'a, 'r> Search<'a, 'r> {
             extensions.extend(self.with_measured_delays());
         }
         self.compared(extensions)
-    }
-
-    /// The base with the best of `effects`, each by itself, of which `kept` says how many.
-    fn with_best(
-        &self,
-        effects: &[&'static dyn Effect],
-        kept: impl FnOnce(&[f64]) -> usize,
-        workers: &impl Workers,
-    ) -> Vec<Extension> {
-        let with = |effect: &&'static dyn Effect| {
-            let id = effect.spec().id;
-            let models = self.base.model.placements(&Component::neutral(*effect));
-            models.into_iter().map(move |model| (id, model))
-        };
-        let models: Vec<_> = effects.iter().flat_map(with).collect();
-        let fits = fit_best(self.record, &models, self.range, kept, workers);
-        fits.into_iter().map(|(id, fit)| Extension { effects: vec![id], fit }).collect()
     }
 
     /// The candidates of `ranking` among the best pairs of effects.
@@ -207,10 +198,8 @@ impl<'a, 'r> Search<'a, 'r> {
     /// The finer forms that leave much less than all of `extensions`: a limit that only one direction
     /// reaches is hardly seen as one of both.
     fn refined(&self, extensions: &[Extension], workers: &impl Workers) -> Vec<Extension> {
-        /// Finer forms that are fitted, at most. Chosen: each more costs a fit.
-        const FINER: usize = 2;
         let limit = MUCH_LESS * Self::least_error(extensions);
-        let mut refined = self.with_best(&self.refinements, |_| FINER, workers);
+        let mut refined = self.with_each(&self.refinements, workers);
         refined.retain(|one| one.fit.errors.seen.is_some_and(|error| error < limit));
         refined
     }

@@ -31,7 +31,7 @@ const WORSE: f64 = 1.3;
 /// 2 % of the error, as a single effect has to explain.
 const LESS: f64 = 0.96;
 
-/// The same with a curve of any form in the place of laws.
+/// What it must be with a curve of any form in the place of laws, in parts of it.
 const MUCH_LESS_COST: f64 = MUCH_LESS * MUCH_LESS;
 
 /// Changes that are fitted, at most. Chosen: each more costs a fit.
@@ -191,9 +191,10 @@ fn in_place_of_all(
     let exchange = |effect: &&'static dyn Effect| {
         let spec = effect.spec();
         let is_like = |id: &&&'static str| {
-            looks_like(spec.id, id)
-                || spec.refines.is_some_and(|simple| looks_like(simple, id))
-                || spec.looks_like_both.iter().any(|both| both.contains(id))
+            let simple = spec.refines.and_then(by_id).map(Effect::spec);
+            std::iter::once(spec).chain(simple).any(|form| {
+                looks_like(form.id, id) || form.looks_like_both.iter().any(|two| two.contains(id))
+            })
         };
         let (first, others) = match added.iter().filter(is_like).collect::<Vec<_>>()[..] {
             [first, ref others @ ..] if !others.is_empty() => (*first, others.to_vec()),
