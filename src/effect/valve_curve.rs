@@ -22,6 +22,7 @@
 //! one dimension, Astronomy and Astrophysics 239, 443-450.
 
 use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage};
+use crate::units::floor_to_index;
 
 /// Knots within the curve of one direction. Chosen: with two, five simulated valves with
 /// fine metering, a notch and a full port left 12 to 49 times the noise; with five, 3 to 17.
@@ -188,7 +189,7 @@ fn along(shares: &[f64; KNOTS], size: f64) -> f64 {
     if size > INTERVALS as f64 {
         return 1.0 + (size - INTERVALS as f64) * slope(INTERVALS);
     }
-    let index = (size as usize).min(KNOTS);
+    let index = floor_to_index(size).min(KNOTS);
     let t = size - index as f64;
     let (rise, left, right) = (secant(index), slope(index), slope(index + 1));
     let (bend, twist) = (3.0 * rise - 2.0 * left - right, left + right - 2.0 * rise);

@@ -26,7 +26,7 @@ use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
 use super::likeness::{are_distinguished, looks_like};
 use super::limiting_case::limiting_case;
-use super::misfit::{CONSEQUENCE, Errors, Misfit, generalizes};
+use super::misfit::{Errors, Misfit, generalizes};
 use super::options::Options;
 use super::outcome::FitOutcome;
 use super::removal::{changed, fitted_with, replacements};
@@ -92,6 +92,7 @@ impl Grown<'_, '_> {
             let spec = other.spec();
             looks_like(effect, spec.id)
                 && !spec.is_free_form
+                && !spec.absorbs.contains(&effect)
                 && could_be_missing(self.record, model, **other)
                 && is_due(model, spec, self.options)
         });
@@ -109,7 +110,8 @@ impl Grown<'_, '_> {
     /// Whether what was left out has a practical consequence.
     fn has_consequence(&self, one: &LeftOut) -> bool {
         let own = Errors::of(self.record, self.whole);
-        one.share >= CONSEQUENCE || self.misfit.has_consequence(one.fit.errors, own)
+        one.share >= self.misfit.least_share(one.fit.errors)
+            || self.misfit.has_consequence(one.fit.errors, own)
     }
 
     /// What is attributed to which effect.
@@ -126,10 +128,8 @@ impl Grown<'_, '_> {
         workers: &impl Workers,
     ) -> Vec<(Change, FitOutcome)> {
         let found = left_out.iter().filter(|one| self.has_consequence(one));
-        let others = |one: &LeftOut| {
-            let is_any_form = self.is_any_form(one.effect);
-            replacements(self.record, &self.whole.model, one.effect, self.options, is_any_form)
-        };
+        let others =
+            |one: &LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
         let (free, lawful): (Vec<_>, Vec<_>) = found.partition(|one| self.is_any_form(one.effect));
         let changes = |of: Vec<&LeftOut>| of.into_iter().flat_map(others).collect::<Vec<Change>>();
         let mut exchanged = fitted_with(self.record, self.whole, &changes(lawful), workers);
@@ -194,7 +194,7 @@ impl Grown<'_, '_> {
         let alternatives = |one: &LeftOut| {
             let as_little = exchanged.iter().filter_map(|(change, fit)| match *change {
                 Change::Replaced { old, new } if old == one.effect => {
-                    (self.share(fit) < self.hardly(one)).then(|| new.to_owned())
+                    (self.share(fit) < self.hardly(one, fit)).then(|| new.to_owned())
                 }
                 _ => None,
             });
@@ -220,20 +220,17 @@ impl Grown<'_, '_> {
 
     /// Whether what the error of `fit` is larger by has no consequence.
     fn leaves_as_little(&self, fit: &FitOutcome) -> bool {
-        self.share(fit) < CONSEQUENCE
+        self.share(fit) < self.misfit.least_share(fit.errors)
     }
 
     /// The share by which the error may be larger with another effect in the place of one, for the two
     /// to be alternatives. A curve of any form, or one that does not show the feature after which it is
     /// named, is resembled by the law that has most of its share.
-    fn hardly(&self, one: &LeftOut) -> f64 {
+    fn hardly(&self, one: &LeftOut, other: &FitOutcome) -> f64 {
         /// The part of its share that such a law may miss.
         const RESEMBLES: f64 = 0.2;
-        if self.is_any_form(one.effect) {
-            CONSEQUENCE.max(RESEMBLES * one.share)
-        } else {
-            CONSEQUENCE
-        }
+        let least = self.misfit.least_share(other.errors);
+        if self.is_any_form(one.effect) { least.max(RESEMBLES * one.share) } else { least }
     }
 
     /// Whether an effect of the whole model has a free form, or does not show the feature after which it

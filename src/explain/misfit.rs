@@ -3,10 +3,13 @@
 use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, sensor_noise};
 use crate::fit::{Fit, FitRecord, Part};
 
-/// The share of the misfit from which an effect has a practical consequence: what other effects leave whose
-/// law is not quite that of the plant is as large. Of 171 simulated records with laws of another form
-/// than the catalogue's, 1 of 312 effects that act took less, and 5 of 33 that do not.
-pub(crate) const CONSEQUENCE: f64 = 0.03;
+/// The share of the misfit from which an effect has a practical consequence near the noise: what other
+/// effects leave whose law is not quite that of the plant is as large. Of 171 simulated records with laws
+/// of another form than the catalogue's, 1 of 312 effects that act took less, and 5 of 33 that do not.
+const CONSEQUENCE: f64 = 0.03;
+
+/// That far from the noise, where something is missing for sure.
+const FAR_FROM_NOISE: f64 = 0.01;
 
 /// The part of the misfit below which what a model leaves is explained.
 const HARDLY: f64 = 0.05;
@@ -88,8 +91,14 @@ impl Misfit {
     pub(super) fn has_consequence(self, worse: Errors, better: Errors) -> bool {
         /// The part of the squared error beyond the noise. Chosen: an eighth of the error.
         const OF_WHAT_IS_LEFT: f64 = 0.25;
-        self.share(worse, better) >= CONSEQUENCE
+        self.share(worse, better) >= self.least_share(worse)
             || self.is_far_from_noise(worse) && self.takes(OF_WHAT_IS_LEFT, worse, better)
+    }
+
+    /// The share from which an effect has a practical consequence without which the error is that of
+    /// `worse`.
+    pub(super) fn least_share(self, worse: Errors) -> f64 {
+        if self.is_far_from_noise(worse) { FAR_FROM_NOISE } else { CONSEQUENCE }
     }
 
     /// Whether an effect is credible without which the error is that of `without`, and with it that of
@@ -189,7 +198,10 @@ mod tests {
     fn what_is_left_counts_where_it_is_far_beyond_the_noise() {
         let misfit = Misfit { first: 10.0, unseen: None, noise: 0.01 };
         let of = |whole: f64| Errors { whole, seen: None, unseen: None };
-        assert!(misfit.has_consequence(of(10.0), of(9.6)), "a part of the misfit");
+        assert!(misfit.has_consequence(of(10.0), of(9.8)), "a part of the misfit");
+        let small = Misfit { first: 0.1, ..misfit };
+        assert!(!small.has_consequence(of(0.025), of(0.0235)), "a small part near the noise");
+        assert!(small.has_consequence(of(0.025), of(0.02)), "a part near the noise");
         assert!(misfit.has_consequence(of(0.08), of(0.04)), "most of what is left");
         assert!(!misfit.has_consequence(of(0.08), of(0.075)), "little of what is left");
         assert!(!misfit.has_consequence(of(0.025), of(0.012)), "what is left is near the noise");

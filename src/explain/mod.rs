@@ -62,7 +62,6 @@ pub use improve::improve;
 pub use judge::explain;
 pub(crate) use judge::named;
 pub use judgement::{Judgement, Refusal};
-pub(crate) use misfit::CONSEQUENCE;
 pub use options::{MAX_EFFECTS, Options, Tried};
 pub use outcome::FitOutcome;
 pub use revision::{AddError, Addition, Change, Improvement, Revision};

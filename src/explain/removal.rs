@@ -100,7 +100,7 @@ impl Removal<'_> {
         workers: &impl Workers,
     ) -> Option<(Exchange, Fit)> {
         let own = Errors::of(record, whole);
-        let exchanges = self.changes(record, &whole.model, self.misfit.is_far_from_noise(own));
+        let exchanges = self.changes(record, &whole.model);
         let with = |(index, exchange): (usize, &Exchange)| {
             exchange.applied(&whole.model).into_iter().map(move |model| (index, model))
         };
@@ -145,12 +145,11 @@ impl Removal<'_> {
 
     /// Removals of effects that may go, and exchanges for those that look like them.
     ///
-    /// The effect that was chosen last was chosen among all single ones, but not among pairs. Of a model
-    /// that `is_far` from the noise finer forms are tried, too: what they refine may not have shown.
-    fn changes(&self, record: &FitRecord<'_>, model: &JointModel, is_far: bool) -> Vec<Exchange> {
+    /// The effect that was chosen last was chosen among all single ones, but not among pairs.
+    fn changes(&self, record: &FitRecord<'_>, model: &JointModel) -> Vec<Exchange> {
         let was_added = |id: &&'static str| !self.given.contains(id);
         let may_go = |id: &&'static str| was_added(id) && !self.kept.contains(id);
-        let others = |old: &'static str| replacements(record, model, old, self.options, is_far);
+        let others = |old: &'static str| replacements(record, model, old, self.options);
         let added: Vec<&'static str> = ids(model).into_iter().filter(was_added).collect();
         let old: Vec<&'static str> = added.iter().copied().filter(may_go).collect();
         let removals = old.iter().map(|id| Change::Removed(id));
@@ -175,7 +174,7 @@ fn by_two(
     };
     let pairs = by_id(old).map_or(&[][..], |effect| effect.spec().looks_like_both).iter();
     let exchange = |[new, then]: &[&'static str; 2]| {
-        Exchange(vec![Change::Replaced { old, new: *new }, Change::Added(then)])
+        Exchange(vec![Change::Replaced { old, new }, Change::Added(then)])
     };
     pairs.filter(|both| both.iter().all(is_able)).map(exchange).collect()
 }
@@ -209,15 +208,15 @@ fn in_place_of_all(
     options.effects.iter().filter_map(exchange).collect()
 }
 
-/// Exchanges of `old` for each effect that looks like it and could be in its place, and for `finer` forms
-/// whose simple one is not in the model.
+/// Exchanges of `old` for each effect that looks like it and could be in its place; of a curve of any form
+/// for finer forms, too, whose simple one is not in the model.
 pub(super) fn replacements(
     record: &FitRecord<'_>,
     model: &JointModel,
     old: &'static str,
     options: &Options,
-    finer: bool,
 ) -> Vec<Change> {
+    let is_any_form = by_id(old).is_some_and(|old| old.spec().is_free_form);
     let alike = options.effects.iter();
     let alike = alike.filter(move |effect| looks_like(old, effect.spec().id));
     let rest = model.without(old);
@@ -225,7 +224,7 @@ pub(super) fn replacements(
         let spec = effect.spec();
         could_be_missing(record, &rest, **effect)
             && !spec.is_free_form
-            && (finer || is_due(&rest, spec, options) || is_as_simple_a_form(spec, old))
+            && (is_any_form || is_due(&rest, spec, options) || is_as_simple_a_form(spec, old))
     });
     let replaced = |effect: &&'static dyn Effect| Change::Replaced { old, new: effect.spec().id };
     able.map(replaced).collect()

@@ -140,7 +140,9 @@ pub(super) fn add_stepwise(
         let mut judge = Judge::new(record, &step.fit, misfit, options);
         judge.are_levels_few = matched_by_many;
         let mut found = judge.judge_all(&mut step.ranking);
-        for what in [Beside::Pairs, Beside::FreeForms] {
+        let added = ids(&step.fit.model).len().saturating_sub(given.len());
+        let pairs = (added == 0).then_some(Beside::Pairs);
+        for what in pairs.into_iter().chain([Beside::FreeForms]) {
             if found.is_none()
                 && !step.is_adequate()
                 && let Some((index, ranking)) =
@@ -163,7 +165,6 @@ pub(super) fn add_stepwise(
         }
         let found = found.and(step.ranking.first().cloned());
         let explained = found.is_some();
-        let added = ids(&step.fit.model).len().saturating_sub(given.len());
         let goes_on = visit(&step);
         let Some(found) = found.filter(|_| goes_on && added < options.max_effects) else {
             let verdict = if explained { Verdict::MissingEffect } else { Verdict::Unexplained };

@@ -39,7 +39,7 @@ pub(crate) struct Estimate {
 pub(crate) struct Found {
     pub(crate) id: &'static str,
     /// What leaves as little error in its place.
-    pub(crate) alternatives: Vec<&'static str>,
+    pub(crate) alternatives: Vec<String>,
     /// What it carries, in parts of the first error; a refinement carries nothing.
     pub(crate) error_share: f64,
 }

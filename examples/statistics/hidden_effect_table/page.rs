@@ -120,7 +120,8 @@ fn has_all(case: &Case, outcome: &Outcome) -> bool {
 
 /// Whether `found` is the effect `hidden`, or one that may as well be it.
 pub(crate) fn stands_for(found: &Found, hidden: &str) -> bool {
-    found.id == hidden || found.alternatives.contains(&hidden)
+    let names = |other: &String| other.split(" + ").any(|id| id == hidden);
+    found.id == hidden || found.alternatives.iter().any(names)
 }
 
 /// Effects of the last revision that stand for nothing that is hidden.

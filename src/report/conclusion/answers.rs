@@ -2,7 +2,7 @@
 
 use super::figures::first_of;
 use crate::diagnosis::failure::FailsWhere;
-use crate::explain::{CONSEQUENCE, Candidate, Contribution, Verdict};
+use crate::explain::{Candidate, Contribution, Verdict};
 use crate::report::finding::Finding;
 use crate::wording::{misfit_units, percent};
 
@@ -60,11 +60,8 @@ impl Finding<'_> {
         match self.before {
             // Effects were added until none did.
             Some(_) if self.ranking.iter().any(Candidate::is_significant) => {
-                let least = percent(CONSEQUENCE);
-                format!(
-                    "no other effect is significant, distinguishable from others, and worth {least} of \
-                     the first error"
-                )
+                "no other effect is significant, distinguishable from others, and of practical consequence"
+                    .to_owned()
             }
             Some(_) => "no other effect is significant".to_owned(),
             None => "no tried effect reduces the error enough".to_owned(),
