@@ -4,7 +4,7 @@ use super::figures::first_of;
 use crate::diagnosis::failure::FailsWhere;
 use crate::explain::{Candidate, Contribution, Verdict};
 use crate::report::finding::Finding;
-use crate::wording::{misfit_units, percent};
+use crate::wording::misfit_units;
 
 /// What a reviewer asks of a model first: question and answer.
 pub(crate) type Answer = (&'static str, String);
