@@ -31,9 +31,6 @@ const WORSE: f64 = 1.3;
 /// 2 % of the error, as a single effect has to explain.
 const LESS: f64 = 0.96;
 
-/// What it must be with a curve of any form in the place of laws, in parts of it.
-const MUCH_LESS_COST: f64 = MUCH_LESS * MUCH_LESS;
-
 /// Changes that are fitted, at most. Chosen: each more costs a fit.
 const FINALISTS: usize = 6;
 
@@ -117,12 +114,11 @@ impl Removal<'_> {
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
                 || self.misfit.has_consequence(own, fit.errors);
-            let most = match exchange {
-                _ if exchange.has_free_form() => MUCH_LESS_COST,
-                _ if exchange.is_unusual() => LESS,
-                _ => f64::INFINITY,
+            let leaves_less = if exchange.has_free_form() {
+                fit.cost < MUCH_LESS * MUCH_LESS * whole.cost
+            } else {
+                !exchange.is_unusual() || fit.cost < LESS * whole.cost
             };
-            let leaves_less = fit.cost < most * whole.cost;
             // Two in the place of one have to be ahead of the one, too.
             let hurdle = if exchange.is_unusual() { ALIKE } else { 0.0 };
             let behind = evidence.criterion() - of_whole.criterion() + hurdle;
@@ -286,4 +282,45 @@ pub(super) fn changed(model: &JointModel, change: Change) -> Vec<JointModel> {
         }
     };
     new.into_iter().flatten().flat_map(|component| rest.placements(&component)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{DeadBand, DirectionGain, SpoolLag, ThermalDrift};
+    use crate::experiment::{Joint, Trial};
+    use crate::fit::{Horizon, Split};
+    use crate::units::SamplePeriod;
+
+    #[test]
+    fn one_effect_is_tried_in_the_place_of_all_that_look_like_it() {
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("1", 0.0, period, vec![0.0; 40], vec![0.0; 40]).unwrap();
+        let joint = Joint::new("boom", vec![trial]);
+        let record = FitRecord::new(&joint, Split::Trials, Horizon::FreeRun);
+        let effects: [&'static dyn Effect; 4] =
+            [&DeadBand, &SpoolLag, &ThermalDrift, &DirectionGain];
+        let with = |model: JointModel, effect: &&'static dyn Effect| {
+            model.with(Component::neutral(*effect))
+        };
+        let model = effects.iter().fold(JointModel::integrator(1.0, 0.1), with);
+        let added = effects.map(|effect| effect.spec().id);
+        let all = in_place_of_all(&record, &model, &added, &Options::default());
+        let replaced = Change::Replaced { old: "dead_band", new: "asymmetric_friction" };
+        let removed = ["spool_lag", "direction_gain"].map(Change::Removed);
+        let exchange = Exchange([&[replaced][..], &removed].concat());
+        assert!(all.contains(&exchange), "{all:?}");
+        assert!(in_place_of_all(&record, &model, &["dead_band"], &Options::default()).is_empty());
+        assert_eq!(
+            exchange.applied(&model).len(),
+            exchange
+                .applied(&model)
+                .iter()
+                .filter(|model| {
+                    !ids(model).contains(&"spool_lag")
+                        && ids(model).contains(&"asymmetric_friction")
+                })
+                .count()
+        );
+    }
 }

@@ -28,8 +28,8 @@ use crate::model::JointModel;
 /// Parameters of an effect that are neutral start from each of the effect's own starts. Those
 /// that promise most are followed until it is seen where they lead, in short windows, where an
 /// error does not add up and there are fewer valleys, and in one of some samples; the best two go on in whole
-/// windows, and the better of them on all samples. The model as it was given
-/// is a start, too: the error is never larger than its own, so an effect that was added where
+/// windows, and the better of them on all samples. Levels at which an effect jumps, as those of a stiction,
+/// are chosen on all windows, fitted or not. The model as it was given is a start, too: the error is never larger than its own, so an effect that was added where
 /// it is neutral never makes it larger.
 ///
 /// Standard errors allow for correlated residuals (Newey and West, 1987).
@@ -285,5 +285,38 @@ impl Search<'_, '_> {
         let parameters = named.map(parameter).collect();
         let evaluation = Arc::new(whole.evaluate(&model));
         Assessment { assessed: AssessedModel { model, parameters }, evaluation }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Stiction;
+    use crate::experiment::{Joint, Trial};
+    use crate::fit::{Horizon, Split};
+    use crate::model::Component;
+    use crate::units::SamplePeriod;
+
+    #[test]
+    fn a_level_that_only_the_unseen_part_has_decides_where_a_stiction_starts() {
+        // Only the second of each three blocks of four holds has levels at which the joint sticks.
+        let large = [1.0, 0.0, -1.0, 0.0];
+        let small = [0.5, 0.0, -0.5, 0.0];
+        let levels = [large, small, large, large, small, large, large].concat();
+        let input: Vec<f64> =
+            levels.iter().flat_map(|level| std::iter::repeat_n(*level, 60)).collect();
+        let mut angle = 0.0;
+        let mut turn = |level: &f64| {
+            angle += 0.1 * if level.abs() > 0.6 { *level } else { 0.0 };
+            angle
+        };
+        let output = input.iter().map(&mut turn).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let joint = Joint::new("boom", vec![Trial::new("1", 0.0, period, input, output).unwrap()]);
+        let record = FitRecord::new(&joint, Split::Blocks, Horizon::Steps);
+        let model = JointModel::integrator(8.0, 0.0).with(Component::neutral(&Stiction));
+        let found = fit(&record, &model, &record.range(10.0)).unwrap();
+        let start = found.model.components()[0].plain()[0];
+        assert!((0.5..1.0).contains(&start), "{start}");
     }
 }

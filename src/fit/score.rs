@@ -142,10 +142,10 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::effect::{DeadBand, Effect, GravityLoad, InputOffset};
+    use crate::effect::{DeadBand, Effect, GravityLoad, InputOffset, Leakage};
     use crate::experiment::{Joint, Trial};
     use crate::fit::{Horizon, Split, fit};
-    use crate::model::Component;
+    use crate::model::{Component, Value};
     use crate::units::SamplePeriod;
 
     #[test]
@@ -189,6 +189,21 @@ mod tests {
             covariates: Vec::new(),
             trials: [Trial::new("1", 0.0, period, input, output).unwrap()].into(),
         }
+    }
+
+    #[test]
+    fn an_offset_does_not_show_beside_a_leakage() {
+        let joint = joint();
+        let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::Steps);
+        let range = record.range(20.0);
+        let leaking = Component::new(&Leakage, [0.05, 5.0].map(Value::from).to_vec()).unwrap();
+        let model = JointModel::integrator(10.0, 0.0).with(leaking);
+        let score = Score::of(&record, &model, &range).unwrap();
+        let hides = |effect: &'static dyn Effect| {
+            score.hides(&model.with(Component::neutral(effect)), &range)
+        };
+        assert!(hides(&InputOffset));
+        assert!(!hides(&DeadBand) && !hides(&GravityLoad));
     }
 
     #[test]
