@@ -24,8 +24,8 @@
 use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage};
 use crate::units::floor_to_index;
 
-/// Knots within the curve of one direction. Chosen: with two, five simulated valves with
-/// fine metering, a notch and a full port left 12 to 49 times the noise; with five, 3 to 17.
+/// Knots within the curve of one direction. Chosen: with two, five simulated valves with fine metering, a
+/// notch and a full port left 4 to 49 times the noise, and false laws beside; with five, 3 to 17.
 const KNOTS: usize = 5;
 
 /// Intervals between knots.

@@ -194,18 +194,18 @@ impl Grown<'_, '_> {
         let alternatives = |one: &LeftOut| {
             let as_little = exchanged.iter().filter_map(|(change, fit)| match *change {
                 Change::Replaced { old, new } if old == one.effect => {
-                    (self.share(fit) < self.hardly(one, fit)).then(|| new.to_owned())
+                    (self.share(fit) < self.hardly(one, fit)).then_some(new)
                 }
                 _ => None,
             });
-            let hidden = score.iter().flat_map(|score| self.hidden_beside(one.effect, score));
-            as_little.chain(hidden.map(|id| format!("{} + {id}", one.effect))).collect()
+            as_little.collect()
         };
         let contribution = |one: &LeftOut| Contribution {
             effect: one.effect,
             error_share: one.share,
             error_without: one.fit.errors.judged(),
             alternatives: alternatives(one),
+            hidden: score.iter().flat_map(|of| self.hidden_beside(one.effect, of)).collect(),
         };
         refinements.extend(small.iter().map(|one| one.effect));
         let own = Errors::of(self.record, self.whole);

@@ -8,7 +8,8 @@ use crate::fit::{Fit, FitRecord, Part};
 /// of another form than the catalogue's, 1 of 312 effects that act took less, and 5 of 33 that do not.
 const CONSEQUENCE: f64 = 0.03;
 
-/// That far from the noise, where something is missing for sure.
+/// The share from which it has one where the error without it is far from the noise: there something is
+/// missing for sure.
 const FAR_FROM_NOISE: f64 = 0.01;
 
 /// The part of the misfit below which what a model leaves is explained.
@@ -95,8 +96,8 @@ impl Misfit {
             || self.is_far_from_noise(worse) && self.takes(OF_WHAT_IS_LEFT, worse, better)
     }
 
-    /// The share from which an effect has a practical consequence without which the error is that of
-    /// `worse`.
+    /// The share of the misfit from which an effect has a practical consequence, where the error without
+    /// it is that of `worse`.
     pub(super) fn least_share(self, worse: Errors) -> f64 {
         if self.is_far_from_noise(worse) { FAR_FROM_NOISE } else { CONSEQUENCE }
     }

@@ -114,17 +114,17 @@ impl<'a, 'r> Search<'a, 'r> {
 
     /// The base with each effect by itself, ranked.
     fn singles(&self, scope: Scope, workers: &impl Workers) -> Vec<Candidate> {
-        let kept = |costs: &[f64]| {
-            let (most, least) = FINALISTS;
-            let limit = costs.first().map_or(0.0, |best| HOPELESS * best);
-            costs.iter().filter(|cost| **cost <= limit).count().clamp(least, most)
-        };
         let with = |effect: &&'static dyn Effect| {
             let id = effect.spec().id;
             let models = self.base.model.placements(&Component::neutral(*effect));
             models.into_iter().map(move |model| (id, model))
         };
         let models: Vec<_> = self.effects.iter().flat_map(with).collect();
+        let kept = |costs: &[f64]| {
+            let (most, least) = FINALISTS;
+            let limit = costs.first().map_or(0.0, |best| HOPELESS * best);
+            costs.iter().filter(|cost| **cost <= limit).count().clamp(least, most)
+        };
         let fits = fit_best(self.record, &models, self.range, kept, workers);
         let extension = |(id, fit)| Extension { effects: vec![id], fit };
         let mut extensions: Vec<Extension> = fits.into_iter().map(extension).collect();

@@ -15,7 +15,7 @@ use super::judgement::Refusal;
 use super::misfit::{Errors, Misfit};
 use super::options::{Options, Tried};
 use super::ranking::{Beside, Scope, rank, rank_beside};
-use super::removal::{Exchange, Removal, changed};
+use super::removal::{Removal, changed};
 use super::revision::Change;
 use super::verdict::Verdict;
 use super::workers::Workers;
@@ -139,18 +139,13 @@ pub(super) fn add_stepwise(
         }
         let mut judge = Judge::new(record, &step.fit, misfit, options);
         judge.are_levels_few = matched_by_many;
-        let mut found = judge.judge_all(&mut step.ranking);
         let added = ids(&step.fit.model).len().saturating_sub(given.len());
-        let pairs = (added == 0).then_some(Beside::Pairs);
-        for what in pairs.into_iter().chain([Beside::FreeForms]) {
-            if found.is_none()
-                && !step.is_adequate()
-                && let Some((index, ranking)) =
-                    found_beside(what, &step.ranking, record, &judge, workers)
-            {
-                (found, step.ranking) = (Some(index), ranking);
-            }
-        }
+        let others: &[Beside] = match added {
+            _ if step.is_adequate() => &[],
+            0 => &[Beside::Pairs, Beside::FreeForms],
+            _ => &[Beside::FreeForms],
+        };
+        let found = chosen(&mut step.ranking, others, record, &judge, workers);
         if found.is_none() && step.ranking.iter().any(Candidate::is_significant) {
             let refused = step.ranking.iter().find(|candidate| candidate.judgement.is_sound());
             let refinements = refused.map(|refused| refused.effects.clone()).unwrap_or_default();
@@ -170,22 +165,43 @@ pub(super) fn add_stepwise(
             let verdict = if explained { Verdict::MissingEffect } else { Verdict::Unexplained };
             return ended(verdict, step.fit, !goes_on);
         };
-        if let [first, second] = found.effects[..]
-            && let Some(alone) = on_the_way(record, Change::Added(first), &found.fit.model, second)
-        {
-            step = alone;
+        let changes = match found.effects[..] {
+            [first, second] => vec![Change::Added(first), Change::Added(second)],
+            _ => vec![Change::between(&step.fit.model, &found.fit.model, found.newest())],
+        };
+        let (between, last) = steps_to(record, &step.fit.model, &changes, found.fit.on(record));
+        for next in between {
+            step = next;
             if !visit(&step) {
                 return ended(Verdict::MissingEffect, step.fit, true);
             }
         }
-        let change = Change::between(&step.fit.model, &found.fit.model, found.newest());
-        step = Step::new(record, change, found.fit.on(record));
+        step = last;
         let removal = Removal { given, kept: found.effects, options, misfit };
         step = match exchanged(record, step, removal, workers, &mut visit) {
             ControlFlow::Continue(step) => step,
             ControlFlow::Break(ended) => return ended,
         };
     }
+}
+
+/// The place in `ranking` of what is added: a single effect, or else the first of `others` of which one is.
+fn chosen(
+    ranking: &mut Vec<Candidate>,
+    others: &[Beside],
+    record: &FitRecord<'_>,
+    judge: &Judge<'_, '_>,
+    workers: &impl Workers,
+) -> Option<usize> {
+    let single = judge.judge_all(ranking);
+    if single.is_some() {
+        return single;
+    }
+    let mut beside =
+        others.iter().filter_map(|what| found_beside(*what, ranking, record, judge, workers));
+    let (index, found) = beside.next()?;
+    *ranking = found;
+    Some(index)
 }
 
 /// The ranking of `singles`, of which none is added though some show, beside pairs or curves of any
@@ -224,7 +240,8 @@ fn exchanged(
     visit: &mut impl FnMut(&Step) -> bool,
 ) -> ControlFlow<Ended, Step> {
     while let Some((exchange, fit)) = removal.better(record, &step.fit, workers) {
-        for next in steps_to(record, &step.fit.model, &exchange, fit) {
+        let (between, last) = steps_to(record, &step.fit.model, &exchange.0, fit);
+        for next in between.into_iter().chain([last]) {
             if !visit(&step) {
                 let is_adequate = step.is_adequate();
                 let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
@@ -241,15 +258,15 @@ fn exchanged(
     ControlFlow::Continue(step)
 }
 
-/// The steps of an `exchange` that makes the model of `fit` of `model`: one for each of its changes,
+/// The steps by which `changes` make the model of `fit` of `model`, the last apart: one for each change,
 /// which need not be better on the way, or one for all where these cannot be fitted.
 fn steps_to(
     record: &FitRecord<'_>,
     model: &JointModel,
-    exchange: &Exchange,
+    changes: &[Change],
     fit: Fit,
-) -> Vec<Step> {
-    let Some((last, before)) = exchange.0.split_last() else { return Vec::new() };
+) -> (Vec<Step>, Step) {
+    let (last, before) = changes.split_last().unwrap_or((&Change::Start, &[]));
     let mut model = model.clone();
     let on_the_way = |change: &Change| {
         model = changed(&model, *change).into_iter().next()?;
@@ -257,19 +274,6 @@ fn steps_to(
         Some(Step::new(record, *change, fit))
     };
     let between: Option<Vec<Step>> = before.iter().map(on_the_way).collect();
-    let change = if between.is_some() { *last } else { exchange.0[0] };
-    between.into_iter().flatten().chain([Step::new(record, change, fit)]).collect()
-}
-
-/// The model of `whole` without the `second` of two effects: a step on the way to both, after `change`,
-/// which need not be better.
-fn on_the_way(
-    record: &FitRecord<'_>,
-    change: Change,
-    whole: &JointModel,
-    second: &str,
-) -> Option<Step> {
-    let model = whole.without(second);
-    let fit = fit_to_compare(record, &model, &record.range_for(&model)).ok()?;
-    Some(Step::new(record, change, fit))
+    let change = if between.is_some() { last } else { &before[0] };
+    (between.unwrap_or_default(), Step::new(record, *change, fit))
 }

@@ -28,9 +28,10 @@ use crate::model::JointModel;
 /// Parameters of an effect that are neutral start from each of the effect's own starts. Those
 /// that promise most are followed until it is seen where they lead, in short windows, where an
 /// error does not add up and there are fewer valleys, and in one of some samples; the best two go on in whole
-/// windows, and the better of them on all samples. Levels at which an effect jumps, as those of a stiction,
-/// are chosen on all windows, fitted or not. The model as it was given is a start, too: the error is never larger than its own, so an effect that was added where
-/// it is neutral never makes it larger.
+/// windows, and the better of them on all samples. Levels at which an effect jumps, as those of a
+/// stiction, are chosen on all windows, fitted or not. The model as it was given is a start, too: the
+/// error is never larger than its own, so an effect that was added where it is neutral never makes it
+/// larger.
 ///
 /// Standard errors allow for correlated residuals (Newey and West, 1987).
 ///

@@ -73,7 +73,8 @@ impl Consequence<'_> {
 
     /// What each of several effects carries, and what could stand in its place.
     pub(super) fn sentences(&self) -> Vec<String> {
-        let sentences = self.shares().into_iter().chain(self.alternatives());
+        let others = self.alternatives().chain(self.hidden());
+        let sentences = self.shares().into_iter().chain(others);
         sentences.chain(self.doubtful()).chain(self.refinements()).collect()
     }
 
@@ -97,6 +98,17 @@ impl Consequence<'_> {
         found.filter(|one| !one.alternatives.is_empty()).map(|one| {
             let others = one.alternatives.join(" or ");
             format!("In place of {}, {others} fits about as well.", one.effect)
+        })
+    }
+
+    /// What would not show beside each effect.
+    fn hidden(&self) -> impl Iterator<Item = String> {
+        let found = self.attribution.iter().flat_map(|known| &known.found);
+        found.filter(|one| !one.hidden.is_empty()).map(|one| {
+            let (effect, hidden) = (one.effect, one.hidden.join(" or "));
+            format!(
+                "This record would not show {hidden} beside {effect}, whose parameters do the same."
+            )
         })
     }
 

@@ -6,7 +6,9 @@ use tauscope::delay::{EstimateError, Settings};
 use tauscope::diagnosis::Comparison;
 use tauscope::diagnosis::failure::Feature;
 use tauscope::experiment::Joint;
-use tauscope::explain::{Attribution, Change, Improvement, Options, Revision, Verdict};
+use tauscope::explain::{
+    Attribution, Change, Contribution, Improvement, Options, Revision, Verdict,
+};
 use tauscope::fit::{Horizon, Parameter};
 use tauscope::study::{
     JointEstimate, Mode, Protocol, estimate_joints, explain_joints, improve_joints,
@@ -146,7 +148,7 @@ fn found(id: &'static str, attribution: &Attribution) -> Found {
     let known = attribution.found.iter().find(|contribution| contribution.effect == id);
     Found {
         id,
-        alternatives: known.map(|known| known.alternatives.clone()).unwrap_or_default(),
+        alternatives: known.map(Contribution::alternative_names).unwrap_or_default(),
         error_share: known.map_or(0.0, |known| known.error_share),
     }
 }

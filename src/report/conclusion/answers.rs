@@ -26,7 +26,7 @@ impl Finding<'_> {
         let Some(explained) = self.explained_share().filter(|_| !found.is_empty()) else {
             return self.follows();
         };
-        let name = |one: &&Contribution| match one.alternatives.as_slice() {
+        let name = |one: &&Contribution| match one.alternative_names().as_slice() {
             [] => one.effect.to_owned(),
             others => format!("{} (or {})", one.effect, others.join(" or ")),
         };

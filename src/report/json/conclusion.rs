@@ -34,7 +34,7 @@ pub(super) fn conclusion_json(headline: &str, of: &Consequence<'_>) -> Value {
         json!({
             "effect": one.effect,
             "error_share_percent": 100.0 * one.error_share,
-            "alternatives": one.alternatives,
+            "alternatives": one.alternative_names(),
             "parameters": own.collect::<Map<_, _>>(),
         })
     };
