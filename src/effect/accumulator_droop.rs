@@ -1,16 +1,18 @@
 //! Droop of an accumulator: the gain falls with what the joint itself has lately consumed.
 //!
 //! ```text
-//! out = in · max(1 − droop · w, 0.05),   w' = |in| − w / recovery_time
+//! out = in · (1 + droop · w / h)^(−h),   w' = |in| − w / recovery_time,   h = 1.4 / 2
 //! ```
 //!
 //! A pump that is smaller than the largest demand feeds an accumulator: its pressure falls with the
 //! oil that was drawn, here as the way `w` that the joint went, and recovers with the time constant
-//! of the pump. At the start of a record the accumulator is full. One that recovers at once is a
-//! [curve of the flow](super::FlowCurve).
+//! of the pump. Its gas expands without heat, `p V^1.4` = const, since moves last seconds, and the flow
+//! through the valve goes with the root of the pressure: hence the power. At the start of a record the
+//! accumulator is full. One that recovers at once is a [curve of the flow](super::FlowCurve).
 //!
 //! # References
-//! Merritt, H. E., 1967, Hydraulic Control Systems (hydraulic power supplies with accumulators).
+//! Merritt, H. E., 1967, Hydraulic Control Systems (hydraulic power supplies with accumulators; orifice
+//! equation).
 
 use super::decay::{DECAY, DECAY_MEMORY, Decay};
 use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
@@ -24,11 +26,15 @@ static SPEC: Spec = Spec::new(
     Stage::Load,
     "accumulator: the gain falls with what the joint has lately consumed",
 )
-.equation("out = in (1 - droop w), dw/dt = abs(in) - w / recovery_time")
+.equation("out = in (1 + droop w / 0.7)^-0.7, dw/dt = abs(in) - w / recovery_time")
 .source("Merritt, 1967, Hydraulic Control Systems")
 .parameters(&[
-    Parameter::new("droop", "part of the speed lost per way lately gone", Dimension::PerOutput)
-        .between(0.0, UNLIMITED),
+    Parameter::new(
+        "droop",
+        "part of the speed lost per way lately gone, from full on",
+        Dimension::PerOutput,
+    )
+    .between(0.0, UNLIMITED),
     Parameter::new("recovery_time", "time to recover 63 %", Dimension::Seconds)
         .between(0.0, UNLIMITED)
         .neutral(1.0),
@@ -44,13 +50,13 @@ static SPEC: Spec = Spec::new(
              deviation = way - steady
              during = steady + deviation * mean
              way = steady + deviation * left
-             out = signal * max(1 - droop * during, 0.05)",
+             out = signal * (1 + droop * during / 0.7)^-0.7",
     ])
     .remembering(&["way"], ""),
 );
 
-/// Smallest factor that is left of the gain.
-const SMALLEST_FACTOR: f64 = 0.05;
+/// Half the adiabatic exponent of nitrogen: pressure goes with the whole, flow with its root.
+const POWER: f64 = 0.7;
 
 impl Effect for AccumulatorDroop {
     fn spec(&self) -> &'static Spec {
@@ -72,7 +78,7 @@ impl Effect for AccumulatorDroop {
         let deviation = *way - steady;
         let during = steady + deviation * decay.mean;
         *way = steady + deviation * decay.left;
-        at.signal * (1.0 - droop * during).max(SMALLEST_FACTOR)
+        at.signal * (1.0 + droop * during / POWER).powf(-POWER)
     }
 
     /// Up to where the longest move at the largest speed would use it up.
@@ -103,9 +109,9 @@ mod tests {
         };
         let e = (-1.0_f64).exp();
         // 10 per second for 5 s: w = 50 (1 − e), on average 50 e.
-        assert_close(&[pass(10.0, 5.0)], &[10.0 * (1.0 - 0.5 * e)]);
+        assert_close(&[pass(10.0, 5.0)], &[10.0 * (1.0 + 0.5 * e / 0.7).powf(-0.7)]);
         pass(0.0, 5.0);
         let before = 50.0 * (1.0 - e) * e;
-        assert_close(&[pass(-10.0, 0.0)], &[-10.0 * (1.0 - 0.01 * before)]);
+        assert_close(&[pass(-10.0, 0.0)], &[-10.0 * (1.0 + 0.01 * before / 0.7).powf(-0.7)]);
     }
 }

@@ -39,12 +39,17 @@ static SPEC: Spec = Spec::new(
         .between(-0.95, 0.95)
         .typical(0.3),
     Parameter::new("y0", "angle at which gravity acts in full", Dimension::Output),
-    Parameter::new("creep", "speed at which the weight lowers it", Dimension::OutputPerSecond),
+    Parameter::new("creep", "speed at which the weight lowers it", Dimension::OutputPerSecond)
+        .plausible(-MOST_CREEP, MOST_CREEP),
 ])
 .confused_with(&["leakage", "direction_gain", "position_gain"])
 .equations(Equations::new(&["gravity = cos((position - y0) * radians)
              load = kappa * gravity * sign(signal)
              out = signal * sqrt(1 - load) - creep * gravity"]));
+
+/// The largest creep that is plausible, in parts of the largest speed. Chosen: a valve that lets the weight
+/// lower the arm half as fast as it drives it does not hold it.
+const MOST_CREEP: f64 = 0.5;
 
 impl Effect for GravityLoad {
     fn spec(&self) -> &'static Spec {

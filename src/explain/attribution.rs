@@ -20,11 +20,12 @@
 
 use super::candidate::ALIKE;
 use super::contribution::{Attribution, Contribution};
+use super::decide::is_founded;
 use super::determined::is_determined;
 use super::eligible::{could_be_missing, is_due};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
-use super::likeness::{are_distinguished, looks_like};
+use super::likeness::looks_like;
 use super::limiting_case::limiting_case;
 use super::misfit::{Errors, Misfit, generalizes};
 use super::options::Options;
@@ -160,9 +161,8 @@ impl Grown<'_, '_> {
         let count = |fit: &AssessedModel| fit.parameters.len();
         let fewer = exchanged.iter().filter(|(_, fit)| count(fit) < count(self.whole));
         let as_little = fewer.filter(|(change, fit)| {
-            let range = self.record.range_for(&fit.model);
             self.leaves_as_little(fit)
-                && are_distinguished(fit, change.new_effect().as_slice(), &range)
+                && is_founded(self.record, fit, change.new_effect().as_slice(), self.options)
                 && generalizes(own, fit.errors)
                 && (is_as_likely(fit)
                     || self.is_to_limiting_case(*change)

@@ -1,6 +1,6 @@
 //! A model with one effect more, beside the measurement, and when it is worth a name.
 
-use super::determined::{DISTINCT, is_determined, is_distinct, is_reached};
+use super::determined::{DISTINCT, are_determined, is_distinct};
 use super::extension::{Extension, components_of};
 use super::judgement::Judgement;
 use super::outcome::FitOutcome;
@@ -100,10 +100,7 @@ impl Candidate {
     /// Whether it explains so much of the error that it is worth a name, and the record determines
     /// each effect of it.
     pub(crate) fn is_significant(&self) -> bool {
-        self.is_shown()
-            && self
-                .added()
-                .all(|effect| is_reached(&self.fit, effect) && is_determined(&self.fit, effect))
+        self.is_shown() && are_determined(&self.fit, &self.effects)
     }
 
     /// Whether it explains so much of the error that it is worth a name.

@@ -6,13 +6,13 @@
 //! for which it is refused.
 
 use super::candidate::Candidate;
-use super::determined::{implausible, is_determined, is_reached};
+use super::determined::{are_determined, implausible};
 use super::judgement::{Judgement, Refusal};
 use super::likeness::are_distinguished;
 use super::limiting_case::limiting_case_of;
 use super::misfit::{Errors, Misfit, generalizes};
 use super::options::Options;
-use crate::fit::{Fit, FitRecord};
+use crate::fit::{AssessedModel, Fit, FitRecord};
 
 /// What candidates for one model are judged by.
 pub(super) struct Judge<'a, 'r> {
@@ -39,13 +39,10 @@ impl<'a, 'r> Judge<'a, 'r> {
     /// Judges one candidate by itself.
     pub(super) fn judge(&self, candidate: &Candidate) -> Judgement {
         let share = self.misfit.share(self.own, candidate.fit.errors);
-        let determines =
-            |one| is_reached(&candidate.fit, one) && is_determined(&candidate.fit, one);
-        let determined = candidate.added().all(determines)
+        let determined = are_determined(&candidate.fit, &candidate.effects)
             && (!self.are_levels_few
                 || candidate.determines_as_much_as(self.base) && candidate.is_distinct());
-        let range = self.record.range_for(&candidate.fit.model);
-        let implausible = candidate.added().find_map(|one| implausible(one, &range));
+        let implausible = implausible(self.record, &candidate.fit, &candidate.effects);
         let generalises = generalizes(self.own, candidate.fit.errors);
         let mut judgement = Judgement {
             evidence: candidate.evidence,
@@ -75,19 +72,15 @@ impl<'a, 'r> Judge<'a, 'r> {
         if let Some(parameter) = implausible {
             return Some(Refusal::Implausible(parameter));
         }
-        let range = self.record.range_for(&candidate.fit.model);
-        if !are_distinguished(&candidate.fit, &candidate.effects, &range) {
-            return Some(Refusal::LikeAnother);
-        }
-        let (record, options) = (self.record, self.options);
-        if let Some(case) = limiting_case_of(record, &candidate.fit, &candidate.effects, options) {
-            return Some(Refusal::LimitingCase(case));
+        let (fit, new) = (&candidate.fit, &candidate.effects);
+        if let Some(like) = like_another(self.record, fit, new, self.options) {
+            return Some(like);
         }
         if !judged.generalises {
             return Some(Refusal::DoesNotGeneralise);
         }
         let matters = self.misfit.has_consequence(self.own, candidate.fit.errors);
-        (!matters && !options.keeps_refinements).then_some(Refusal::NoConsequence)
+        (!matters && !self.options.keeps_refinements).then_some(Refusal::NoConsequence)
     }
 
     /// Judges all of a ranking, of which the first that nothing speaks against is added and those
@@ -104,6 +97,33 @@ impl<'a, 'r> Judge<'a, 'r> {
         }
         Some(best)
     }
+}
+
+/// What the effects `new` of a fitted model are not told from, where there is any such: an effect beside
+/// them, or a simpler one in their place.
+fn like_another(
+    record: &FitRecord<'_>,
+    fit: &AssessedModel,
+    new: &[&'static str],
+    options: &Options,
+) -> Option<Refusal> {
+    if !are_distinguished(fit, new, &record.range_for(&fit.model)) {
+        return Some(Refusal::LikeAnother);
+    }
+    limiting_case_of(record, fit, new, options).map(Refusal::LimitingCase)
+}
+
+/// Whether nothing speaks against the effects `new` in the fitted model itself, whatever it is compared
+/// with.
+pub(super) fn is_founded(
+    record: &FitRecord<'_>,
+    fit: &AssessedModel,
+    new: &[&'static str],
+    options: &Options,
+) -> bool {
+    are_determined(fit, new)
+        && implausible(record, fit, new).is_none()
+        && like_another(record, fit, new, options).is_none()
 }
 
 /// A ranking as it is shown: by what each effect leaves on the part that was not fitted; of those that

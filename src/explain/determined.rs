@@ -3,9 +3,20 @@
 //! An effect none of whose parameters is determined may lower the error all the same: at the bound of
 //! its exponent or level it is another shape than its name says. That is no reason to name it.
 
+use super::extension::components_of;
 use crate::effect::{Dimension, Effect, Parameter, RecordRange, Stage, by_id};
-use crate::fit::{self, AssessedModel, Status};
+use crate::fit::{self, AssessedModel, FitRecord, Status};
 use crate::model::Component;
+
+/// Whether the record of `fit` determines each of the effects `new` of its model, within what it reaches,
+/// and a finer form of a simple effect in what it has more than that.
+pub(super) fn are_determined(fit: &AssessedModel, new: &[&'static str]) -> bool {
+    components_of(&fit.model, new).all(|one| {
+        is_reached(fit, one)
+            && is_determined(fit, one)
+            && (one.effect().spec().refines.is_none() || is_distinct(fit, one, DISTINCT))
+    })
+}
 
 /// Whether the record of `fit` determines at least one parameter of an effect of its model, or, with
 /// nothing to fit, does not have to.
@@ -55,7 +66,7 @@ pub(super) fn distance_from_neutral(parameter: &Parameter, fitted: &fit::Paramet
 
 /// Whether an effect acts within what the record of `fit` reaches: not one of which all levels or
 /// limits lie beyond, unless another of its parameters is determined, as the soft knee of a limit.
-pub(super) fn is_reached(fit: &AssessedModel, component: &Component) -> bool {
+fn is_reached(fit: &AssessedModel, component: &Component) -> bool {
     let of_limits = |(parameter, _): &(&Parameter, Status)| is_limit(component.effect(), parameter);
     let (limits, others): (Vec<_>, Vec<_>) = free_parameters(fit, component).partition(of_limits);
     limits.is_empty()
@@ -63,8 +74,19 @@ pub(super) fn is_reached(fit: &AssessedModel, component: &Component) -> bool {
         || others.iter().any(|(_, status)| *status == Status::Fitted)
 }
 
+/// The name of a fitted parameter of one of the effects `new` of a fitted model whose value is not plausible;
+/// none where all are.
+pub(super) fn implausible(
+    record: &FitRecord<'_>,
+    fit: &AssessedModel,
+    new: &[&'static str],
+) -> Option<String> {
+    let range = record.range_for(&fit.model);
+    components_of(&fit.model, new).find_map(|one| implausible_parameter(one, &range))
+}
+
 /// The name of a fitted parameter of an effect whose value is not plausible; none where all are.
-pub(super) fn implausible(component: &Component, range: &RecordRange<'_>) -> Option<String> {
+fn implausible_parameter(component: &Component, range: &RecordRange<'_>) -> Option<String> {
     let spec = component.effect().spec();
     let values = component.parameters().iter().zip(spec.parameters);
     let fitted = values.filter(|(value, parameter)| !value.fixed && parameter.fitted);

@@ -25,9 +25,10 @@ pub(super) enum Scope {
     Everything,
 }
 
-/// Effects that are fitted, of those that were surveyed: at most, and at least. Chosen: each
-/// more costs a fit; `tests/models/hidden_effects.rs` finds what it hides with so many.
-const FINALISTS: (usize, usize) = (6, 3);
+/// Effects that are fitted, of those that were surveyed: at most, and at least. Chosen: each more costs a
+/// fit; with six, the order after the survey decided which model an excavator's arm got (0.95 deg, with
+/// nine 0.88).
+const FINALISTS: (usize, usize) = (9, 3);
 
 /// What the cost of a finalist may be after the survey, in parts of the least. Chosen: with 1.3 six
 /// measured joints get the same models in 96 % of the time.

@@ -2,12 +2,11 @@
 
 use super::candidate::ALIKE;
 use super::comparison::MUCH_LESS;
-use super::determined::is_determined;
+use super::decide::is_founded;
 use super::eligible::{could_be_missing, is_due};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
-use super::likeness::{are_distinguished, looks_like};
-use super::limiting_case::limiting_case_of;
+use super::likeness::looks_like;
 use super::misfit::{Errors, Misfit, generalizes};
 use super::options::Options;
 use super::outcome::FitOutcome;
@@ -122,15 +121,13 @@ impl Removal<'_> {
             let hurdle = if exchange.is_unusual() { ALIKE } else { 0.0 };
             let behind = evidence.criterion() - of_whole.criterion() + hurdle;
             let new: Vec<&str> = exchange.new_effects().collect();
-            let is_known = components_of(&fit.model, &new).all(|one| is_determined(&fit, one))
-                && are_distinguished(&fit, &new, &record.range_for(&fit.model))
-                && limiting_case_of(record, &fit, &new, self.options).is_none();
+            let is_founded = is_founded(record, &fit, &new, self.options);
             let is_better = behind < 0.0 && leaves_less && !does_harm && is_worth_it;
             // Laws need not be as likely as a curve of any form.
             let is_law = exchange.is_for_free_form()
                 && fit.parameters.len() < whole.parameters.len()
                 && !self.misfit.has_consequence(fit.errors, own);
-            ((is_better || is_law) && is_known).then_some((behind, (exchange, fit)))
+            ((is_better || is_law) && is_founded).then_some((behind, (exchange, fit)))
         });
         let (_, (exchange, fit)) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;
         self.kept.extend(exchange.new_effects());

@@ -112,7 +112,7 @@ input_saturation (input)
     #[test]
     fn what_is_not_fitted_says_so() {
         let text = sheet(&PositionGain, 200);
-        assert!(text.contains("slope [1/output unit]: change of the gain with the angle, neutral"));
+        assert!(text.contains("slope [1/output unit]: relative change of the gain"));
         assert!(text.contains("reference [output unit]: angle at which"));
         assert!(text.contains(", not fitted\n"));
     }

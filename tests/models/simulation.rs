@@ -271,7 +271,7 @@ impl<'a> Fine<'a> {
                 }
                 "position_gain" => {
                     let x = y - p[2];
-                    v * (1.0 + p[0] * x + p[1] * x * x).max(0.05)
+                    v / (1.0 - p[0] * x - p[1] * x * x).max(0.05)
                 }
                 "thermal_drift" => v * (1.0 + p[0] * p[1] * (1.0 - (-t / p[1]).exp())),
                 "supply_droop" => v - v * p[0] * others,
