@@ -14,7 +14,8 @@ use super::{
     about, decisions, delay_state, difference, doubt, headline, model, overview, place, revision,
     segment_view, signals, verdict, views,
 };
-use crate::report::{ImprovedJoint, settings_in_short};
+use crate::report::ImprovedJoint;
+use crate::report::settings::settings_in_short;
 use crate::units::signed;
 
 impl<'a> Recording<'a> {

@@ -20,7 +20,8 @@ use super::chunk::{Index, Moment, Opening};
 use crate::delay::{Candidate, Decision, Doubt, TrialEstimate, Verdict, doubts};
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Trial};
-use crate::report::{Doubted, EstimatedJoint, Timeline};
+use crate::report::page::timeline::Timeline;
+use crate::report::{Doubted, EstimatedJoint};
 use crate::units::signed;
 use crate::wording::{doubt_in_short, doubt_sentence, number};
 

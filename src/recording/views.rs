@@ -24,9 +24,9 @@ use super::{
 use crate::delay::{Decision, Doubt};
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
-use crate::report::{
-    ComparedJoint, EstimatedJoint, JointSummary, by_doubt, doubtful_lines, summary_cells,
-};
+use crate::report::decisions::{by_doubt, doubtful_lines};
+use crate::report::estimate::summary_cells;
+use crate::report::{ComparedJoint, EstimatedJoint, JointSummary};
 use crate::wording::number;
 
 /// What decides which views there are.

@@ -3,8 +3,7 @@
 
 use serde_json::{Map, Value};
 
-use super::text_table::TextTable;
-use super::{DataTable, Kind};
+use super::{DataTable, Kind, TextTable};
 use crate::experiment::{Joint, Trial};
 use crate::wording::{bracketed, number, samples_text, with_unit};
 

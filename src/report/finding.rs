@@ -1,8 +1,7 @@
 //! What `explain` and `improve` have found of a joint.
 
-use super::ComparedJoint;
 use super::consequence::Consequence;
-use super::ladder::Before;
+use super::{Before, ComparedJoint};
 use crate::diagnosis::sensor_noise;
 use crate::effect::Spec;
 use crate::explain::{Attribution, Candidate, Judgement, Verdict};

@@ -1,6 +1,6 @@
 //! The ladder of errors: a row per revision of a model, those of its history and those made now.
 
-use super::text_table::TextTable;
+use super::TextTable;
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
 use crate::explain::{Change, Revision as Step};

@@ -1,7 +1,6 @@
 //! The delay of a model beside the delays that were measured.
 
-use super::EstimatedJoint;
-use super::summary::{DelayRange, JointSummary};
+use super::{DelayRange, EstimatedJoint, JointSummary};
 use crate::delay::{Bounds, DeadTime, Finding, InputStep};
 use crate::effect::{InputChange, Stage};
 use crate::fit::{AssessedModel, Parameter, Status};

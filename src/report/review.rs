@@ -3,14 +3,11 @@
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::decisions::{DECISION, DecisionFact};
-use super::doubt::by_doubt;
-use super::facts::{self, Part::Paper, Place, UNSAID, Unit, fact};
-use super::text_table::TextTable;
-use super::{
-    DataTable, Doubted, EstimatedJoint,
-    Kind::{Real, Text, Whole},
-};
+use super::Kind::{Real, Text, Whole};
+use super::decisions::{DECISION, DecisionFact, by_doubt};
+use super::facts::Part::Paper;
+use super::facts::{self, Place, UNSAID, Unit, fact};
+use super::{DataTable, Doubted, EstimatedJoint, TextTable};
 use crate::delay::Verdict;
 use crate::numerics::to_decimals;
 use crate::wording::counted;

@@ -19,7 +19,7 @@ use crate::recording::layout::JointLayout;
 use crate::recording::palette::{self, role};
 use crate::recording::panels::{self, Placed};
 use crate::recording::paths;
-use crate::report::variable_text;
+use crate::report::against::variable_text;
 use crate::units::SamplePeriod;
 use crate::wording::number;
 

@@ -5,7 +5,11 @@ use crate::explain::{Change, Revision};
 use crate::fit::Termination;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
-use crate::report::{ImprovedJoint, MANY_TIMES_NOISE, Topic, change_in_words, parameter_table};
+use crate::report::ImprovedJoint;
+use crate::report::conclusion::Topic;
+use crate::report::consequence::MANY_TIMES_NOISE;
+use crate::report::ladder::change_in_words;
+use crate::report::parameters::parameter_table;
 use crate::wording::{rounded, unit_suffix};
 
 /// The page of the revision at `place`: the answers of the last, then what is concluded of this one.

@@ -16,7 +16,10 @@ use crate::recording::layout::TrialStarts;
 use crate::recording::markdown::plain;
 use crate::recording::origin::made_from;
 use crate::recording::paths::{self, at, joint_root};
-use crate::report::{ReportedSweep, level_text, settings_table, sweep_sentences};
+use crate::report::ReportedSweep;
+use crate::report::settings::settings_table;
+use crate::report::sweep::level_text;
+use crate::report::sweep::text::sweep_sentences;
 use crate::wording::number;
 
 /// Everything that a recording of a sweep holds.

@@ -1,20 +1,16 @@
 //! A verdict in words that an engineer can act on.
 
-mod adequate;
 mod answers;
-mod curves;
 mod figures;
-mod missing;
 mod passage;
-mod place;
-mod unexplained;
+mod verdict;
 
 use figures::first_order;
 pub(crate) use passage::{Passage, Topic};
 
-use super::EstimatedJoint;
-use super::finding::{Finding, added};
+use super::finding::added;
 use super::model_delay::model_delay;
+use super::{EstimatedJoint, Finding};
 use crate::explain::{Candidate, Verdict};
 use crate::wording::hanging;
 

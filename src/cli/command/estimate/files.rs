@@ -4,8 +4,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-use crate::report::{Language, Lookup};
-use crate::report::{decision_table, delay_table, level_table, review_sheet, write_delays};
+use crate::report::decisions::decision_table;
+use crate::report::delays::{delay_table, level_table};
+use crate::report::lookup::Language;
+use crate::report::lookup::Lookup;
+use crate::report::review::review_sheet;
+use crate::report::write_delays;
 
 use super::args::OutputArgs;
 use crate::cli::console::Verbosity;
@@ -16,7 +20,8 @@ use crate::cli::output::{
 use crate::cli::viewer::Stream;
 use crate::delay::Settings;
 use crate::experiment::Experiment;
-use crate::report::{Against, EstimatedJoint};
+use crate::report::EstimatedJoint;
+use crate::report::difference::Against;
 use crate::study::{FileError, OtherResult, Review};
 
 /// The joints that have an estimate with some settings.
