@@ -71,7 +71,7 @@ pub(crate) const DECISION: &[DecisionFact] = &[
 
 /// The facts of `found` up to `part`, by their ids.
 fn object(found: &Doubted<'_>, part: Part) -> Map<String, Value> {
-    facts::object(DECISION, part, |value| value(found))
+    facts::object(DECISION, part, found)
 }
 
 /// What is said of a decision in JSON.
@@ -103,7 +103,7 @@ fn part_of<'a>(mut methods: impl Iterator<Item = &'a str>) -> Part {
 pub(crate) fn decision_table(runs: &[(&Settings, &[EstimatedJoint<'_>])]) -> DataTable {
     let part = part_of(runs.iter().map(|(settings, _)| settings.method.id()));
     let rows = runs.iter().flat_map(|(_, joints)| *joints).flat_map(|joint| doubted(*joint));
-    facts::data_table(DECISION, part, (rows, |value, found| value(found)))
+    facts::data_table(DECISION, part, rows)
 }
 
 /// The decisions `rows` as a person reads them at `place`, with the units of `joint`.
@@ -112,7 +112,7 @@ pub(crate) fn decision_text<'a>(
     joint: Option<&Joint>,
     rows: impl Iterator<Item = Doubted<'a>>,
 ) -> TextTable {
-    facts::text_table(DECISION, place, joint, (rows, |value, found| value(found)))
+    facts::text_table(DECISION, place, joint, rows)
 }
 
 /// A row per step, for the terminal.

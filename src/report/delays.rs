@@ -6,6 +6,7 @@ use std::io::Write;
 use serde_json::{Value, json};
 
 use super::facts::{self, Fact, Part, Place, UNSAID, Unit, fact};
+use super::table::write_csv;
 use super::{DataTable, EstimatedJoint, JointSummary, Kind, TextTable};
 use crate::delay::{
     Condition, DelayProfile, DelayRow, DelayTable, KindDelay, Remedy, Transition, TypicalDelay,
@@ -68,7 +69,7 @@ fn said(text: Option<String>) -> Value {
 
 /// A row in JSON.
 pub(super) fn level_json(joint: &str, row: &DelayRow) -> Value {
-    facts::object(LEVEL, Json, |value| value(&(joint, row))).into()
+    facts::object(LEVEL, Json, &(joint, row)).into()
 }
 
 /// The rows of all joints, as a table with types.
@@ -77,12 +78,12 @@ pub(crate) fn level_table(joints: &[EstimatedJoint<'_>]) -> DataTable {
     let rows = tables
         .iter()
         .flat_map(|(joint, rows)| rows.iter().map(|row| (joint.joint.name.as_str(), row)));
-    facts::data_table(LEVEL, Table, (rows, |value, row| value(row)))
+    facts::data_table(LEVEL, Table, rows)
 }
 
 /// Rows as a person reads them at `place`.
 pub(crate) fn levels_text<'a>(place: Place, rows: impl Iterator<Item = Level<'a>>) -> TextTable {
-    facts::text_table(LEVEL, place, None, (rows, |value, row| value(row)))
+    facts::text_table(LEVEL, place, None, rows)
 }
 
 /// The tables of all joints for the terminal.
@@ -171,49 +172,25 @@ fn help(condition: Condition, transition: Transition) -> String {
 /// # Errors
 /// When `out` cannot be written.
 pub fn write_delays(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Result<()> {
-    let mut writer = csv::Writer::from_writer(out);
-    let header = ["trial", "sample", "time_s"].into_iter().map(str::to_owned);
-    writer.write_record(header.chain(joints.iter().map(tau)))?;
-    for Row { trial, sample, time_s, delays } in rows(joints) {
-        writer.write_field(trial)?;
-        writer.write_field(sample.to_string())?;
-        writer.write_field(time_s.to_string())?;
-        for delay in delays {
-            writer.write_field(delay.map_or_else(String::new, |tau| tau.to_string()))?;
-        }
-        writer.write_record(None::<&[u8]>)?;
-    }
-    Ok(writer.flush()?)
+    write_csv(&tau_columns(joints), tau_rows(joints), out)
 }
 
 /// The delays that [`write_delays`] writes, as a table with types.
 pub(crate) fn delay_table(joints: &[EstimatedJoint<'_>]) -> DataTable {
-    let taus: Vec<_> = joints.iter().map(tau).collect();
-    let first = [("trial", Text), ("sample", Whole), ("time_s", Real)];
-    let taus = taus.iter().map(|tau| (tau.as_str(), Kind::Samples));
-    let mut table = DataTable::new(first.into_iter().chain(taus));
-    for Row { trial, sample, time_s, delays } in rows(joints) {
-        let first = [Value::from(trial), sample.into(), time_s.into()];
-        table.push_cells(first.into_iter().chain(delays.into_iter().map(Value::from)));
-    }
+    let columns = tau_columns(joints);
+    let mut table = DataTable::new(columns.iter().map(|(name, kind)| (name.as_str(), *kind)));
+    tau_rows(joints).for_each(|row| table.push_cells(row));
     table
 }
 
-/// The column of a joint.
-fn tau(joint: &EstimatedJoint<'_>) -> String {
-    format!("{}.tau", joint.joint.name)
+fn tau_columns(joints: &[EstimatedJoint<'_>]) -> Vec<(String, Kind)> {
+    let first = [("trial", Text), ("sample", Whole), ("time_s", Kind::Plain)];
+    let taus = joints.iter().map(|joint| (format!("{}.tau", joint.joint.name), Kind::Plain));
+    first.map(|(name, kind)| (name.to_owned(), kind)).into_iter().chain(taus).collect()
 }
 
-/// A sample of a trial, and the delay of each joint there.
-struct Row<'a> {
-    trial: &'a str,
-    sample: usize,
-    time_s: f64,
-    delays: Vec<Option<f64>>,
-}
-
-/// All samples of all trials.
-fn rows<'a>(joints: &[EstimatedJoint<'a>]) -> impl Iterator<Item = Row<'a>> {
+/// All samples of all trials, each with the delay of each joint there.
+fn tau_rows(joints: &[EstimatedJoint<'_>]) -> impl Iterator<Item = Vec<Value>> {
     runs(joints).into_iter().flat_map(|run| {
         let columns: Vec<_> = joints.iter().map(|joint| find(*joint, run)).collect();
         let trials = columns.iter().flatten().map(|(trial, _)| *trial);
@@ -221,11 +198,11 @@ fn rows<'a>(joints: &[EstimatedJoint<'a>]) -> impl Iterator<Item = Row<'a>> {
         let samples = longest.into_iter().flat_map(|longest| {
             (1..=longest.len()).map(|sample| (sample, longest.logged_time_s(sample)))
         });
-        samples.map(move |(sample, time_s)| Row {
-            trial: run.label(),
-            sample,
-            time_s: to_nanoseconds(time_s),
-            delays: columns.iter().map(|found| found.and_then(|(_, of)| of.at(sample))).collect(),
+        samples.map(move |(sample, time_s)| {
+            let first = [run.label().into(), sample.into(), to_nanoseconds(time_s).into()];
+            let delay =
+                |found: &Option<(&Trial, &DelayProfile)>| found.and_then(|(_, of)| of.at(sample));
+            first.into_iter().chain(columns.iter().map(|found| delay(found).into())).collect()
         })
     })
 }

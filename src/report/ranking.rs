@@ -51,12 +51,12 @@ fn same(candidate: &Candidate) -> String {
 /// A row per candidate, best first.
 pub(super) fn ranking_table(joint: &Joint, ranking: &[Candidate]) -> TextTable {
     let rows = ranking.iter().map(|candidate| (joint, candidate));
-    facts::text_table(RANKING, Place::Terminal, None, (rows, |value, row| value(row)))
+    facts::text_table(RANKING, Place::Terminal, None, rows)
 }
 
 /// A candidate in JSON.
 pub(super) fn candidate_json(joint: &Joint, candidate: &Candidate) -> Value {
-    facts::object(RANKING, Json, |value| value(&(joint, candidate))).into()
+    facts::object(RANKING, Json, &(joint, candidate)).into()
 }
 
 /// Whether an effect is worth adding, and why.

@@ -70,15 +70,23 @@ impl DataTable {
     /// # Errors
     /// When `out` cannot be written.
     pub(crate) fn write_csv(&self, out: impl Write) -> csv::Result<()> {
-        let mut writer = csv::Writer::from_writer(out);
-        writer.write_record(self.columns.iter().map(|(name, _)| name))?;
-        for row in &self.rows {
-            writer.write_record(
-                self.columns.iter().zip(row).map(|((_, kind), cell)| kind.text(cell)),
-            )?;
-        }
-        Ok(writer.flush()?)
+        write_csv(&self.columns, self.rows.iter(), out)
     }
+}
+
+/// Writes rows as they come.
+pub(super) fn write_csv(
+    columns: &[(String, Kind)],
+    rows: impl Iterator<Item: AsRef<[Value]>>,
+    out: impl Write,
+) -> csv::Result<()> {
+    let mut writer = csv::Writer::from_writer(out);
+    writer.write_record(columns.iter().map(|(name, _)| name))?;
+    for row in rows {
+        let cells = columns.iter().zip(row.as_ref());
+        writer.write_record(cells.map(|((_, kind), cell)| kind.text(cell)))?;
+    }
+    Ok(writer.flush()?)
 }
 
 #[cfg(feature = "parquet")]
