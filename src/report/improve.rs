@@ -96,7 +96,7 @@ impl<'a> ImprovedJoint<'a> {
         if self.reached_limit {
             let why =
                 "As many effects were added as `--max-effects` allows; a larger number goes on.";
-            conclusion.passages.extend(Passage::of(Topic::Next, [why.to_owned()]));
+            conclusion.passages.extend(Passage::of(Topic::NEXT, [why.to_owned()]));
         }
         conclusion
     }
@@ -115,7 +115,7 @@ impl<'a> ImprovedJoint<'a> {
         let made_useless = |why: String| Conclusion {
             headline: format!("{}: {why}", compared.joint.name),
             passages: Vec::from_iter(Passage::of(
-                Topic::Next,
+                Topic::NEXT,
                 ["The effects that came after it do its part, so that it no longer earns its \
                   parameters."
                     .to_owned()],
@@ -155,7 +155,7 @@ impl<'a> ImprovedJoint<'a> {
              before all others are compared, and go at the end where they explain nothing."
         };
         let mut passages = finding.fails();
-        passages.extend(Passage::of(Topic::Next, [format!("{id} ({summary}). {why}")]));
+        passages.extend(Passage::of(Topic::NEXT, [format!("{id} ({summary}). {why}")]));
         Conclusion {
             headline: format!("{}: {id} is added next: {now} → {then}", joint.name),
             passages,

@@ -34,7 +34,7 @@ impl Conclusion {
 
     /// The words below the headline as they are printed.
     pub(super) fn printed(&self) -> String {
-        let passage = |one: &Passage| hanging(&format!("{}: {}", one.topic.label(), one.text()));
+        let passage = |one: &Passage| hanging(&format!("{}: {}", one.topic.0, one.text()));
         let passages: Vec<String> = self.passages.iter().map(passage).collect();
         let commands = self.commands.iter().map(|command| format!("    {command}"));
         let blocks = std::iter::once(passages.join("\n")).chain(commands);
@@ -54,9 +54,9 @@ impl Finding<'_> {
         };
         passages.extend(self.curves());
         let structure = first_order(self.joint(), self.consequence().fit);
-        passages.extend(Passage::of(Topic::Structure, structure));
-        passages.extend(Passage::of(Topic::Delay, self.delay()));
-        passages.extend(Passage::of(Topic::Trials, self.conditions(best)));
+        passages.extend(Passage::of(Topic::STRUCTURE, structure));
+        passages.extend(Passage::of(Topic::DELAY, self.delay()));
+        passages.extend(Passage::of(Topic::TRIALS, self.conditions(best)));
         let command = |id: &&'static str| {
             // A bracket is a pattern to a shell.
             let id = if id.contains('[') { format!("'{id}'") } else { (*id).to_owned() };

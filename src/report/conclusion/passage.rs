@@ -8,53 +8,35 @@ use crate::wording::{
     capitalized, failure_sentences, measure, percent, rounded, unit_suffix, worst_segment_text,
 };
 
-/// What a reader asks of a model.
+/// What a reader asks of a model: what stands before the sentences.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Topic {
-    /// How large the error is, and whether it is more than noise.
-    Error,
-    /// In which part of the record most of the error arises.
-    WhereItFails,
-    /// The parts of the record in which the simulated output is farthest off.
-    WorstSegments,
-    /// The effect that is missing.
-    Missing,
-    /// What comes next in a search.
-    Next,
-    /// What the residual follows.
-    Residual,
-    /// The measured curves that the model does not follow.
-    Curves,
-    /// The part of the error that each effect explains.
-    Shares,
-    /// Why the model has the structure that it has.
-    Structure,
-    /// The delay of the model beside those that were measured.
-    Delay,
-    /// In which trials an effect acts.
-    Trials,
-    /// Where the conclusion holds.
-    Limits,
-}
+pub(crate) struct Topic(pub(crate) &'static str);
 
 impl Topic {
-    /// What stands before the sentences.
-    pub(crate) fn label(self) -> &'static str {
-        match self {
-            Self::Error => "Error",
-            Self::WhereItFails => "Where the error arises",
-            Self::WorstSegments => "Worst segments",
-            Self::Missing => "What is missing",
-            Self::Next => "What comes next",
-            Self::Residual => "What the residual follows",
-            Self::Curves => "Measured curves",
-            Self::Shares => "What each effect explains",
-            Self::Structure => "Structure",
-            Self::Delay => "Delay",
-            Self::Trials => "Trials",
-            Self::Limits => "Limits",
-        }
-    }
+    /// How large the error is, and whether it is more than noise.
+    pub(crate) const ERROR: Self = Self("Error");
+    /// In which part of the record most of the error arises.
+    pub(crate) const WHERE_IT_FAILS: Self = Self("Where the error arises");
+    /// The parts of the record in which the simulated output is farthest off.
+    pub(crate) const WORST_SEGMENTS: Self = Self("Worst segments");
+    /// The effect that is missing.
+    pub(crate) const MISSING: Self = Self("What is missing");
+    /// What comes next in a search.
+    pub(crate) const NEXT: Self = Self("What comes next");
+    /// What the residual follows.
+    pub(crate) const RESIDUAL: Self = Self("What the residual follows");
+    /// The measured curves that the model does not follow.
+    pub(crate) const CURVES: Self = Self("Measured curves");
+    /// The part of the error that each effect explains.
+    pub(crate) const SHARES: Self = Self("What each effect explains");
+    /// Why the model has the structure that it has.
+    pub(crate) const STRUCTURE: Self = Self("Structure");
+    /// The delay of the model beside those that were measured.
+    pub(crate) const DELAY: Self = Self("Delay");
+    /// In which trials an effect acts.
+    pub(crate) const TRIALS: Self = Self("Trials");
+    /// Where the conclusion holds.
+    pub(crate) const LIMITS: Self = Self("Limits");
 }
 
 /// Sentences on one question.
@@ -93,7 +75,7 @@ impl Finding<'_> {
     pub(in crate::report) fn fails(&self) -> Vec<Passage> {
         let size = std::iter::once(self.size()).chain(self.shown_beside_size());
         let passages =
-            [Passage::of(Topic::Error, size), self.where_it_fails(), self.worst_segments()];
+            [Passage::of(Topic::ERROR, size), self.where_it_fails(), self.worst_segments()];
         passages.into_iter().flatten().collect()
     }
 
@@ -123,7 +105,7 @@ impl Finding<'_> {
         let none = "No condition was found that holds most of the error.".to_owned();
         let none = Some(none).filter(|_| conditions.is_empty() && has_segments);
         let conditions = conditions.iter().map(|when| format!("{}.", capitalized(when)));
-        Passage::of(Topic::WhereItFails, conditions.chain(none))
+        Passage::of(Topic::WHERE_IT_FAILS, conditions.chain(none))
     }
 
     /// Times to look at.
@@ -137,7 +119,7 @@ impl Finding<'_> {
         };
         let times: Vec<String> = self.segments().take(3).enumerate().map(time).collect();
         let look = format!("The residual is largest in {}.", times.join(", "));
-        Passage::of(Topic::WorstSegments, Some(look).filter(|_| !times.is_empty()))
+        Passage::of(Topic::WORST_SEGMENTS, Some(look).filter(|_| !times.is_empty()))
     }
 
     fn segments(&self) -> impl Iterator<Item = &WorstSegment> {
@@ -149,7 +131,7 @@ impl Finding<'_> {
     /// Each measured curve on which the model leaves the band, with the place where it does most.
     pub(super) fn curves(&self) -> Option<Passage> {
         let sentences = self.comparison().curves.iter().filter_map(|curve| self.curve(curve));
-        Passage::of(Topic::Curves, sentences)
+        Passage::of(Topic::CURVES, sentences)
     }
 
     fn curve(&self, curve: &Curve) -> Option<String> {

@@ -35,9 +35,9 @@ impl Finding<'_> {
         let error = [self.test(), self.size()].into_iter().chain(self.misses_validation());
         let limits = std::iter::once(self.limits()).chain(self.undetermined());
         let passages = [
-            Passage::of(Topic::Error, error),
-            Passage::of(Topic::Shares, self.consequence().sentences()),
-            Passage::of(Topic::Limits, limits),
+            Passage::of(Topic::ERROR, error),
+            Passage::of(Topic::SHARES, self.consequence().sentences()),
+            Passage::of(Topic::LIMITS, limits),
         ];
         passages.into_iter().flatten().collect()
     }
@@ -148,8 +148,8 @@ impl Finding<'_> {
         let passages = [
             self.where_it_fails(),
             self.worst_segments(),
-            Passage::of(Topic::Missing, missing),
-            Passage::of(Topic::Shares, self.consequence().sentences()),
+            Passage::of(Topic::MISSING, missing),
+            Passage::of(Topic::SHARES, self.consequence().sentences()),
         ];
         passages.into_iter().flatten().collect()
     }
@@ -264,9 +264,9 @@ impl Finding<'_> {
     pub(super) fn unexplained(&self) -> Vec<Passage> {
         let mut passages = self.fails();
         passages
-            .extend(Passage::of(Topic::Residual, self.shape().into_iter().chain(self.likeliest())));
-        passages.extend(Passage::of(Topic::Shares, self.consequence().sentences()));
-        passages.extend(Passage::of(Topic::Next, self.several_together()));
+            .extend(Passage::of(Topic::RESIDUAL, self.shape().into_iter().chain(self.likeliest())));
+        passages.extend(Passage::of(Topic::SHARES, self.consequence().sentences()));
+        passages.extend(Passage::of(Topic::NEXT, self.several_together()));
         passages
     }
 

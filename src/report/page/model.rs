@@ -30,12 +30,9 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
     let mut blocks = vec![Block::part("Model")];
     // Where the error arises has a part of its own.
     let passages = conclusion.passages.into_iter();
-    let passages = passages.filter(|passage| passage.topic != Topic::WhereItFails);
+    let passages = passages.filter(|passage| passage.topic != Topic::WHERE_IT_FAILS);
     blocks.extend(
-        passages.map(|passage| Block::Passage {
-            question: passage.topic.label(),
-            text: passage.text(),
-        }),
+        passages.map(|passage| Block::Passage { question: passage.topic.0, text: passage.text() }),
     );
     blocks.extend(conclusion.commands.into_iter().map(Block::Code));
     blocks.push(Block::Code(equations(compared)));

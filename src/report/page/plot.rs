@@ -446,7 +446,7 @@ impl Role {
 /// The rules that give the lines and texts of figures their shade.
 pub(super) fn figure_style() -> String {
     let (mut light, mut dark, mut rules) = (String::new(), String::new(), String::new());
-    for (number, role) in Role::ALL.into_iter().enumerate() {
+    for (number, role) in Role::all().enumerate() {
         let (on_light, on_dark) = role.shades();
         write!(light, "--c{number}:#{on_light:06X};").unwrap_or_default();
         write!(dark, "--c{number}:#{on_dark:06X};").unwrap_or_default();
@@ -546,10 +546,10 @@ mod palette_tests {
 
     #[test]
     fn a_shade_means_one_thing() {
-        let mut shades: Vec<u32> = Role::ALL.map(|role| role.shades().0).to_vec();
+        let mut shades: Vec<u32> = Role::all().map(|role| role.shades().0).collect();
         shades.sort_unstable();
         shades.dedup();
-        assert_eq!(shades.len(), Role::ALL.len());
+        assert_eq!(shades.len(), Role::all().count());
     }
 
     /// Relative luminance (WCAG 2.2).
@@ -565,7 +565,7 @@ mod palette_tests {
     #[test]
     fn lines_stand_out_from_both_grounds() {
         let contrast = |a: f64, b: f64| (a.max(b) + 0.05) / (a.min(b) + 0.05);
-        for role in Role::ALL {
+        for role in Role::all() {
             let least = match role {
                 Role::Grid | Role::Attention => 1.2,
                 Role::Ink | Role::Faint => 5.0,
