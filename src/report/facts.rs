@@ -177,12 +177,11 @@ pub(super) fn columns<V>(
     facts.iter().filter(move |fact| fact.part <= part).map(|fact| (fact.id, fact.kind))
 }
 
+/// What is said of a result `R`.
+type Facts<R> = [Fact<fn(&R) -> Value>];
+
 /// The facts of `row` up to `part` by their ids.
-pub(super) fn object<R>(
-    facts: &[Fact<fn(&R) -> Value>],
-    part: Part,
-    row: &R,
-) -> Map<String, Value> {
+pub(super) fn object<R>(facts: &Facts<R>, part: Part, row: &R) -> Map<String, Value> {
     let own = facts.iter().filter(|fact| fact.part <= part);
     own.map(|fact| (fact.id.to_owned(), (fact.value)(row))).collect()
 }
@@ -190,7 +189,7 @@ pub(super) fn object<R>(
 /// A table for people at `place`; the units are those of `joint`. A column in which no row has a value
 /// is there only where the paper defines it.
 pub(super) fn text_table<R>(
-    facts: &[Fact<fn(&R) -> Value>],
+    facts: &Facts<R>,
     place: Place,
     joint: Option<&Joint>,
     rows: impl Iterator<Item = R>,
@@ -215,7 +214,7 @@ pub(super) fn text_table<R>(
 
 /// The facts up to `part` of each of `rows`, as a table for programs.
 pub(super) fn data_table<R>(
-    facts: &[Fact<fn(&R) -> Value>],
+    facts: &Facts<R>,
     part: Part,
     rows: impl Iterator<Item = R>,
 ) -> DataTable {

@@ -214,18 +214,18 @@ mod tests {
         let expected = "To distinguish it from stiction: hold 0.3, 0.4 and 0.5 V for 2 s each, rising \
                         and then falling, in one direction and then in the other, from rest at \
                         12 and 40 deg: after 6 s the two differ by 14 times the noise.";
-        assert_eq!(sentence(&joint(), &separation(&[0.3, 0.4, 0.5])), expected);
-        let beyond = sentence(&joint(), &separation(&[2.5, 3.0]));
+        assert_eq!(separation_sentence(&joint(), &separation(&[0.3, 0.4, 0.5])), expected);
+        let beyond = separation_sentence(&joint(), &separation(&[2.5, 3.0]));
         assert!(beyond.contains("in the other (more than in this record), from"), "{beyond}");
     }
 
     #[test]
     fn that_no_input_distinguishes_them_is_said_too() {
         let separation = Separation { is_clear: false, ..separation(&[1.0]) };
-        let said = sentence(&joint(), &separation);
+        let said = separation_sentence(&joint(), &separation);
         assert!(said.starts_with("No input that was tried") && said.ends_with("another gain."));
         let same = Separation { times_noise: 0.0, ..separation.clone() };
-        assert!(sentence(&joint(), &same).ends_with("the two do the same."));
+        assert!(separation_sentence(&joint(), &same).ends_with("the two do the same."));
     }
 
     #[test]
