@@ -2,10 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::layout::{Detail, JointLayout};
+use super::layout::JointLayout;
 use super::markdown::{plain, prose};
 use super::origin::made_from;
-use super::recorded::Recording;
 use super::revision::judged;
 use crate::report::answer::dead_time_sentences;
 use crate::report::decisions::doubtful_lines;
@@ -15,7 +14,7 @@ use crate::report::facts::Place;
 use crate::report::ladder::change_in_words;
 use crate::report::review::ReviewCount;
 use crate::report::settings::settings_table;
-use crate::report::{EstimatedJoint, JointSummary, TextTable};
+use crate::report::{Detail, EstimatedJoint, JointSummary, Recording, TextTable};
 use crate::wording::{DOUBT_MEANS, counted, doubtful_sentence, measure};
 
 /// The page on `recording`, whose joints have these layouts.
