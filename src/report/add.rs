@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use super::ComparedJoint;
 use super::compare::{compare_table, error_json, model_json};
-use super::consequence::Consequence;
 use super::explain::conclusion_json;
+use super::finding::Consequence;
 use super::json::{document, joined};
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;

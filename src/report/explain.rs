@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::compare::{horizons, model_json};
 use super::conclusion::Conclusion;
-use super::consequence::Consequence;
+use super::finding::Consequence;
 use super::json::{document, joined};
 use super::parameters::{model_text, parameters_json};
 use super::ranking::{candidate_json, ranking_table};

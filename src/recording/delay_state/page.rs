@@ -9,7 +9,7 @@ use super::quantity::Quantity;
 use crate::delay::{AgainstState, StepState};
 use crate::experiment::{Joint, Trial};
 use crate::figure::course::Bin;
-use crate::figure::delay_against::Way;
+use crate::figure::delay_levels::Way;
 use crate::figure::{Axis, Mark, Panel, Role, Shape};
 use crate::recording::canvas::{Plot, SHEET, Span, Text};
 use crate::recording::chunk::Chunks;

@@ -7,7 +7,7 @@ use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::report::ImprovedJoint;
 use crate::report::conclusion::Topic;
-use crate::report::consequence::MANY_TIMES_NOISE;
+use crate::report::finding::MANY_TIMES_NOISE;
 use crate::report::ladder::change_in_words;
 use crate::report::parameters::parameter_table;
 use crate::wording::{rounded, unit_suffix};

@@ -3,7 +3,7 @@
 use crate::diagnosis::failure::WorstSegment;
 use crate::diagnosis::{Curve, CurveOf, ShownBy};
 use crate::report::Finding;
-use crate::report::consequence::{in_proportion, times_as_large};
+use crate::report::finding::{in_proportion, times_as_large};
 use crate::wording::{
     capitalized, failure_sentences, measure, percent, rounded, unit_suffix, worst_segment_text,
 };

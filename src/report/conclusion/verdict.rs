@@ -9,7 +9,7 @@ use crate::explain::Candidate;
 use crate::fit::{AssessedModel, Status, is_rounding, makes_first_order};
 use crate::model::Component;
 use crate::report::Finding;
-use crate::report::consequence::times_as_large;
+use crate::report::finding::times_as_large;
 use crate::report::finding::{added, specs};
 use crate::report::parameters::filled_in;
 use crate::report::ranking::separation_sentence;

@@ -305,13 +305,13 @@ impl Mark {
                 let ends = [(middle, y - fine(6)), (middle, y + fine(6))];
                 area.draw(&PathElement::new(ends, stroke(self.role, *width)))
             }
-            Shape::Dots(..) | Shape::Named(_) => area.draw(&dot((middle, y), 3.0, self.role)),
+            Shape::Dots(..) => area.draw(&dot((middle, y), 3.0, self.role)),
             Shape::Crosses(_) => area.draw(&cross((middle, y), self.role)),
-            Shape::Band(..) | Shape::Spans(..) | Shape::Area(_) => {
+            Shape::Band(..) | Shape::Spans(..) => {
                 area.draw(&Rectangle::new(block, filled(self.role, 0.3)))
             }
             Shape::Bars(_) => area.draw(&Rectangle::new(block, filled(self.role, 1.0))),
-            Shape::Words(_) | Shape::Flags(_) => Ok(()),
+            Shape::Words(_) | Shape::Named(_) | Shape::Area(_) | Shape::Flags(_) => Ok(()),
         }
     }
 
@@ -327,14 +327,6 @@ impl Mark {
             Shape::Dots(places, radius) => apart(places)
                 .into_iter()
                 .try_for_each(|place| area.draw(&dot(place, *radius, role))),
-            Shape::Named(dots) => dots
-                .iter()
-                .try_for_each(|(place, radius, _)| area.draw(&dot(*place, *radius, role))),
-            Shape::Area(area_of) => {
-                let upper = area_of.iter().map(|[x, _, high]| (*x, *high));
-                let lower = area_of.iter().rev().map(|[x, low, _]| (*x, *low));
-                area.draw(&Polygon::new(upper.chain(lower).collect::<Vec<_>>(), filled(role, 0.18)))
-            }
             Shape::Spreads(spreads, above) => {
                 let pixel = (y.high - y.low) / f64::from(panel.height);
                 let row = |pixels: f64| y.high + pixels * pixel;
@@ -346,7 +338,8 @@ impl Mark {
                         .try_for_each(|line| area.draw(&PathElement::new(line, stroke(role, 1.4))))
                 })
             }
-            Shape::Flags(_) => Ok(()),
+            // Only recordings have them.
+            Shape::Named(_) | Shape::Area(_) | Shape::Flags(_) => Ok(()),
             Shape::Crosses(places) => {
                 apart(places).into_iter().try_for_each(|place| area.draw(&cross(place, role)))
             }
