@@ -1,4 +1,4 @@
-//! `add` as text: the error before and after.
+//! `add` as text and JSON: the error before and after.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,5 @@
-//! The delays of a joint in a sentence or two, wherever they are told.
+//! The delays of a joint in a sentence or two, wherever they are told; the dead time of one whose input
+//! moves all the time.
 
 use super::summary::Headline;
 use super::{DelayRange, EstimatedJoint, JointSummary};

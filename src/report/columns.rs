@@ -1,4 +1,4 @@
-//! What a log's columns are taken for, as a table.
+//! What a log's columns are taken for, and how much was measured of each joint.
 
 use serde_json::{Value, json};
 

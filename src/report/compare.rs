@@ -1,4 +1,4 @@
-//! `compare` as text.
+//! `compare`: models beside the measurement, as text and JSON.
 
 use serde_json::{Value, json};
 
@@ -11,7 +11,8 @@ use crate::diagnosis::{Comparison, ErrorFigures, ModelDifference, RegionPair};
 use crate::experiment::{Joint, Trial};
 use crate::fit::Horizon;
 use crate::wording::{
-    self, correlation_sentences, effect_ids, effects_text, model_difference_sentences,
+    self, correlation_sentences, counted, effect_ids, effects_text, feature_with_level, measure,
+    p_text,
 };
 
 /// A joint, its model, and how the two compare.
@@ -81,9 +82,43 @@ pub(crate) struct ComparedModels<'a> {
 }
 
 impl ComparedModels<'_> {
-    /// What there is to say, a sentence each.
+    /// Which of the two is better, how surely, and where.
     pub(crate) fn sentences(&self) -> Vec<String> {
-        model_difference_sentences(self.joint, (self.model, self.other), &self.difference)
+        let Self { joint, model, other, difference: found } = self;
+        let unit = joint.output_unit.as_deref();
+        let part = if found.is_validation { "validation part" } else { "whole record" };
+        let steps = counted(found.steps, "step");
+        let (own, others) = (measure(found.rmse, unit), measure(found.other_rmse, unit));
+        let errors = format!(
+            "error {own} of {model}, {others} of {other} ({steps} of the {part}, restarted at each); \
+             {model} is better in {} of them",
+            found.better_steps
+        );
+        let better = if found.rmse < found.other_rmse { model } else { other };
+        let test = found.test.map_or_else(
+            || "too few steps, or no difference, to ask whether it is more than chance".to_owned(),
+            |test| {
+                let p = p_text(test.p_value);
+                let said = if found.is_significant() == Some(true) {
+                    format!("{better} is better by more than chance")
+                } else {
+                    "the difference may be chance".to_owned()
+                };
+                format!("{said} ({p}, Diebold and Mariano's test over the steps)")
+            },
+        );
+        let places = [(&found.better_where, model), (&found.worse_where, other)];
+        let places = places.into_iter().filter(|(pairs, _)| !pairs.is_empty());
+        let places = places.map(|(pairs, name)| {
+            let place = |pair: &RegionPair| {
+                let (own, others) =
+                    (measure(pair.region.rmse, unit), measure(pair.other_rmse, unit));
+                format!("{} ({own}, {others})", feature_with_level(joint, &pair.region))
+            };
+            let places: Vec<_> = pairs.iter().map(place).collect();
+            format!("where {name} is better (error of {model}, of {other}): {}", places.join("; "))
+        });
+        [errors, test].into_iter().chain(places).collect()
     }
 
     fn lines(&self) -> Vec<String> {

@@ -1,4 +1,5 @@
-//! What is said of a decision: to add something to all outputs, add it to [`DECISION`].
+//! What is said of a decision, and decisions in the order of their doubt: to add something to all
+//! outputs, add it to [`DECISION`].
 
 use serde_json::{Map, Value};
 

@@ -1,4 +1,4 @@
-//! The delays by kind of step and level, as a typed table and for people.
+//! The delays of a joint by kind of step and level, and at every sample.
 
 use std::collections::HashSet;
 use std::io::Write;

@@ -1,4 +1,5 @@
-//! The next experiment: what is to be played and what is expected of it, as CSV.
+//! The next experiment: what is to be played and what is expected of it, as CSV and as schema
+//! `tauscope/design/1`.
 
 use serde::Serialize;
 use serde_json::{Value, json};

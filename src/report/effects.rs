@@ -1,4 +1,4 @@
-//! The catalogue as text for people.
+//! The catalogue as text for people, and schema `tauscope/effects/1`.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,4 @@
-//! Tables for the terminal.
+//! `estimate`: its table for the terminal, and schema `tauscope/estimate/1`, numbers in full precision.
 
 use std::collections::BTreeMap;
 

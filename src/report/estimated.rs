@@ -1,4 +1,5 @@
-//! A joint with its estimate.
+//! A joint with its estimate, and what its record says against its delays: a code for programs, a
+//! sentence for people.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! `explain` as text.
+//! `explain` as text and JSON: verdict, ranking, and what is concluded.
 
 use serde_json::{Map, Value, json};
 

@@ -1,4 +1,4 @@
-//! The results of many logs, each by itself, in one table.
+//! The results of many logs, each by itself, in one table, and schema `tauscope/folder/1`.
 
 use serde_json::{Map, Value, json};
 

@@ -1,4 +1,4 @@
-//! `improve` as text: the ladder of errors.
+//! `improve` as text and JSON: the ladder of errors.
 
 use serde_json::{Value, json};
 

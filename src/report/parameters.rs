@@ -1,4 +1,4 @@
-//! The parameters of a model.
+//! The parameters of a model, and the equation of an effect with its numbers in it.
 
 use serde_json::{Map, Value, json};
 

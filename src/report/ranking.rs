@@ -1,4 +1,5 @@
-//! What is said of the effects that were tried: to add something to all outputs, add it to [`RANKING`].
+//! What is said of the effects that were tried, and the experiment that would distinguish two of them: to
+//! add something to all outputs, add it to [`RANKING`].
 
 use serde_json::{Map, Value, json};
 

@@ -1,4 +1,4 @@
-//! The settings in words.
+//! The settings, in words and in JSON.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,4 @@
-//! Tables with typed columns, as CSV and as Parquet.
+//! Tables with typed columns, as CSV and as Parquet, and tables of texts, for the terminal and for pages.
 
 use std::fmt;
 use std::io::Write;

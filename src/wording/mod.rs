@@ -11,8 +11,7 @@ mod prose;
 #[cfg(feature = "rrd")]
 pub(crate) use difference::verdict_in_short;
 pub(crate) use difference::{
-    difference_in_short, difference_sentences, missing_sentences, model_difference_sentences,
-    result_in_short, step_name,
+    difference_in_short, difference_sentences, missing_sentences, result_in_short, step_name,
 };
 #[cfg(feature = "rrd")]
 pub(crate) use doubt::{DOUBT_MEANS, doubt_in_short, doubtful_sentence};

@@ -1,4 +1,5 @@
-//! What is said on one question.
+//! What is said on one question: how large an error is, where it arises, which measured curves the model
+//! does not follow.
 
 use crate::diagnosis::failure::WorstSegment;
 use crate::diagnosis::{Curve, CurveOf, ShownBy};

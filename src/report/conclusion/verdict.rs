@@ -1,4 +1,5 @@
-//! What is said where no effect is missing.
+//! What is said where no effect is missing, where one is, and where none that was tried accounts for the
+//! error.
 
 use super::figures::{ABOVE_NOISE, first_order};
 use super::passage::{Passage, Topic};

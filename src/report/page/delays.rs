@@ -1,4 +1,4 @@
-//! The whole record of a joint: its output with the breakpoints, and its input.
+//! The record of a joint, its delays over time and against its state, and its dead time, as drawings.
 
 use super::document::{Block, Figure, HALF, WIDTH, slug};
 use super::timeline::{Timeline, values_of};

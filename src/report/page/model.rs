@@ -1,4 +1,4 @@
-//! What is said of a joint's model: verdict, equations, parameters, errors, ranking.
+//! What is said and drawn of a joint's model: verdict, equations, parameters, errors, ranking.
 
 use super::document::{Block, Figure, HALF, WIDTH};
 use super::report::Report;

@@ -1,4 +1,4 @@
-//! A report as one page that needs nothing else.
+//! A report as one page that needs nothing else, or as Markdown with its drawings as files beside it.
 
 use std::fmt::Write as _;
 

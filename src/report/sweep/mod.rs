@@ -1,4 +1,4 @@
-//! How delays move with the settings, as text and JSON.
+//! How delays move with the settings, as text and as schema `tauscope/sweep/1`.
 
 mod sets;
 pub(crate) mod text;
