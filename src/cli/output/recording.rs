@@ -62,7 +62,7 @@ pub(crate) fn of_delays<'a>(
 ) -> Recording<'a> {
     let Experiment { sources, options: reading, .. } = experiment;
     let (also, models, revisions, detail) = (&[], &[], &[], Detail::Auto.of(joints));
-    Recording { command, joints, settings, also, sources, reading, models, revisions, detail }
+    Recording { command, joints, settings, sources, reading, detail, models, also, revisions }
 }
 
 impl Recording<'_> {
