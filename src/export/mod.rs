@@ -26,3 +26,4 @@ mod template;
 pub use description::{Export, Units};
 pub use error::ExportError;
 pub use language::{File, Language, by_ending, endings};
+pub(crate) use template::filled;

@@ -13,7 +13,7 @@ use crate::effect::expression::Program;
 
 /// `template` with the values of `context` filled in; `plain` makes of a text of the user's one that ends
 /// no comment.
-pub(super) fn filled(
+pub(crate) fn filled(
     template: &str,
     plain: fn(&str) -> String,
     context: &Value,

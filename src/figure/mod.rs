@@ -10,7 +10,6 @@
 
 pub(crate) mod correlogram;
 pub(crate) mod course;
-pub(crate) mod delay_against;
 pub(crate) mod delay_levels;
 pub(crate) mod error_share;
 pub(crate) mod ladder;

@@ -57,27 +57,22 @@ impl Role {
         }
     }
 
-    pub(crate) const ALL: [Self; 21] = [
-        Self::Ink,
-        Self::Faint,
-        Self::Grid,
-        Self::Input,
-        Self::Measured,
-        Self::Smoothed,
-        Self::Accepted,
-        Self::Rejected,
-        Self::Error,
-        Self::Model,
-        Self::Noise,
-        Self::Attention,
-        Self::Revision(Revision(1)),
-        Self::Revision(Revision(2)),
-        Self::Revision(Revision(3)),
-        Self::Revision(Revision(4)),
-        Self::Revision(Revision(5)),
-        Self::Revision(Revision(6)),
-        Self::Revision(Revision(7)),
-        Self::Revision(Revision(8)),
-        Self::Revision(Revision(9)),
-    ];
+    /// All but colours of their own.
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        let usual = [
+            Self::Ink,
+            Self::Faint,
+            Self::Grid,
+            Self::Input,
+            Self::Measured,
+            Self::Smoothed,
+            Self::Accepted,
+            Self::Rejected,
+            Self::Error,
+            Self::Model,
+            Self::Noise,
+            Self::Attention,
+        ];
+        usual.into_iter().chain((1..=Revision::COUNT).map(|one| Self::Revision(Revision(one))))
+    }
 }

@@ -2,15 +2,19 @@
 
 use std::fmt::Write as _;
 
-use super::layout::{Detail, JointLayout};
+use super::layout::JointLayout;
 use super::markdown::{plain, prose};
 use super::origin::made_from;
-use super::recorded::Recording;
 use super::revision::judged;
-use crate::report::{
-    EstimatedJoint, JointSummary, Place, ReviewCount, TextTable, change_in_words, chosen_line,
-    dead_time_sentences, doubtful_lines, levels_text, settings_table, summary_table,
-};
+use crate::report::answer::dead_time_sentences;
+use crate::report::decisions::doubtful_lines;
+use crate::report::delays::levels_text;
+use crate::report::estimate::{chosen_line, summary_table};
+use crate::report::facts::Place;
+use crate::report::ladder::change_in_words;
+use crate::report::review::ReviewCount;
+use crate::report::settings::settings_table;
+use crate::report::{Detail, EstimatedJoint, JointSummary, Recording, TextTable};
 use crate::wording::{DOUBT_MEANS, counted, doubtful_sentence, measure};
 
 /// The page on `recording`, whose joints have these layouts.

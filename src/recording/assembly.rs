@@ -9,12 +9,12 @@ use super::content::{Content, Growth, Tab, hashed, name_of};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
 use super::paths;
-use super::recorded::Recording;
 use super::{
     about, decisions, delay_state, difference, doubt, headline, model, overview, place, revision,
     segment_view, signals, verdict, views,
 };
-use crate::report::{ImprovedJoint, settings_in_short};
+use crate::report::settings::settings_in_short;
+use crate::report::{ImprovedJoint, Recording};
 use crate::units::signed;
 
 impl<'a> Recording<'a> {

@@ -1,9 +1,8 @@
 //! What other methods, settings or logs gave for a step, beside the decision.
 
 use super::palette::{self, Rgb};
-use super::recorded::Recording;
 use crate::delay::{Decision, Verdict};
-use crate::report::EstimatedJoint;
+use crate::report::{EstimatedJoint, Recording};
 use crate::study::{JointDifferences, JointResult, StepPair, StepResult};
 use crate::wording::{interval, number, verdict_in_short};
 

@@ -8,7 +8,9 @@ use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::paths;
 use crate::delay::{Candidate, Decision};
-use crate::report::{DECISION, Doubted, Place, decision_text};
+use crate::report::Doubted;
+use crate::report::decisions::{DECISION, decision_text};
+use crate::report::facts::Place;
 use crate::units::signed;
 
 /// Adds `/decision/sse` and `/decision/table`.

@@ -5,7 +5,8 @@ use super::error::RecordError;
 use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::paths;
-use crate::report::{Place, decision_text};
+use crate::report::decisions::decision_text;
+use crate::report::facts::Place;
 use crate::wording::{DOUBT_MEANS, doubt_percent, doubtful_sentence};
 
 /// Adds `/doubt` and `/doubt/log`.

@@ -8,7 +8,8 @@ use super::markdown::plain;
 use super::paths;
 use crate::experiment::Source;
 use crate::explain::Verdict;
-use crate::report::{ImprovedJoint, delay_answer};
+use crate::report::ImprovedJoint;
+use crate::report::answer::delay_answer;
 use crate::wording::capitalized;
 
 /// Adds `/headline`.

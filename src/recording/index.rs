@@ -13,10 +13,10 @@ use super::layers::Layers;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout, TrialStarts};
 use super::markdown::{link, plain};
 use super::paths::{self, at};
-use super::recorded::Recording;
 use super::segment_view;
 use super::verdict;
-use crate::report::{EstimatedJoint, JointSummary, SUMMARY_HEADER, TextTable, summary_cells};
+use crate::report::estimate::{SUMMARY_HEADER, summary_cells};
+use crate::report::{EstimatedJoint, JointSummary, Recording, TextTable};
 use crate::wording::doubt_percent;
 
 /// What lies below it: the drawing and the verdict of a decision, and the list of all.

@@ -20,20 +20,10 @@ use super::chunk::{Index, Moment, Opening};
 use crate::delay::{Candidate, Decision, Doubt, TrialEstimate, Verdict, doubts};
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Trial};
-use crate::report::{Doubted, EstimatedJoint, Timeline};
+use crate::report::page::timeline::Timeline;
+use crate::report::{Detail, Doubted, EstimatedJoint};
 use crate::units::signed;
 use crate::wording::{doubt_in_short, doubt_sentence, number};
-
-/// How many candidates of each segment are recorded.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Detail {
-    /// All.
-    #[default]
-    Full,
-    /// All of rejected and of doubtful segments; of others the best, its neighbours, and every
-    /// so-manieth, 25 at most.
-    Lean,
-}
 
 /// Candidates that [`Detail::Lean`] keeps of an accepted segment.
 const LEAN_CANDIDATES: usize = 25;

@@ -14,9 +14,9 @@ use super::signals::known;
 use super::{correlogram, error_share, model_lanes, revision, scatter};
 use crate::diagnosis::failure::Region;
 use crate::diagnosis::{Comparison, SIGNIFICANCE, sensor_noise};
-use crate::report::{
-    ComparedJoint, TextTable, errors_note, model_differences, model_table, parameter_table,
-};
+use crate::report::compare::{errors_note, model_differences, model_table};
+use crate::report::parameters::parameter_table;
+use crate::report::{ComparedJoint, TextTable};
 use crate::wording::{
     capitalized, correlation_sentences, fails_or_errs, failure_sentences, measure, number, percent,
 };

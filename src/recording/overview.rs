@@ -13,7 +13,7 @@ use super::palette::{self, Rgb, color};
 use super::panels::{self, Placed};
 use super::paths;
 use crate::delay::{Candidate, Line};
-use crate::report::{dead_time_panel, delay_panel, record_panels};
+use crate::report::page::delays::{dead_time_panel, delay_panel, record_panels};
 
 /// Adds everything of the overview below `root`.
 pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {

@@ -13,9 +13,11 @@ use super::palette::{self, color};
 use super::paths;
 use crate::delay::Verdict;
 use crate::delay::{Check, Condition, Decision, Outcome};
-use crate::report::{
-    DECISION, DelayRange, EstimatedJoint, JointSummary, Place, dead_time_sentences, onset_sentence,
-};
+use crate::report::answer::dead_time_sentences;
+use crate::report::decisions::DECISION;
+use crate::report::estimate::onset_sentence;
+use crate::report::facts::Place;
+use crate::report::{DelayRange, EstimatedJoint, JointSummary};
 use crate::wording::{doubt_percent, number, rounded, verdict_in_short};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).

@@ -17,16 +17,15 @@ use super::canvas::SHEET;
 use super::content::Growth;
 use super::overview::{LARGE_HEIGHT, MAP_HEIGHT};
 use super::paths::{self, at, child, joint_root, of_model};
-use super::recorded::Recording;
 use super::{
     correlogram, delay_state, difference, error_share, palette, revision, scatter, segment_view,
 };
 use crate::delay::{Decision, Doubt};
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
-use crate::report::{
-    ComparedJoint, EstimatedJoint, JointSummary, by_doubt, doubtful_lines, summary_cells,
-};
+use crate::report::decisions::{by_doubt, doubtful_lines};
+use crate::report::estimate::summary_cells;
+use crate::report::{ComparedJoint, EstimatedJoint, JointSummary, Recording};
 use crate::wording::number;
 
 /// What decides which views there are.

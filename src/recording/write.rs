@@ -14,8 +14,7 @@ use super::content::{
 use super::end::EndHeld;
 use super::error::RecordError;
 use super::index::IndexRecording;
-use super::recorded::Recording;
-use super::sweep::SweepRecording;
+use crate::report::{Recording, SweepRecording};
 
 /// Writes `recording` to `out` as a whole `.rrd` file, footer included.
 ///

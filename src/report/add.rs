@@ -1,7 +1,12 @@
-//! `add` as text: the error before and after.
+//! `add` as text and JSON: the error before and after.
 
-use super::compare::{ComparedJoint, compare_table};
-use super::consequence::Consequence;
+use serde_json::{Value, json};
+
+use super::ComparedJoint;
+use super::compare::{compare_table, error_json, model_json};
+use super::explain::conclusion_json;
+use super::finding::Consequence;
+use super::json::{document, joined};
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
 use crate::explain::Addition;
@@ -100,4 +105,27 @@ pub(crate) fn add_text(joints: &[AddedJoint<'_>]) -> String {
     let compared: Vec<_> = named.collect();
     let sentences: Vec<_> = joints.iter().map(AddedJoint::sentence).collect();
     format!("{}\n{}\n", compare_table(&compared), sentences.join("\n"))
+}
+
+/// The document of `add --format json`.
+pub(crate) fn add_json(model_file: &str, joints: &[AddedJoint<'_>], failures: &[String]) -> Value {
+    let joint = |added: &AddedJoint<'_>| {
+        let [before, after] = added.compared();
+        let model = &before.comparison.fit.model;
+        let change = json!({
+            "added": added.effect,
+            "removed": gone(model, &after.comparison.fit.model),
+            "p_value": added.addition.p_value,
+            "before": {
+                "revision": before.revision,
+                "effects": effect_ids(model),
+                "error": error_json(before.comparison),
+            },
+            "conclusion": conclusion_json(&added.sentence(), &added.consequence()),
+        });
+        joined([model_json(&after), change])
+    };
+    let joints: Value = joints.iter().map(joint).collect();
+    let facts = json!({ "model_file": model_file, "joints": joints, "failures": failures });
+    document("tauscope/add/1", facts)
 }

@@ -1,6 +1,6 @@
 //! The delay against the state, for the terminal.
 
-use super::text_table::TextTable;
+use super::TextTable;
 use crate::delay::{AgainstOfKind, AgainstState, Correlation, Direction};
 use crate::wording::{bracketed, p_cell};
 

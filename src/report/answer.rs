@@ -1,8 +1,10 @@
-//! The delays of a joint in a sentence or two, wherever they are told.
+//! The delays of a joint in a sentence or two, wherever they are told; the dead time of one whose input
+//! moves all the time.
 
-use super::{DelayRange, EstimatedJoint, Headline, JointSummary, dead_time_sentences};
-use crate::delay::Condition;
-use crate::wording::capitalized;
+use super::summary::Headline;
+use super::{DelayRange, EstimatedJoint, JointSummary};
+use crate::delay::{Bounds, Condition, DeadTime, Finding, InputMotion, Unknown};
+use crate::wording::{capitalized, percent};
 
 /// What the delays of a joint are: by kind of step where these differ; of an input that moves all the
 /// time its dead time.
@@ -47,4 +49,92 @@ fn delay_sentence(summary: &JointSummary, kinds: &[String]) -> String {
         ),
         (Headline::None(_), _) => format!("No typical delay: {kinds}."),
     }
+}
+
+/// That the input of a joint moves all the time, and what follows from it.
+pub(crate) fn input_note(joint: &EstimatedJoint<'_>) -> Option<String> {
+    joint.estimate.dead_time.as_ref()?;
+    let name = &joint.joint.name;
+    let changes = percent(joint.estimate.motion.changes);
+    Some(format!(
+        "joint `{name}`: the input moves all the time (it changes at {changes} of its samples): \
+         one dead time over the record instead of one per step"
+    ))
+}
+
+/// What is said of the dead time of a joint: that its input moves, its dead time and lag, what
+/// windows say, and what may bias it. Empty for a joint whose input is made of steps.
+pub(crate) fn dead_time_sentences(joint: &EstimatedJoint<'_>) -> Vec<String> {
+    let Some(found) = joint.estimate.dead_time.as_ref() else { return Vec::new() };
+    let mut sentences = vec![moves(&joint.estimate.motion), finding(found)];
+    sentences.extend(windows(found));
+    sentences.extend(feedback(found));
+    sentences
+}
+
+fn moves(motion: &InputMotion) -> String {
+    let changes = percent(motion.changes);
+    let steps = motion.travel_in_steps.map_or_else(String::new, |share| {
+        format!("; {} of its travel is steps between levels that it holds", percent(share))
+    });
+    format!(
+        "the input moves all the time (it changes at {changes} of its samples{steps}): \
+         one dead time over the record instead of one per step"
+    )
+}
+
+fn seconds(Bounds { value_s, low_s, high_s }: Bounds) -> String {
+    format!("{value_s:.3} s ({low_s:.3} to {high_s:.3} s)")
+}
+
+fn finding(found: &DeadTime) -> String {
+    let lag = found.lag_s.unwrap_or(0.0);
+    let what = if found.integrates { "the speed" } else { "the output" };
+    let confidence = percent(found.confidence);
+    match found.finding {
+        Finding::Known(bounds) if found.varies() => format!(
+            "the dead time varies: {} over the record at {confidence}, then {what} follows with a lag \
+             of {lag:.3} s",
+            seconds(bounds)
+        ),
+        Finding::Known(bounds) => format!(
+            "dead time {} at {confidence}, then {what} follows with a lag of {lag:.3} s",
+            seconds(bounds)
+        ),
+        Finding::LagOnly(Bounds { high_s, .. }) => format!(
+            "no dead time (at most {high_s:.3} s at {confidence}), but {what} follows with a lag of \
+             {lag:.3} s"
+        ),
+        Finding::Unknown(Unknown::TooShort) => {
+            "no dead time: the record is too short, or the input hardly moves".to_owned()
+        }
+        Finding::Unknown(Unknown::NotExplained) => {
+            "no dead time: the input does not explain what the output does".to_owned()
+        }
+        Finding::Unknown(Unknown::OneFrequency(hz)) => format!(
+            "no dead time: the input is a sine of {hz:.3} Hz alone, whose phase a lag explains as well as \
+             a dead time does; drive the joint at several frequencies, or in steps"
+        ),
+        Finding::Unknown(Unknown::TooLong(longest_s)) => {
+            format!("no dead time up to {longest_s:.3} s; search further with `--max-delay`")
+        }
+    }
+}
+
+fn windows(found: &DeadTime) -> Option<String> {
+    let known: Vec<Bounds> = found.windows.iter().filter_map(|window| window.estimate).collect();
+    let least = known.iter().map(|bounds| bounds.value_s).min_by(f64::total_cmp)?;
+    let most = known.iter().map(|bounds| bounds.value_s).max_by(f64::total_cmp)?;
+    let differ = match found.same_in_all {
+        None => "",
+        Some(_) if found.varies() => ", differing by more than chance",
+        Some(_) => ", not differing by more than chance",
+    };
+    let (count, all) = (known.len(), found.windows.len());
+    Some(format!("in {count} of {all} windows {least:.3} to {most:.3} s{differ}"))
+}
+
+fn feedback(found: &DeadTime) -> Option<String> {
+    let bias = "the input follows the output (feedback), so that the dead time may be biased";
+    found.feedback.is_present().then(|| bias.to_owned())
 }

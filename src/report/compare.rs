@@ -1,12 +1,19 @@
-//! `compare` as text.
+//! `compare`: models beside the measurement, as text and JSON.
 
+use serde_json::{Value, json};
+
+use super::TextTable;
+use super::json::{document, without_empty};
 use super::ladder::{errors_of, errors_table, figures};
-use super::parameters::model_text;
-use super::text_table::TextTable;
-use crate::diagnosis::{Comparison, ModelDifference};
-use crate::experiment::Joint;
+use super::parameters::{model_text, parameters_json};
+use crate::diagnosis::failure::{FailsWhere, WorstSegment};
+use crate::diagnosis::{Comparison, ErrorFigures, ModelDifference, RegionPair};
+use crate::experiment::{Joint, Trial};
 use crate::fit::Horizon;
-use crate::wording::{self, correlation_sentences, effects_text, model_difference_sentences};
+use crate::wording::{
+    self, correlation_sentences, counted, effect_ids, effects_text, feature_with_level, measure,
+    p_text,
+};
 
 /// A joint, its model, and how the two compare.
 #[derive(Clone, Copy, Debug)]
@@ -75,9 +82,43 @@ pub(crate) struct ComparedModels<'a> {
 }
 
 impl ComparedModels<'_> {
-    /// What there is to say, a sentence each.
+    /// Which of the two is better, how surely, and where.
     pub(crate) fn sentences(&self) -> Vec<String> {
-        model_difference_sentences(self.joint, (self.model, self.other), &self.difference)
+        let Self { joint, model, other, difference: found } = self;
+        let unit = joint.output_unit.as_deref();
+        let part = if found.is_validation { "validation part" } else { "whole record" };
+        let steps = counted(found.steps, "step");
+        let (own, others) = (measure(found.rmse, unit), measure(found.other_rmse, unit));
+        let errors = format!(
+            "error {own} of {model}, {others} of {other} ({steps} of the {part}, restarted at each); \
+             {model} is better in {} of them",
+            found.better_steps
+        );
+        let better = if found.rmse < found.other_rmse { model } else { other };
+        let test = found.test.map_or_else(
+            || "too few steps, or no difference, to ask whether it is more than chance".to_owned(),
+            |test| {
+                let p = p_text(test.p_value);
+                let said = if found.is_significant() == Some(true) {
+                    format!("{better} is better by more than chance")
+                } else {
+                    "the difference may be chance".to_owned()
+                };
+                format!("{said} ({p}, Diebold and Mariano's test over the steps)")
+            },
+        );
+        let places = [(&found.better_where, model), (&found.worse_where, other)];
+        let places = places.into_iter().filter(|(pairs, _)| !pairs.is_empty());
+        let places = places.map(|(pairs, name)| {
+            let place = |pair: &RegionPair| {
+                let (own, others) =
+                    (measure(pair.region.rmse, unit), measure(pair.other_rmse, unit));
+                format!("{} ({own}, {others})", feature_with_level(joint, &pair.region))
+            };
+            let places: Vec<_> = pairs.iter().map(place).collect();
+            format!("where {name} is better (error of {model}, of {other}): {}", places.join("; "))
+        });
+        [errors, test].into_iter().chain(places).collect()
     }
 
     fn lines(&self) -> Vec<String> {
@@ -155,4 +196,121 @@ pub(crate) fn errors_note(horizon: &str) -> String {
          raw with it (validation, from the measured output), free run from the start of each trial; \
          a parameter is given ± its standard error"
     )
+}
+
+/// A model and how it compares with the measurement; `fails_horizon` is where the simulation restarts
+/// of which `fails_where` and `regions` are.
+pub(super) fn model_json(compared: &ComparedJoint<'_>) -> Value {
+    let ComparedJoint { joint, model, revision, comparison } = compared;
+    let conditions = comparison.failure.iter().flat_map(|failure| &failure.fails_where);
+    let segments = comparison.failure.iter().flat_map(|failure| &failure.worst_segments);
+    json!({
+        "joint": joint.name,
+        "model": model,
+        "revision": revision,
+        "effects": effect_ids(&comparison.fit.model),
+        "parameters": parameters_json(joint, &comparison.fit),
+        "error": error_json(comparison),
+        "lack_of_fit": comparison.lack_of_fit,
+        "whiteness": comparison.whiteness,
+        "input_correlation": comparison.input_correlation,
+        "fails_horizon": comparison.arising.to_string(),
+        "fails_where": conditions.map(condition).collect::<Value>(),
+        "worst_segments": segments.map(|worst| segment(worst, joint)).collect::<Value>(),
+        "regions": comparison.regions,
+        "curves": comparison.curves,
+        "termination": comparison.termination.to_string(),
+    })
+}
+
+/// The error on both parts, and the noise, which has the older name `noise_floor` as well.
+pub(super) fn error_json(comparison: &Comparison) -> Value {
+    let Comparison { training, validation, raw, free, sensor_noise, .. } = comparison;
+    json!({
+        "train": training.map(|error| part_json(error, raw.training, free.training)),
+        "validation": validation.map(|error| part_json(error, raw.validation, free.validation)),
+        "sensor_noise": sensor_noise,
+        "noise_floor": sensor_noise,
+    })
+}
+
+/// The figures of one part, with the errors from which nothing is removed: restarted, and of a free
+/// run.
+fn part_json(error: ErrorFigures, rmse_raw: Option<f64>, rmse_free: Option<f64>) -> Value {
+    json!({
+        "rmse": error.rmse,
+        "rmse_raw": rmse_raw,
+        "rmse_free": rmse_free,
+        "fit_percent": error.fit_percent,
+        "max": error.max,
+    })
+}
+
+fn condition(found: &FailsWhere) -> Value {
+    json!({
+        "condition": found.condition,
+        "share_of_time": found.share_of_time,
+        "share_of_squared_error": found.share_of_squared_error,
+        "error_of": if found.of_speed { "speed" } else { "output" },
+        "rmse": found.rmse,
+        "p_value": found.p_value,
+    })
+}
+
+/// With times by the clock of the log.
+fn segment(worst: &WorstSegment, joint: &Joint) -> Value {
+    let trial = joint.trials.iter().find(|trial| trial.label() == worst.trial);
+    let origin_s = trial.map_or(0.0, Trial::origin_s);
+    json!({
+        "trial": worst.trial,
+        "start_s": origin_s + worst.start_s,
+        "end_s": origin_s + worst.end_s,
+        "rmse": worst.rmse,
+        "largest_residual": worst.largest_residual,
+        "share_of_squared_error": worst.share_of_squared_error,
+    })
+}
+
+/// The document of `compare --format json`.
+pub(crate) fn compare_json(joints: &[ComparedJoint<'_>], failures: &[String]) -> Value {
+    let facts = json!({
+        "joints": joints.iter().map(model_json).collect::<Value>(),
+        "against": model_differences(joints).iter().map(against).collect::<Value>(),
+        "failures": failures,
+    });
+    document("tauscope/compare/1", without_empty(facts, &["against"]))
+}
+
+/// The first model of a joint beside another one.
+fn against(models: &ComparedModels<'_>) -> Value {
+    let ComparedModels { joint, model, other, difference } = models;
+    let places = |pairs: &[RegionPair]| pairs.iter().map(place).collect::<Value>();
+    json!({
+        "joint": joint.name,
+        "model": model,
+        "other": other,
+        "steps": difference.steps,
+        "validation": difference.is_validation,
+        "rmse": difference.rmse,
+        "other_rmse": difference.other_rmse,
+        "better_steps": difference.better_steps,
+        "statistic": difference.test.map(|test| test.statistic),
+        "p_value": difference.test.map(|test| test.p_value),
+        "significant": difference.is_significant(),
+        "better_where": places(&difference.better_where),
+        "worse_where": places(&difference.worse_where),
+    })
+}
+
+/// A part of the record, with the error of both.
+fn place(RegionPair { region, other_rmse }: &RegionPair) -> Value {
+    json!({
+        "feature": region.feature,
+        "label": region.label,
+        "from": region.from,
+        "to": region.to,
+        "share_of_time": region.share_of_time,
+        "rmse": region.rmse,
+        "other_rmse": other_rmse,
+    })
 }

@@ -1,27 +1,32 @@
-//! What is said of a decision: to add something to all outputs, add it to [`DECISION`].
+//! What is said of a decision, and decisions in the order of their doubt: to add something to all
+//! outputs, add it to [`DECISION`].
 
 use serde_json::{Map, Value};
 
-use super::doubt::doubted;
 use super::facts::{self, Fact, Part, Place, UNSAID, Unit, fact, samples};
-use super::text_table::TextTable;
-use super::{DataTable, Doubted, EstimatedJoint, Kind};
-use crate::delay::{Candidate, Condition, Decision, Method, ReviewerVerdict, Settings};
-use crate::experiment::Joint;
+use super::{DataTable, EstimatedJoint, Kind, TextTable};
+use crate::delay::{
+    Candidate, Condition, Decision, Doubt, InputStep, Method, ReviewerVerdict, Settings, Verdict,
+    doubts,
+};
+use crate::experiment::{Joint, Trial};
 use crate::numerics::to_nanoseconds;
-use crate::wording::{doubt_percent, doubt_sentence, interval, number, remedy_text, unit_suffix};
+use crate::wording::{
+    counted, doubt_percent, doubt_sentence, interval, number, remedy_text, samples_text,
+    unit_suffix,
+};
 use Kind::{Real, Samples, Text, Whole};
 use Part::{Json, Paper, People, Table};
-use Place::{Doubtful, Recording, Report, Terminal, Verdict};
+use Place::{Doubtful, Recording, Report, Terminal};
 
 /// Something that is said of a decision.
 pub(crate) type DecisionFact = Fact<fn(&Doubted<'_>) -> Value>;
 
 const TABLES: &[Place] = &[Terminal, Report, Doubtful, Recording];
-const FIGURES: &[Place] = &[Report, Recording, Verdict];
-const ENDS: &[Place] = &[Report, Verdict];
-const SLOPES: &[Place] = &[Recording, Verdict];
-const SAID: &[Place] = &[Verdict];
+const FIGURES: &[Place] = &[Report, Recording, Place::Verdict];
+const ENDS: &[Place] = &[Report, Place::Verdict];
+const SLOPES: &[Place] = &[Recording, Place::Verdict];
+const SAID: &[Place] = &[Place::Verdict];
 
 /// All of it, in the order of the columns. Sample numbers count from 1 within the trial.
 #[rustfmt::skip]
@@ -39,7 +44,7 @@ pub(crate) const DECISION: &[DecisionFact] = &[
     fact("f_opt", Whole, Paper, ("f", "best candidate", Unit::None, SAID), |of| of.best(|best| best.f)),
     fact("program_delta", Samples, People, ("program's δ", "", Unit::Samples, SAID), |of| samples(of.decision.delay_before_review())),
     fact("q", Samples, Paper, ("q", "breakpoint", Unit::Sample, FIGURES), |of| samples(of.decision.delay().map(|delay| of.p() as f64 + delay))),
-    fact("delta", Samples, Paper, ("δ", "delay", Unit::Samples, &[Terminal, Report, Recording, Verdict]), |of| samples(of.decision.delay())),
+    fact("delta", Samples, Paper, ("δ", "delay", Unit::Samples, &[Terminal, Report, Recording, Place::Verdict]), |of| samples(of.decision.delay())),
     fact("delta_s", Real, Paper, ("δ", "", Unit::Seconds, &[Report, Doubtful, Recording]), |of| of.delay_s(of.decision.delay()).into()),
     fact("sse", Real, Paper, ("SSE", "squared error of both lines", Unit::Output("²"), FIGURES), |of| of.best(|best| best.sse)),
     fact("slope_before", Real, Paper, ("slope before", "", Unit::Output("/sample"), SLOPES), |of| of.best(|best| best.before.slope)),
@@ -58,7 +63,7 @@ pub(crate) const DECISION: &[DecisionFact] = &[
     fact("runner_up_q", Whole, Table, UNSAID, |of| of.decision.runner_up().map(|second| second.breakpoint).into()),
     fact("runner_up_margin", Real, Table, UNSAID, |of| of.margin().into()),
     fact("accepted_with", Text, Table, ("accepted with", "", Unit::None, &[Report]), |of| of.remedies().into()),
-    fact("near", Text, People, ("how near", "", Unit::None, &[Terminal, Verdict]), |of| of.how_near().into()),
+    fact("near", Text, People, ("how near", "", Unit::None, &[Terminal, Place::Verdict]), |of| of.how_near().into()),
     fact("doubt", Real, Json, UNSAID, |of| of.doubt.value().into()),
     fact("doubt_percent", Text, People, ("doubt", "", Unit::None, &[Doubtful, Recording]), |of| doubt_percent(&of.doubt).into()),
     fact("why", Text, People, ("what speaks against it", "", Unit::None, &[Doubtful]), |of| of.why().into()),
@@ -67,7 +72,7 @@ pub(crate) const DECISION: &[DecisionFact] = &[
 
 /// The facts of `found` up to `part`, by their ids.
 fn object(found: &Doubted<'_>, part: Part) -> Map<String, Value> {
-    facts::object(DECISION, part, |value| value(found))
+    facts::object(DECISION, part, found)
 }
 
 /// What is said of a decision in JSON.
@@ -99,7 +104,7 @@ fn part_of<'a>(mut methods: impl Iterator<Item = &'a str>) -> Part {
 pub(crate) fn decision_table(runs: &[(&Settings, &[EstimatedJoint<'_>])]) -> DataTable {
     let part = part_of(runs.iter().map(|(settings, _)| settings.method.id()));
     let rows = runs.iter().flat_map(|(_, joints)| *joints).flat_map(|joint| doubted(*joint));
-    facts::data_table(DECISION, part, (rows, |value, found| value(found)))
+    facts::data_table(DECISION, part, rows)
 }
 
 /// The decisions `rows` as a person reads them at `place`, with the units of `joint`.
@@ -108,7 +113,7 @@ pub(crate) fn decision_text<'a>(
     joint: Option<&Joint>,
     rows: impl Iterator<Item = Doubted<'a>>,
 ) -> TextTable {
-    facts::text_table(DECISION, place, joint, (rows, |value, found| value(found)))
+    facts::text_table(DECISION, place, joint, rows)
 }
 
 /// A row per step, for the terminal.
@@ -201,7 +206,7 @@ impl Doubted<'_> {
 
     /// What would have accepted the step, or by how much the second-best breakpoint is worse.
     fn how_near(&self) -> Option<String> {
-        if self.decision.verdict() != crate::delay::Verdict::Accepted {
+        if self.decision.verdict() != Verdict::Accepted {
             return Some(self.remedies());
         }
         let (margin, second) = self.margin().zip(self.decision.runner_up())?;
@@ -212,5 +217,128 @@ impl Doubted<'_> {
     pub(super) fn why(&self) -> String {
         let verdict = self.decision.program_verdict();
         doubt_sentence(&self.doubt, verdict, self.trial.period().seconds())
+    }
+}
+
+/// A decision with its doubt.
+#[derive(Clone, Debug)]
+pub(crate) struct Doubted<'a> {
+    pub(crate) joint: EstimatedJoint<'a>,
+    pub(crate) trial: &'a Trial,
+    /// The output that the lines were fitted to; none where it is the measured one.
+    pub(crate) smoothed: Option<&'a [f64]>,
+    pub(crate) decision: &'a Decision,
+    pub(crate) doubt: Doubt,
+}
+
+/// All decisions on `joint` in their order, each with its doubt.
+pub(super) fn doubted(joint: EstimatedJoint<'_>) -> impl Iterator<Item = Doubted<'_>> {
+    joint.trials().flat_map(move |(trial, found)| {
+        let smoothed = found.smoothed.as_deref();
+        let all = doubts(&found.decisions, smoothed.unwrap_or(trial.output()));
+        all.map(move |(decision, doubt)| Doubted { joint, trial, smoothed, decision, doubt })
+    })
+}
+
+/// All decisions on `joints`, the most doubtful first; equally doubtful ones in their order.
+pub(crate) fn by_doubt<'a>(joints: &[EstimatedJoint<'a>]) -> Vec<Doubted<'a>> {
+    let mut all: Vec<_> = joints.iter().flat_map(|joint| doubted(*joint)).collect();
+    all.sort_by(|a, b| b.doubt.value().total_cmp(&a.doubt.value()));
+    all
+}
+
+/// The doubtful decisions of all joints in lines, the most doubtful first.
+pub(crate) fn doubtful_lines(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
+    lines(&by_doubt(joints))
+}
+
+/// A line for each decision that is doubtful and on which no reviewer has judged, of all by doubt.
+fn lines(all: &[Doubted<'_>]) -> Vec<String> {
+    let doubtful = all.iter().take_while(|found| found.doubt.is_doubtful());
+    let open = doubtful.filter(|found| found.decision.reviewer_verdict.is_none());
+    open.map(line).collect()
+}
+
+/// How many decisions are doubtful, and the most doubtful ones, a line each; nothing where none is.
+pub(super) fn doubtful_text(joints: &[EstimatedJoint<'_>]) -> String {
+    /// Decisions that are named.
+    const MOST: usize = 3;
+    let all = by_doubt(joints);
+    let (steps, doubtful) = (all.len(), lines(&all));
+    let are = match doubtful.len() {
+        0 => return String::new(),
+        1 => "is",
+        _ => "are",
+    };
+    let said: String = doubtful.iter().take(MOST).flat_map(|line| ["  ", line, "\n"]).collect();
+    let first = if doubtful.len() > MOST { "look first at" } else { "look at" };
+    let is_reviewed = all.iter().any(|found| found.decision.reviewer_verdict.is_some());
+    let open = if is_reviewed { " and not reviewed" } else { "" };
+    let (count, all) = (doubtful.len(), counted(steps, "decision"));
+    format!("{count} of {all} {are} doubtful{open}; {first}\n{said}")
+}
+
+/// Where a decision is, and what speaks against it.
+fn line(found: &Doubted<'_>) -> String {
+    let place = step_place(found.joint.joint, found.trial, found.decision);
+    let (verdict, percent) = (found.decision.program_verdict(), doubt_percent(&found.doubt));
+    format!("{place}: {verdict}, doubt {percent}: {}", found.why())
+}
+
+/// Where a step is: `boom, trial 2, step 3 at 12.4 s`, the trial where there are several.
+pub(super) fn step_place(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
+    let several = joint.trials.len() > 1;
+    let label = if several { format!(", trial {}", trial.label()) } else { String::new() };
+    let time = number(trial.time_s(decision.input_step.sample));
+    format!("{}{label}, step {} at {time} s", joint.name, decision.number)
+}
+
+/// One step in a line, as it is reported when it has come, with its trial where there are several.
+pub(crate) fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
+    let InputStep { before, after, .. } = decision.input_step;
+    let unit = unit_suffix(joint.input_unit.as_deref());
+    let (before, after) = (number(before), number(after));
+    let step = format!("{}, {before} to {after}{unit}", step_place(joint, trial, decision));
+    let Verdict::Rejected(condition) = decision.verdict() else {
+        let samples = decision.delay().unwrap_or(0.0);
+        let seconds = samples * trial.period().seconds();
+        return format!("{step}: delay {seconds:.3} s ({})", samples_text(samples));
+    };
+    format!("{step}: rejected, {}", condition.id())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::{FirstLast, Method, Settings, estimate};
+    use crate::units::SamplePeriod;
+
+    #[test]
+    fn a_step_is_one_line() {
+        let level = |k: i32| f64::from(i32::from((100..200).contains(&k)));
+        let input: Vec<f64> = (0..300).map(level).collect();
+        let moved = |k: i32| 0.2 * f64::from((k - 112).clamp(0, 100));
+        let output = (0..300).map(moved).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("1", 0.0, period, input, output).unwrap();
+        let first_last = FirstLast::Reject;
+        let settings =
+            Settings { low_pass: None, beta: 2, first_last, ..Settings::of(Method::TWO_LINE) };
+        let kept = Settings { first_last: FirstLast::Keep, ..settings.clone() };
+        let joint = |trials| Joint {
+            name: "swing".to_owned(),
+            input_unit: Some("V".to_owned()),
+            output_unit: None,
+            covariates: Vec::new(),
+            trials,
+        };
+        let line = |settings, trials| {
+            let found = estimate(&trial, settings).unwrap();
+            step_line(&joint(trials), &trial, &found.decisions[0])
+        };
+        let accepted = "swing, step 1 at 1 s, 0 to 1 V: delay 0.120 s (12 samples)";
+        assert_eq!(line(&kept, [trial.clone()].into()), accepted);
+        let rejected = "swing, trial 1, step 1 at 1 s, 0 to 1 V: rejected, first_or_last";
+        assert_eq!(line(&settings, [trial.clone(), trial.clone()].into()), rejected);
     }
 }

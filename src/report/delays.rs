@@ -1,14 +1,170 @@
-//! The delay of every sample of every joint.
+//! The delays of a joint by kind of step and level, and at every sample.
 
 use std::collections::HashSet;
 use std::io::Write;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::{DataTable, EstimatedJoint, Kind};
-use crate::delay::DelayProfile;
+use super::facts::{self, Fact, Part, Place, UNSAID, Unit, fact};
+use super::table::write_csv;
+use super::{DataTable, EstimatedJoint, JointSummary, Kind, TextTable};
+use crate::delay::{
+    Condition, DelayProfile, DelayRow, DelayTable, KindDelay, Remedy, Transition, TypicalDelay,
+};
 use crate::experiment::Trial;
 use crate::numerics::to_nanoseconds;
+use crate::wording::{number, remedy_text, unit_suffix};
+use Kind::{Real, Text, Whole};
+use Part::{Json, People, Table};
+use Place::{Recording, Terminal};
+
+/// A row of the table of a joint, with its name.
+pub(crate) type Level<'a> = (&'a str, &'a DelayRow);
+
+pub(super) type LevelFact = Fact<fn(&Level<'_>) -> Value>;
+
+const PEOPLE: &[Place] = &[Terminal, Recording];
+
+/// All of it, in the order of the columns of `--table`: levels are means of a bin, low and high bound
+/// the median at 95 %.
+#[rustfmt::skip]
+pub(super) const LEVEL: &[LevelFact] = &[
+    fact("joint", Text, Table, ("joint", "", Unit::None, &[Recording]), |(joint, _)| (*joint).into()),
+    fact("transition", Text, Table, ("transition", "", Unit::None, PEOPLE), |(_, row)| row.transition.id().into()),
+    fact("level_from", Real, Table, UNSAID, |(_, row)| row.level_from.into()),
+    fact("level_to", Real, Table, UNSAID, |(_, row)| row.level_to.into()),
+    fact("from", Real, People, ("from", "", Unit::None, PEOPLE), |(_, row)| level(row.level_from, row.from_limits)),
+    fact("to", Real, People, ("to", "", Unit::None, PEOPLE), |(_, row)| level(row.level_to, row.to_limits)),
+    fact("steps", Whole, Table, ("steps", "", Unit::None, PEOPLE), |(_, row)| row.steps.into()),
+    fact("accepted", Whole, Table, ("accepted", "", Unit::None, PEOPLE), |(_, row)| row.accepted.into()),
+    fact("delay_median_s", Real, Table, UNSAID, |(_, row)| row.delay.map(|delay| delay.median_s).into()),
+    fact("delay_low_s", Real, Table, UNSAID, |(_, row)| interval(row).map(|(low, _)| low).into()),
+    fact("delay_high_s", Real, Table, UNSAID, |(_, row)| interval(row).map(|(_, high)| high).into()),
+    fact("delay_min_s", Real, Table, UNSAID, |(_, row)| row.delay.map(|delay| delay.min_s).into()),
+    fact("delay_max_s", Real, Table, UNSAID, |(_, row)| row.delay.map(|delay| delay.max_s).into()),
+    fact("median", Real, People, ("median", "", Unit::None, PEOPLE), |(_, row)| said(row.delay.map(|delay| format!("{:.3} s", delay.median_s)))),
+    fact("interval", Text, People, ("95 % interval", "", Unit::None, PEOPLE), |(_, row)| said(interval(row).map(range))),
+    fact("range", Text, People, ("min to max", "", Unit::None, PEOPLE), |(_, row)| said(row.delay.map(|delay| range((delay.min_s, delay.max_s))))),
+    fact("level_from_limits", Real, Json, UNSAID, |(_, row)| json!(row.from_limits)),
+    fact("level_to_limits", Real, Json, UNSAID, |(_, row)| json!(row.to_limits)),
+];
+
+fn level(level: f64, (low, high): (f64, f64)) -> Value {
+    let range = format!("{} to {}", number(low), number(high));
+    if low < high { range.into() } else { number(level).into() }
+}
+
+fn interval(row: &DelayRow) -> Option<(f64, f64)> {
+    row.delay?.interval_s
+}
+
+fn range((low, high): (f64, f64)) -> String {
+    format!("{low:.3} to {high:.3} s")
+}
+
+/// What a cell says; a column of which nothing is known stays.
+fn said(text: Option<String>) -> Value {
+    text.unwrap_or_else(|| "-".to_owned()).into()
+}
+
+/// A row in JSON.
+pub(super) fn level_json(joint: &str, row: &DelayRow) -> Value {
+    facts::object(LEVEL, Json, &(joint, row)).into()
+}
+
+/// The rows of all joints, as a table with types.
+pub(crate) fn level_table(joints: &[EstimatedJoint<'_>]) -> DataTable {
+    let tables: Vec<_> = joints.iter().map(|joint| (joint, joint.delay_table().rows)).collect();
+    let rows = tables
+        .iter()
+        .flat_map(|(joint, rows)| rows.iter().map(|row| (joint.joint.name.as_str(), row)));
+    facts::data_table(LEVEL, Table, rows)
+}
+
+/// Rows as a person reads them at `place`.
+pub(crate) fn levels_text<'a>(place: Place, rows: impl Iterator<Item = Level<'a>>) -> TextTable {
+    facts::text_table(LEVEL, place, None, rows)
+}
+
+/// The tables of all joints for the terminal.
+pub(crate) fn delay_levels_text(joints: &[EstimatedJoint<'_>]) -> String {
+    joints.iter().map(joint_text).collect()
+}
+
+fn joint_text(joint: &EstimatedJoint<'_>) -> String {
+    let found = joint.delay_table();
+    let name = &joint.joint.name;
+    if found.rows.is_empty() {
+        let why = JointSummary::of(*joint).without_steps;
+        return format!("\n{name}: no delay table: {why}\n");
+    }
+    let neutral = neutral_sentence(&found, joint.joint.input_unit.as_deref());
+    let rows = found.rows.iter().map(|row| (name.as_str(), row));
+    let table = levels_text(Terminal, rows);
+    let kinds = joint.kind_sentences(&found.kinds);
+    format!("\n{name}: {neutral}\n{table}\n{}\n", kinds.join("\n"))
+}
+
+impl EstimatedJoint<'_> {
+    /// The typical delays of `kinds` in words; where no delay of the joint can be believed, why.
+    pub(crate) fn kind_sentences(&self, kinds: &[KindDelay]) -> Vec<String> {
+        let is_none_accepted = kinds.iter().all(|kind| kind.accepted == 0);
+        match self.obstacle().filter(|_| is_none_accepted && !kinds.is_empty()) {
+            Some(obstacle) => vec![format!("no typical delay: {}", obstacle.short)],
+            None => kinds.iter().map(kind_sentence).collect(),
+        }
+    }
+}
+
+/// Where the input is neutral.
+pub(super) fn neutral_sentence(found: &DelayTable, unit: Option<&str>) -> String {
+    match found.neutral {
+        Some(neutral) => format!(
+            "the input is neutral at {}{}; a start leaves it, a stop leads to it",
+            number(neutral.level),
+            unit_suffix(unit)
+        ),
+        None => "the record does not show at which level the input is neutral: every step is a \
+                 change"
+            .to_owned(),
+    }
+}
+
+/// The typical delay of a kind, or what prevents it and what helps.
+fn kind_sentence(kind: &KindDelay) -> String {
+    let KindDelay { transition, steps, accepted, .. } = kind;
+    let Some(typical) = kind.typical else {
+        let why = kind.rejected.map_or_else(String::new, |(condition, count)| {
+            format!("; {count} rejected: {}; {}", condition.meaning(), help(condition, *transition))
+        });
+        return format!(
+            "{transition}: no typical delay, {accepted} of {steps} steps accepted{why}"
+        );
+    };
+    let TypicalDelay { median_s, interval_s, .. } = typical;
+    let interval = interval_s.map_or_else(String::new, |(low, high)| {
+        format!(" (median, 95 %: {low:.3} to {high:.3} s)")
+    });
+    format!("{transition}: delay {median_s:.3} s{interval}, {accepted} of {steps} steps accepted")
+}
+
+/// Which option or experiment would give more delays.
+fn help(condition: Condition, transition: Transition) -> String {
+    let text = match condition {
+        // A joint that rests when its input is taken back has run into its stop.
+        Condition::AtRest if transition == Transition::Stop => "step back before the stop",
+        Condition::FirstOrLast => {
+            return format!("{} judges them", remedy_text(Remedy::KeepFirstLast, "`"));
+        }
+        Condition::OutputLimit => "start away from the limit, or widen `--output-limits`",
+        Condition::SlopeChange => "lower `--min-slope-change`, or make larger steps",
+        Condition::ShortHold => "lower `--min-delay`, or hold longer",
+        Condition::Sse => "raise `--max-sse`",
+        Condition::TooShort => "hold longer, or choose a smaller `--beta`",
+        _ => "make larger steps from rest, where the joint is free to move",
+    };
+    text.to_owned()
+}
 
 /// Writes `trial,sample,time_s,<joint>.tau…` as CSV: a row per sample, delays in samples,
 /// empty where none was recorded.
@@ -16,49 +172,25 @@ use crate::numerics::to_nanoseconds;
 /// # Errors
 /// When `out` cannot be written.
 pub fn write_delays(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Result<()> {
-    let mut writer = csv::Writer::from_writer(out);
-    let header = ["trial", "sample", "time_s"].into_iter().map(str::to_owned);
-    writer.write_record(header.chain(joints.iter().map(tau)))?;
-    for Row { trial, sample, time_s, delays } in rows(joints) {
-        writer.write_field(trial)?;
-        writer.write_field(sample.to_string())?;
-        writer.write_field(time_s.to_string())?;
-        for delay in delays {
-            writer.write_field(delay.map_or_else(String::new, |tau| tau.to_string()))?;
-        }
-        writer.write_record(None::<&[u8]>)?;
-    }
-    Ok(writer.flush()?)
+    write_csv(&tau_columns(joints), tau_rows(joints), out)
 }
 
 /// The delays that [`write_delays`] writes, as a table with types.
 pub(crate) fn delay_table(joints: &[EstimatedJoint<'_>]) -> DataTable {
-    let taus: Vec<_> = joints.iter().map(tau).collect();
-    let first = [("trial", Kind::Text), ("sample", Kind::Whole), ("time_s", Kind::Real)];
-    let taus = taus.iter().map(|tau| (tau.as_str(), Kind::Samples));
-    let mut table = DataTable::new(first.into_iter().chain(taus));
-    for Row { trial, sample, time_s, delays } in rows(joints) {
-        let first = [Value::from(trial), sample.into(), time_s.into()];
-        table.push_cells(first.into_iter().chain(delays.into_iter().map(Value::from)));
-    }
+    let columns = tau_columns(joints);
+    let mut table = DataTable::new(columns.iter().map(|(name, kind)| (name.as_str(), *kind)));
+    tau_rows(joints).for_each(|row| table.push_cells(row));
     table
 }
 
-/// The column of a joint.
-fn tau(joint: &EstimatedJoint<'_>) -> String {
-    format!("{}.tau", joint.joint.name)
+fn tau_columns(joints: &[EstimatedJoint<'_>]) -> Vec<(String, Kind)> {
+    let first = [("trial", Text), ("sample", Whole), ("time_s", Kind::Plain)];
+    let taus = joints.iter().map(|joint| (format!("{}.tau", joint.joint.name), Kind::Plain));
+    first.map(|(name, kind)| (name.to_owned(), kind)).into_iter().chain(taus).collect()
 }
 
-/// A sample of a trial, and the delay of each joint there.
-struct Row<'a> {
-    trial: &'a str,
-    sample: usize,
-    time_s: f64,
-    delays: Vec<Option<f64>>,
-}
-
-/// All samples of all trials.
-fn rows<'a>(joints: &[EstimatedJoint<'a>]) -> impl Iterator<Item = Row<'a>> {
+/// All samples of all trials, each with the delay of each joint there.
+fn tau_rows(joints: &[EstimatedJoint<'_>]) -> impl Iterator<Item = Vec<Value>> {
     runs(joints).into_iter().flat_map(|run| {
         let columns: Vec<_> = joints.iter().map(|joint| find(*joint, run)).collect();
         let trials = columns.iter().flatten().map(|(trial, _)| *trial);
@@ -66,11 +198,11 @@ fn rows<'a>(joints: &[EstimatedJoint<'a>]) -> impl Iterator<Item = Row<'a>> {
         let samples = longest.into_iter().flat_map(|longest| {
             (1..=longest.len()).map(|sample| (sample, longest.logged_time_s(sample)))
         });
-        samples.map(move |(sample, time_s)| Row {
-            trial: run.label(),
-            sample,
-            time_s: to_nanoseconds(time_s),
-            delays: columns.iter().map(|found| found.and_then(|(_, of)| of.at(sample))).collect(),
+        samples.map(move |(sample, time_s)| {
+            let first = [run.label().into(), sample.into(), to_nanoseconds(time_s).into()];
+            let delay =
+                |found: &Option<(&Trial, &DelayProfile)>| found.and_then(|(_, of)| of.at(sample));
+            first.into_iter().chain(columns.iter().map(|found| delay(found).into())).collect()
         })
     })
 }
@@ -94,4 +226,46 @@ fn find<'a>(joint: EstimatedJoint<'a>, run: &Trial) -> Option<(&'a Trial, &'a De
     let mut same = trials.filter(|(trial, _)| key(trial) == key(run));
     let (trial, result) = same.next()?;
     Some((trial, &result.as_ref().ok()?.profile))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_that_ended_at_the_stop_have_a_remedy_of_their_own() {
+        let kind = |transition| KindDelay {
+            transition,
+            steps: 5,
+            accepted: 0,
+            typical: None,
+            rejected: Some((Condition::AtRest, 5)),
+        };
+        assert!(kind_sentence(&kind(Transition::Stop)).ends_with("; step back before the stop"));
+        assert!(!kind_sentence(&kind(Transition::Start)).contains("stop"));
+    }
+
+    #[test]
+    fn a_typical_delay_needs_steps_that_were_accepted() {
+        let delay =
+            TypicalDelay { median_s: 0.21, interval_s: Some((0.2, 0.24)), min_s: 0.19, max_s: 0.3 };
+        let kind = |typical, accepted| KindDelay {
+            transition: Transition::Stop,
+            steps: 26,
+            accepted,
+            typical,
+            rejected: Some((Condition::FirstOrLast, 25)),
+        };
+        assert_eq!(
+            kind_sentence(&kind(Some(delay), 20)),
+            "stop: delay 0.210 s (median, 95 %: 0.200 to 0.240 s), 20 of 26 steps accepted"
+        );
+        assert_eq!(
+            kind_sentence(&kind(None, 1)).split("; `").next(),
+            Some(
+                "stop: no typical delay, 1 of 26 steps accepted; 25 rejected: first or last step \
+                 of the trial"
+            )
+        );
+    }
 }

@@ -1,8 +1,8 @@
 //! The next experiment in words.
 
+use super::TextTable;
 use super::design::{Basis, DesignedJoint, Discrimination, Held, holds, kept_until_s, order};
-use super::separation::levels_text;
-use super::text_table::TextTable;
+use super::ranking::levels_text;
 use crate::design::{
     Expected, FreeRunError, OpenThreshold, Prediction, Rehearsal, Schedule, transitions,
 };

@@ -3,8 +3,7 @@
 
 use serde_json::{Map, Value};
 
-use super::text_table::TextTable;
-use super::{DataTable, Kind};
+use super::{DataTable, Kind, TextTable};
 use crate::experiment::{Joint, Trial};
 use crate::wording::{bracketed, number, samples_text, with_unit};
 
@@ -172,66 +171,57 @@ pub(super) fn samples(value: Option<f64>) -> Value {
 
 /// The columns of a file with the facts up to `part`.
 pub(super) fn columns<V>(
-    facts: &'static [Fact<V>],
+    facts: &[Fact<V>],
     part: Part,
 ) -> impl Iterator<Item = (&'static str, Kind)> {
     facts.iter().filter(move |fact| fact.part <= part).map(|fact| (fact.id, fact.kind))
 }
 
-/// The facts up to `part` by their ids.
-pub(super) fn object<V: Copy>(
-    facts: &[Fact<V>],
-    part: Part,
-    value: impl Fn(V) -> Value,
-) -> Map<String, Value> {
+/// What is said of a result `R`.
+type Facts<R> = [Fact<fn(&R) -> Value>];
+
+/// The facts of `row` up to `part` by their ids.
+pub(super) fn object<R>(facts: &Facts<R>, part: Part, row: &R) -> Map<String, Value> {
     let own = facts.iter().filter(|fact| fact.part <= part);
-    own.map(|fact| (fact.id.to_owned(), value(fact.value))).collect()
+    own.map(|fact| (fact.id.to_owned(), (fact.value)(row))).collect()
 }
 
 /// A table for people at `place`; the units are those of `joint`. A column in which no row has a value
 /// is there only where the paper defines it.
-pub(super) fn text_table<V: Copy, R>(
-    facts: &[Fact<V>],
+pub(super) fn text_table<R>(
+    facts: &Facts<R>,
     place: Place,
     joint: Option<&Joint>,
-    (rows, value): (impl Iterator<Item = R>, impl Fn(V, &R) -> Value),
+    rows: impl Iterator<Item = R>,
 ) -> TextTable {
-    let mut shown: Vec<&Fact<V>> = facts.iter().filter(|fact| fact.is_shown(place)).collect();
-    let values = |row: R| shown.iter().map(|fact| value(fact.value, &row)).collect();
-    let mut rows: Vec<Vec<Value>> = rows.map(values).collect();
-    let is_there = |(column, fact): (usize, &&Fact<V>)| {
-        fact.part == Part::Paper || rows.iter().any(|row| !row[column].is_null())
-    };
-    let kept: Vec<bool> = shown.iter().enumerate().map(is_there).collect();
-    for row in &mut rows {
-        keep(row, &kept);
-    }
-    keep(&mut shown, &kept);
-    let numbers = shown.iter().enumerate().filter(|(_, fact)| fact.kind != Kind::Text);
-    let row = |row: &Vec<Value>| shown.iter().zip(row).map(|(fact, of)| fact.cell(of)).collect();
+    let rows: Vec<R> = rows.collect();
+    let shown = facts.iter().filter(|fact| fact.is_shown(place)).map(|fact| {
+        let cells: Vec<Value> = rows.iter().map(fact.value).collect();
+        (fact, cells)
+    });
+    let shown = shown.filter(|(fact, cells)| {
+        fact.part == Part::Paper || cells.iter().any(|cell| !cell.is_null())
+    });
+    let shown: Vec<_> = shown.collect();
+    let row = |row: usize| shown.iter().map(|(fact, cells)| fact.cell(&cells[row])).collect();
+    let numbers = shown.iter().enumerate().filter(|(_, (fact, _))| fact.kind != Kind::Text);
     TextTable {
         numbers: numbers.map(|(column, _)| column).collect(),
-        header: shown.iter().map(|fact| fact.heading(joint)).collect(),
-        rows: rows.iter().map(row).collect(),
+        header: shown.iter().map(|(fact, _)| fact.heading(joint)).collect(),
+        rows: (0..rows.len()).map(row).collect(),
     }
-}
-
-/// Leaves out what is not `kept`.
-fn keep<T>(all: &mut Vec<T>, kept: &[bool]) {
-    let mut kept = kept.iter();
-    all.retain(|_| kept.next() == Some(&true));
 }
 
 /// The facts up to `part` of each of `rows`, as a table for programs.
-pub(super) fn data_table<V: Copy, R>(
-    facts: &'static [Fact<V>],
+pub(super) fn data_table<R>(
+    facts: &Facts<R>,
     part: Part,
-    (rows, value): (impl Iterator<Item = R>, impl Fn(V, &R) -> Value),
+    rows: impl Iterator<Item = R>,
 ) -> DataTable {
     let mut table = DataTable::new(columns(facts, part));
     for row in rows {
         let own = facts.iter().filter(|fact| fact.part <= part);
-        table.push_cells(own.map(|fact| value(fact.value, &row)));
+        table.push_cells(own.map(|fact| (fact.value)(&row)));
     }
     table
 }

@@ -1,13 +1,14 @@
-//! What `explain` and `improve` have found of a joint.
+//! What `explain` and `improve` have found of a joint, what effects explain of its error, and what remains.
 
-use super::ComparedJoint;
-use super::consequence::Consequence;
-use super::ladder::Before;
-use crate::diagnosis::sensor_noise;
+use super::{Before, ComparedJoint};
+use crate::diagnosis::{ErrorFigures, sensor_noise};
 use crate::effect::Spec;
-use crate::explain::{Attribution, Candidate, Judgement, Verdict};
+use crate::experiment::Joint;
+use crate::explain::{Attribution, Candidate, Contribution, Judgement, Verdict};
+use crate::fit::AssessedModel;
 use crate::model::Component;
 use crate::study::JointEstimate;
+use crate::wording::{measure, percent, rounded};
 
 /// A joint, the verdict on its model, and the race behind it.
 #[derive(Clone, Copy, Debug)]
@@ -80,4 +81,134 @@ pub(super) fn judgement_text(judgement: &Judgement) -> String {
 /// What became of a candidate.
 pub(super) fn decision_id(judgement: &Judgement) -> &'static str {
     if judgement.is_added() { "added" } else { "refused" }
+}
+
+/// A model with effects that were added, or are proposed, beside the model without them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Consequence<'a> {
+    pub(crate) joint: &'a Joint,
+    /// The model with the effects.
+    pub(crate) fit: &'a AssessedModel,
+    /// What each of them carries, where that was found out.
+    pub(crate) attribution: Option<&'a Attribution>,
+    /// The root-mean-square error without them, where there are any.
+    pub(crate) before: Option<f64>,
+    /// The error with them.
+    pub(crate) after: Option<ErrorFigures>,
+    /// The noise of the sensor, from the record alone.
+    pub(crate) sensor_noise: Option<f64>,
+}
+
+/// Times the noise that say nothing to a person any more.
+pub(crate) const MANY_TIMES_NOISE: f64 = 20.0;
+
+/// `5.6 times the noise`; far above it, or where it is not known, `a fit of 88 %`.
+pub(super) fn in_proportion(error: ErrorFigures, noise: Option<f64>) -> String {
+    match noise.map(|noise| error.rmse / noise) {
+        Some(times) if times < MANY_TIMES_NOISE => format!("{} times the noise", rounded(times)),
+        _ => match error.fit_percent / 100.0 {
+            fit if fit > 0.0 => format!("a fit of {} to the output", percent(fit)),
+            // A model that runs away, or an output that hardly moves.
+            _ => "no better than the mean of the output".to_owned(),
+        },
+    }
+}
+
+/// `3.2 times as large`, where that many times can be said.
+pub(super) fn times_as_large(times: f64) -> String {
+    /// Beyond it the error that is compared with is all but 0.
+    const SAID: f64 = 1e6;
+    if times < SAID {
+        format!("{} times as large", rounded(times))
+    } else {
+        "far larger".to_owned()
+    }
+}
+
+impl Consequence<'_> {
+    /// The part of the error that the effects explain, 0 to 1: `1 − (e − s)/(e₀ − s)` with the
+    /// root-mean-square errors `e₀` before and `e` with them, and the noise `s`.
+    pub(crate) fn explained(&self) -> Option<f64> {
+        let (before, after) = (self.before?, self.after?.rmse);
+        let noise = self.sensor_noise.unwrap_or(0.0).min(after);
+        let share = 1.0 - (after - noise) / (before - noise).max(f64::MIN_POSITIVE);
+        Some(share.clamp(0.0, 1.0))
+    }
+
+    /// How many times the noise the remaining error is.
+    pub(crate) fn times_noise(&self) -> Option<f64> {
+        Some(self.after?.rmse / self.sensor_noise?)
+    }
+
+    /// `0.28 deg remain, 5.6 times the noise`; far above it, with the fit:
+    /// `0.88 deg remain, a fit of 88 %`.
+    pub(super) fn remains(&self) -> String {
+        let Some(after) = self.after else { return "an error remains".to_owned() };
+        let error = measure(after.rmse, self.joint.output_unit.as_deref());
+        format!("{error} remain, {}", in_proportion(after, self.sensor_noise))
+    }
+
+    /// What each of several effects carries, and what could stand in its place.
+    pub(super) fn sentences(&self) -> Vec<String> {
+        let others = self.alternatives().chain(self.hidden());
+        let sentences = self.shares().into_iter().chain(others);
+        sentences.chain(self.doubtful()).chain(self.refinements()).collect()
+    }
+
+    /// What each of several effects carries.
+    fn shares(&self) -> Option<String> {
+        let found = &self.attribution.filter(|known| known.found.len() > 1)?.found;
+        let share = |one: &Contribution| format!("{} {}", one.effect, percent(one.error_share));
+        let shares: Vec<String> = found.iter().map(share).collect();
+        let sum: f64 = found.iter().map(|one| one.error_share).sum();
+        let overlap = if sum > 1.0 { " (shares overlap and do not add up)" } else { "" };
+        Some(format!(
+            "Share of each effect (what the error grows by without it, the rest fitted again, in parts \
+             of the initial misfit): {}{overlap}.",
+            shares.join(", ")
+        ))
+    }
+
+    /// What could stand in the place of each effect.
+    fn alternatives(&self) -> impl Iterator<Item = String> {
+        let found = self.attribution.iter().flat_map(|known| &known.found);
+        found.filter(|one| !one.alternatives.is_empty()).map(|one| {
+            let others = one.alternatives.join(" or ");
+            format!("In place of {}, {others} fits about as well.", one.effect)
+        })
+    }
+
+    /// What would not show beside each effect.
+    fn hidden(&self) -> impl Iterator<Item = String> {
+        let found = self.attribution.iter().flat_map(|known| &known.found);
+        found.filter(|one| !one.hidden.is_empty()).map(|one| {
+            let (effect, hidden) = (one.effect, one.hidden.join(" or "));
+            format!(
+                "This record would not show {hidden} beside {effect}, whose parameters do the same."
+            )
+        })
+    }
+
+    /// What may stand for something else.
+    fn doubtful(&self) -> Option<String> {
+        let doubtful = &self.attribution?.doubtful;
+        let share = |one: &Contribution| format!("{} {}", one.effect, percent(one.error_share));
+        let shares: Vec<String> = doubtful.iter().map(share).collect();
+        (!shares.is_empty()).then(|| {
+            format!(
+                "Doubtful: {}. Each explains less than half of the squared error beyond the noise that \
+                 is there without it, and may stand for an effect outside the catalogue.",
+                shares.join(", ")
+            )
+        })
+    }
+
+    /// What is of no consequence.
+    pub(super) fn refinements(&self) -> Option<String> {
+        let refinements = self.attribution.map_or(&[][..], |known| &known.refinements);
+        (!refinements.is_empty()).then(|| {
+            let names = refinements.join(", ");
+            format!("Statistically significant, but of no practical consequence: {names}.")
+        })
+    }
 }

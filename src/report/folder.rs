@@ -1,9 +1,10 @@
-//! The results of many logs, each by itself, in one table.
+//! The results of many logs, each by itself, in one table, and schema `tauscope/folder/1`.
 
 use serde_json::{Map, Value, json};
 
-use super::text_table::TextTable;
-use super::{DataTable, DelayRange, Kind, decision_columns};
+use super::decisions::decision_columns;
+use super::json::document;
+use super::{DataTable, DelayRange, Kind, TextTable};
 use crate::wording::{counted, percent};
 
 /// The result of one log: the document that the command prints as JSON.
@@ -105,17 +106,19 @@ impl FolderReport {
     }
 
     /// What each joint has in all its logs.
-    pub(super) fn across(&self) -> Vec<Across> {
-        let mut across: Vec<Across> = Vec::new();
+    fn across(&self) -> Vec<Value> {
+        let name = |joint: &Value| {
+            joint.get("joint").and_then(Value::as_str).unwrap_or_default().to_owned()
+        };
+        let mut joints: Vec<(String, Vec<&Value>)> = Vec::new();
         for (_, joint) in self.joints() {
-            let name = joint.get("joint").and_then(Value::as_str).unwrap_or_default();
-            let index = across.iter().position(|known| known.joint == name).unwrap_or_else(|| {
-                across.push(Across { joint: name.to_owned(), ..Across::default() });
-                across.len() - 1
-            });
-            across[index].add(joint);
+            let name = name(joint);
+            match joints.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, logs)) => logs.push(joint),
+                None => joints.push((name, vec![joint])),
+            }
         }
-        across
+        joints.iter().map(|(name, logs)| across(name, logs)).collect()
     }
 
     /// A table of the joints across all logs.
@@ -131,7 +134,7 @@ impl FolderReport {
                 "max",
                 "effects (logs)",
             ];
-            TextTable::of(header, &[1, 2, 3, 4, 5], across.iter().map(Across::improved_cells))
+            TextTable::of(header, &[1, 2, 3, 4, 5], across.iter().map(improved_cells))
         } else {
             let header = [
                 "joint",
@@ -143,7 +146,7 @@ impl FolderReport {
                 "max",
                 "medians of the logs",
             ];
-            TextTable::of(header, &[1, 2, 3, 4, 5, 6], across.iter().map(Across::estimated_cells))
+            TextTable::of(header, &[1, 2, 3, 4, 5, 6], across.iter().map(estimated_cells))
         };
         format!("{table}\n{}, each by itself\n", counted(self.logs.len(), "log"))
     }
@@ -187,63 +190,92 @@ fn texts(document: &Value, name: &str) -> Vec<String> {
     array(document, name).filter_map(Value::as_str).map(str::to_owned).collect()
 }
 
-/// One joint in all its logs.
-#[derive(Debug, Default)]
-pub(super) struct Across {
-    pub(super) joint: String,
-    pub(super) logs: usize,
-    pub(super) steps: u64,
-    pub(super) accepted: u64,
-    pub(super) delays_s: Vec<f64>,
-    pub(super) medians_s: Vec<f64>,
-    pub(super) adequate: usize,
-    pub(super) rmse: Vec<f64>,
-    /// Effects, and in how many logs they are in the model.
-    pub(super) effects: Vec<(String, usize)>,
-}
-
-impl Across {
-    fn add(&mut self, joint: &Value) {
-        let count = |name: &str| joint.get(name).and_then(Value::as_u64).unwrap_or_default();
-        self.logs += 1;
-        self.steps += count("steps");
-        self.accepted += count("accepted");
-        let accepted =
-            array(joint, "decisions").filter(|row| row.get("verdict") == Some(&json!("accepted")));
-        self.delays_s.extend(accepted.filter_map(|row| row.get("delta_s")?.as_f64()));
-        self.medians_s.extend(joint.pointer("/delay_s/median").and_then(Value::as_f64));
-        self.adequate += usize::from(joint.get("verdict") == Some(&json!("adequate")));
-        self.rmse.extend(joint.pointer("/error/validation/rmse").and_then(Value::as_f64));
-        for effect in texts(joint, "effects") {
-            match self.effects.iter_mut().find(|(known, _)| *known == effect) {
-                Some((_, logs)) => *logs += 1,
-                None => self.effects.push((effect, 1)),
-            }
-        }
+/// One joint in all its `logs`.
+fn across(name: &str, logs: &[&Value]) -> Value {
+    let sum = |count: &str| logs.iter().filter_map(|joint| joint.get(count)?.as_u64()).sum::<u64>();
+    let numbers = |place: &str| {
+        let numbers = logs.iter().filter_map(|joint| joint.pointer(place)?.as_f64());
+        DelayRange::of(numbers.collect())
+    };
+    let decisions = logs.iter().flat_map(|joint| array(joint, "decisions"));
+    let accepted = decisions.filter(|row| row.get("verdict") == Some(&json!("accepted")));
+    let delays_s = accepted.filter_map(|row| row.get("delta_s")?.as_f64());
+    let is_adequate = |joint: &&&Value| joint.get("verdict") == Some(&json!("adequate"));
+    let mut effects: Map<String, Value> = Map::new();
+    for effect in logs.iter().flat_map(|joint| texts(joint, "effects")) {
+        let known = effects.get(&effect).and_then(Value::as_u64).unwrap_or_default();
+        effects.insert(effect, (known + 1).into());
     }
-
-    fn estimated_cells(&self) -> [String; 8] {
-        let share = percent(self.accepted as f64 / self.steps.max(1) as f64);
-        let accepted = format!("{} ({share})", self.accepted);
-        let medians = DelayRange::of(self.medians_s.clone())
-            .map_or_else(String::new, |range| format!("{:.3} … {:.3} s", range.min, range.max));
-        let [min, median, max] = range_cells(&self.delays_s, " s");
-        let (logs, steps) = (self.logs.to_string(), self.steps.to_string());
-        [self.joint.clone(), logs, steps, accepted, min, median, max, medians]
-    }
-
-    fn improved_cells(&self) -> [String; 7] {
-        let effects: Vec<_> =
-            self.effects.iter().map(|(name, logs)| format!("{name} ({logs})")).collect();
-        let [min, median, max] = range_cells(&self.rmse, "");
-        let [logs, adequate] = [self.logs, self.adequate].map(|count| count.to_string());
-        [self.joint.clone(), logs, adequate, min, median, max, effects.join(", ")]
-    }
-}
-
-fn range_cells(values: &[f64], unit: &str) -> [String; 3] {
-    let range = DelayRange::of(values.to_vec());
-    range.map_or_else(Default::default, |range| {
-        [range.min, range.median, range.max].map(|value| format!("{value:.3}{unit}"))
+    json!({
+        "joint": name,
+        "logs": logs.len(),
+        "steps": sum("steps"),
+        "accepted": sum("accepted"),
+        "delay_s": DelayRange::of(delays_s.collect()),
+        "median_delay_s_of_logs": numbers("/delay_s/median"),
+        "adequate": logs.iter().filter(is_adequate).count(),
+        "validation_rmse": numbers("/error/validation/rmse"),
+        "effects": effects,
     })
+}
+
+/// What stands at a `place` of a joint, a number to the thousandth with its `unit`; nothing where there is
+/// none.
+fn cell(joint: &Value, place: &str, unit: &str) -> String {
+    match joint.pointer(place) {
+        Some(Value::String(text)) => text.clone(),
+        Some(Value::Number(number)) if number.is_u64() => number.to_string(),
+        known => known
+            .and_then(Value::as_f64)
+            .map_or_else(String::new, |number| format!("{number:.3}{unit}")),
+    }
+}
+
+fn estimated_cells(joint: &Value) -> [String; 8] {
+    let at = |place: &str| cell(joint, place, " s");
+    let count = |place: &str| joint.get(place).and_then(Value::as_f64).unwrap_or_default();
+    let share = percent(count("accepted") / count("steps").max(1.0));
+    let of_logs = cell(joint, "/median_delay_s_of_logs/min", "");
+    let medians = match at("/median_delay_s_of_logs/max") {
+        none if none.is_empty() => none,
+        max => format!("{of_logs} … {max}"),
+    };
+    [
+        at("/joint"),
+        at("/logs"),
+        at("/steps"),
+        format!("{} ({share})", at("/accepted")),
+        at("/delay_s/min"),
+        at("/delay_s/median"),
+        at("/delay_s/max"),
+        medians,
+    ]
+}
+
+fn improved_cells(joint: &Value) -> [String; 7] {
+    let effects = joint.get("effects").and_then(Value::as_object).into_iter().flatten();
+    let effects: Vec<_> = effects.map(|(name, logs)| format!("{name} ({logs})")).collect();
+    let [joint, logs, adequate, min, median, max] = [
+        "/joint",
+        "/logs",
+        "/adequate",
+        "/validation_rmse/min",
+        "/validation_rmse/median",
+        "/validation_rmse/max",
+    ]
+    .map(|place| cell(joint, place, ""));
+    [joint, logs, adequate, min, median, max, effects.join(", ")]
+}
+
+/// The document of `--results … --format json` and `merge`; `failures` are messages on logs that
+/// failed.
+pub(crate) fn folder_json(report: &FolderReport, failures: &[String]) -> Value {
+    let facts = json!({
+        "command": report.command,
+        "logs": report.logs.iter().map(|log| log.file.as_str()).collect::<Vec<_>>(),
+        "joints": report.across(),
+        "summary": report.summary_rows().map(Value::Object).collect::<Value>(),
+        "failures": failures,
+    });
+    document("tauscope/folder/1", facts)
 }

@@ -1,18 +1,21 @@
-//! `improve` as text: the ladder of errors.
+//! `improve` as text and JSON: the ladder of errors.
 
-use super::compare::{ComparedJoint, errors_note, horizons};
-use super::conclusion::{Conclusion, Passage, Topic};
-use super::finding::Finding;
-use super::ladder::{
-    Before, History, LadderRow, change_in_words, errors_of, figures, ladder_table,
-};
-use super::parameters::model_text;
+use serde_json::{Value, json};
+
+use super::compare::{error_json, errors_note, horizons, model_json};
+use super::conclusion::Conclusion;
+use super::conclusion::{Passage, Topic};
+use super::explain::finding_json;
+use super::json::{document, joined};
+use super::ladder::{LadderRow, change_in_words, errors_of, figures, ladder_table};
+use super::parameters::{model_text, parameters_json};
+use super::{Before, ComparedJoint, Finding, History};
 use crate::diagnosis::Comparison;
 use crate::effect::by_id;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
 use crate::model::Component;
-use crate::wording::measure;
+use crate::wording::{effect_ids, measure};
 
 /// A joint whose model was improved.
 #[derive(Clone, Copy, Debug)]
@@ -93,7 +96,7 @@ impl<'a> ImprovedJoint<'a> {
         if self.reached_limit {
             let why =
                 "As many effects were added as `--max-effects` allows; a larger number goes on.";
-            conclusion.passages.extend(Passage::of(Topic::Next, [why.to_owned()]));
+            conclusion.passages.extend(Passage::of(Topic::NEXT, [why.to_owned()]));
         }
         conclusion
     }
@@ -112,7 +115,7 @@ impl<'a> ImprovedJoint<'a> {
         let made_useless = |why: String| Conclusion {
             headline: format!("{}: {why}", compared.joint.name),
             passages: Vec::from_iter(Passage::of(
-                Topic::Next,
+                Topic::NEXT,
                 ["The effects that came after it do its part, so that it no longer earns its \
                   parameters."
                     .to_owned()],
@@ -152,7 +155,7 @@ impl<'a> ImprovedJoint<'a> {
              before all others are compared, and go at the end where they explain nothing."
         };
         let mut passages = finding.fails();
-        passages.extend(Passage::of(Topic::Next, [format!("{id} ({summary}). {why}")]));
+        passages.extend(Passage::of(Topic::NEXT, [format!("{id} ({summary}). {why}")]));
         Conclusion {
             headline: format!("{}: {id} is added next: {now} → {then}", joint.name),
             passages,
@@ -198,4 +201,40 @@ pub(crate) fn improve_text(joints: &[ImprovedJoint<'_>]) -> String {
     let horizon = horizons(joints.iter().map(|joint| joint.finding.compared));
     let joints: Vec<String> = joints.iter().map(ImprovedJoint::text).collect();
     format!("{}\n{}\n", joints.join("\n\n"), errors_note(&horizon))
+}
+
+/// The document of `improve --format json`.
+pub(crate) fn improve_json(joints: &[ImprovedJoint<'_>], failures: &[String]) -> Value {
+    let joint = |improved: &ImprovedJoint<'_>| {
+        let compared = &improved.finding.compared;
+        let revisions = improved.numbered();
+        let revisions = revisions.map(|(number, one)| revision(compared.joint, number, one));
+        let course = json!({
+            "revisions": revisions.collect::<Value>(),
+            "interrupted": improved.interrupted,
+        });
+        let found = finding_json(&improved.finding, &improved.conclusion());
+        joined([model_json(compared), course, found])
+    };
+    let joints: Value = joints.iter().map(joint).collect();
+    document("tauscope/improve/1", json!({ "joints": joints, "failures": failures }))
+}
+
+fn revision(joint: &Joint, number: u32, revision: &Revision) -> Value {
+    let (added, removed) = match revision.change {
+        Change::Start => (None, None),
+        Change::Added(id) => (Some(id), None),
+        Change::Removed(id) => (None, Some(id)),
+        Change::Replaced { old, new } => (Some(new), Some(old)),
+    };
+    let fit = &revision.comparison.fit;
+    json!({
+        "revision": number,
+        "added": added,
+        "removed": removed,
+        "effects": effect_ids(&fit.model),
+        "parameters": parameters_json(joint, fit),
+        "error": error_json(&revision.comparison),
+        "lack_of_fit": revision.comparison.lack_of_fit,
+    })
 }

@@ -1,6 +1,6 @@
 //! The ladder of errors: a row per revision of a model, those of its history and those made now.
 
-use super::text_table::TextTable;
+use super::TextTable;
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
 use crate::explain::{Change, Revision as Step};
@@ -67,6 +67,10 @@ pub(crate) fn errors_of(comparison: &Comparison) -> RevisionErrors {
     }
 }
 
+/// What the [`figures`] are called.
+const FIGURES: [&str; 7] =
+    ["training", "validation", "raw", "free run", "fit", "noise", "lack of fit"];
+
 /// Error on both parts, raw and of a free run, fit in percent, noise of the sensor and lack of fit,
 /// for a table.
 pub(super) fn figures(joint: &Joint, errors: &RevisionErrors) -> [String; 7] {
@@ -89,13 +93,9 @@ pub(super) fn errors_table(
     first: [&str; 2],
     rows: impl Iterator<Item = ([String; 2], [String; 7])>,
 ) -> TextTable {
-    let [name, what] = first;
-    let header =
-        [name, what, "training", "validation", "raw", "free run", "fit", "noise", "lack of fit"];
-    let rows = rows.map(|([name, what], [training, validation, raw, free, fit, noise, lack])| {
-        [name, what, training, validation, raw, free, fit, noise, lack]
-    });
-    TextTable::of(header, &[2, 3, 4, 5, 6, 7], rows)
+    let header = first.into_iter().chain(FIGURES).map(str::to_owned).collect();
+    let rows = rows.map(|(first, figures)| first.into_iter().chain(figures).collect());
+    TextTable { header, rows: rows.collect(), numbers: (2..8).collect() }
 }
 
 /// What a revision changed: `+ dead_band`; of the first, the effects that it has.

@@ -1,7 +1,6 @@
 //! The delay of a model beside the delays that were measured.
 
-use super::EstimatedJoint;
-use super::summary::{DelayRange, JointSummary};
+use super::{DelayRange, EstimatedJoint, JointSummary};
 use crate::delay::{Bounds, DeadTime, Finding, InputStep};
 use crate::effect::{InputChange, Stage};
 use crate::fit::{AssessedModel, Parameter, Status};
@@ -121,39 +120,39 @@ fn over_the_record(of: &AssessedModel, found: &DeadTime) -> Option<String> {
         return None;
     };
     let delay = of.parameters.iter().find(|parameter| parameter.name == "delay")?;
-    let (value, leeway) = (delay.value, BY_CHANCE * delay.std_error.unwrap_or(0.0));
-    let is_held = delay.status == Status::Fixed;
     let interval = format!("the dead time of the record ({low_s:.3} to {high_s:.3} s)");
-    let how = if is_held { "held" } else { "fitted" };
-    let why_longer =
-        "with it the fit makes up for a motion that the model has too fast, or too early";
-    if value + leeway < low_s {
-        Some(format!("The {how} delay, {value:.3} s, is below {interval}: {}.", why_shorter(of)))
-    } else if value - leeway > high_s {
-        Some(format!("The {how} delay, {value:.3} s, is above {interval}: {why_longer}."))
-    } else {
-        None
-    }
+    beyond((of, delay), (low_s, high_s), (&interval, "too fast, or too early"))
 }
 
 /// Of a constant delay that was held, or lies outside all those that were measured.
 fn outside(of: &AssessedModel, delay: &Parameter, measured: DelayRange) -> Option<String> {
-    let (value, leeway) = (delay.value, BY_CHANCE * delay.std_error.unwrap_or(0.0));
     let DelayRange { min, median, max } = measured;
     let range = format!("{min:.3} to {max:.3} s, median {median:.3} s");
-    match delay.status {
-        Status::Fixed => Some(format!(
-            "The delay of the model is held at {value:.3} s; those measured at the steps are \
-             {range}."
-        )),
-        _ if value + leeway < min => Some(format!(
-            "The fitted delay, {value:.3} s, is below all that were measured ({range}): {}.",
-            why_shorter(of)
-        )),
-        _ if value - leeway > max => Some(format!(
-            "The fitted delay, {value:.3} s, is above all that were measured ({range}): with it \
-             the fit makes up for a motion that the model has too fast after a step."
-        )),
-        _ => None,
+    if delay.status == Status::Fixed {
+        let value = delay.value;
+        return Some(format!(
+            "The delay of the model is held at {value:.3} s; those measured at the steps are {range}."
+        ));
     }
+    let all = format!("all that were measured ({range})");
+    beyond((of, delay), (min, max), (&all, "too fast after a step"))
+}
+
+/// Of a delay that is below `low` or above `high` by more than chance, what it lies beyond and what
+/// motion of the model it makes up for.
+fn beyond(
+    (of, delay): (&AssessedModel, &Parameter),
+    (low, high): (f64, f64),
+    (what, too_fast): (&str, &str),
+) -> Option<String> {
+    let (value, leeway) = (delay.value, BY_CHANCE * delay.std_error.unwrap_or(0.0));
+    let (side, why) = if value + leeway < low {
+        ("below", why_shorter(of))
+    } else if value - leeway > high {
+        ("above", format!("with it the fit makes up for a motion that the model has {too_fast}"))
+    } else {
+        return None;
+    };
+    let how = if delay.status == Status::Fixed { "held" } else { "fitted" };
+    Some(format!("The {how} delay, {value:.3} s, is {side} {what}: {why}."))
 }

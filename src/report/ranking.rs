@@ -1,16 +1,15 @@
-//! What is said of the effects that were tried: to add something to all outputs, add it to [`RANKING`].
+//! What is said of the effects that were tried, and the experiment that would distinguish two of them: to
+//! add something to all outputs, add it to [`RANKING`].
 
 use serde_json::{Map, Value, json};
 
-use super::Kind;
 use super::facts::{self, Fact, Part, Place, UNSAID, Unit, fact};
 use super::finding::{decision_id, judgement_text, specs};
 use super::parameters::parameters_json;
-use super::separation::experiment;
-use super::text_table::TextTable;
+use super::{Kind, TextTable};
 use crate::experiment::Joint;
-use crate::explain::{Candidate, Judgement, Separation, Start};
-use crate::wording::{p_text, with_unit};
+use crate::explain::{Candidate, Judgement, Pattern, Proposal, Separation, Start};
+use crate::wording::{listed, measure, p_text, rounded, unit_suffix, with_unit};
 use Kind::{Real, Text};
 use Part::{Json, People};
 
@@ -53,12 +52,12 @@ fn same(candidate: &Candidate) -> String {
 /// A row per candidate, best first.
 pub(super) fn ranking_table(joint: &Joint, ranking: &[Candidate]) -> TextTable {
     let rows = ranking.iter().map(|candidate| (joint, candidate));
-    facts::text_table(RANKING, Place::Terminal, None, (rows, |value, row| value(row)))
+    facts::text_table(RANKING, Place::Terminal, None, rows)
 }
 
 /// A candidate in JSON.
 pub(super) fn candidate_json(joint: &Joint, candidate: &Candidate) -> Value {
-    facts::object(RANKING, Json, |value| value(&(joint, candidate))).into()
+    facts::object(RANKING, Json, &(joint, candidate)).into()
 }
 
 /// Whether an effect is worth adding, and why.
@@ -96,4 +95,146 @@ fn separation_json(joint: &Joint, separation: &Separation) -> Value {
         "duration_s": proposal.duration_s(),
         "starts": proposal.starts.iter().map(start).collect::<Value>(),
     })
+}
+
+/// What would distinguish an effect from another, or that nothing would.
+pub(super) fn separation_sentence(joint: &Joint, separation: &Separation) -> String {
+    let other = separation.other;
+    if separation.is_clear {
+        return format!("To distinguish it from {other}: {}.", experiment(joint, separation));
+    }
+    let why = if separation.times_noise < UNSEEN {
+        "with these numbers the two do the same"
+    } else {
+        "what the two differ by is noise, or another gain"
+    };
+    format!(
+        "No input that was tried at the angles of this record distinguishes it from {other}: {why}."
+    )
+}
+
+/// A difference of a smaller part of the noise is none.
+const UNSEEN: f64 = 0.1;
+
+/// `hold 0.3, 0.4, 0.5 V for 2 s each, …: after 6 s the two differ by 14 times the noise`.
+pub(super) fn experiment(joint: &Joint, separation: &Separation) -> String {
+    let Separation { proposal, times_noise, after_s, .. } = separation;
+    let (after, times) = (rounded(*after_s), rounded(*times_noise));
+    let beyond = if is_beyond(joint, proposal) { " (more than in this record)" } else { "" };
+    format!(
+        "{}{beyond}, {}: after {after} s the two differ by {times} times the noise",
+        input(joint, proposal),
+        starts(joint, &proposal.starts)
+    )
+}
+
+fn input(joint: &Joint, proposal: &Proposal) -> String {
+    let Proposal { pattern, levels, hold_s, .. } = proposal;
+    let (levels, hold) = (levels_text(levels, joint.input_unit.as_deref()), rounded(*hold_s));
+    let order = match pattern {
+        Pattern::Ladder => "rising and then falling, in one direction and then in the other",
+        Pattern::Pulses => "each in both directions, with a rest as long behind it",
+        Pattern::Reversals => "each in both directions, without a rest",
+    };
+    format!("hold {levels} for {hold} s each, {order}")
+}
+
+fn starts(joint: &Joint, starts: &[Start]) -> String {
+    let all = |value: fn(&Start) -> f64| {
+        let mut values: Vec<f64> = starts.iter().map(value).collect();
+        values.dedup();
+        values
+    };
+    let angles = all(|start| start.angle);
+    let angles: Vec<String> = match angles.split_last() {
+        Some((last, before)) => {
+            let last = measure(*last, joint.output_unit.as_deref());
+            before.iter().map(|angle| rounded(*angle)).chain([last]).collect()
+        }
+        None => Vec::new(),
+    };
+    let from = format!("from rest at {}", listed(&angles, "and"));
+    match (all(|start| start.worked_s).as_slice(), all(|start| start.others).as_slice()) {
+        ([cold, warm], _) => {
+            let (cold, warm) = (rounded(*cold), rounded(*warm));
+            format!("{from}, once after {cold} s and once after {warm} s of work")
+        }
+        (_, [_, _]) => {
+            format!("{from}, once while the other joints rest and once while they move")
+        }
+        _ => from,
+    }
+}
+
+/// `0.3, 0.4 and 0.5 V`.
+pub(super) fn levels_text(levels: &[f64], unit: Option<&str>) -> String {
+    let levels: Vec<String> = levels.iter().map(|level| rounded(*level)).collect();
+    listed(&levels, "and") + &unit_suffix(unit)
+}
+
+/// Whether a level is larger than all of the record.
+fn is_beyond(joint: &Joint, proposal: &Proposal) -> bool {
+    /// What rounding may add.
+    const ROUNDED: f64 = 1.05;
+    let inputs = joint.trials.iter().flat_map(crate::experiment::Trial::input);
+    let largest = inputs.fold(0.0, |largest: f64, input| largest.max(input.abs()));
+    proposal.levels.iter().any(|level| *level > ROUNDED * largest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::Trial;
+    use crate::units::SamplePeriod;
+
+    fn joint() -> Joint {
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("1", 0.0, period, vec![-2.0, 1.0], vec![0.0, 0.0]).unwrap();
+        Joint {
+            name: "boom".to_owned(),
+            input_unit: Some("V".to_owned()),
+            output_unit: Some("deg".to_owned()),
+            covariates: Vec::new(),
+            trials: [trial].into(),
+        }
+    }
+
+    fn separation(levels: &[f64]) -> Separation {
+        let start = Start { angle: 12.0, others: 0.0, worked_s: 60.0 };
+        let proposal = Proposal {
+            pattern: Pattern::Ladder,
+            levels: levels.to_vec(),
+            hold_s: 2.0,
+            starts: vec![start, Start { angle: 40.0, ..start }],
+        };
+        Separation { other: "stiction", proposal, times_noise: 14.02, after_s: 6.0, is_clear: true }
+    }
+
+    #[test]
+    fn an_experiment_is_said_with_its_numbers() {
+        let expected = "To distinguish it from stiction: hold 0.3, 0.4 and 0.5 V for 2 s each, rising \
+                        and then falling, in one direction and then in the other, from rest at \
+                        12 and 40 deg: after 6 s the two differ by 14 times the noise.";
+        assert_eq!(separation_sentence(&joint(), &separation(&[0.3, 0.4, 0.5])), expected);
+        let beyond = separation_sentence(&joint(), &separation(&[2.5, 3.0]));
+        assert!(beyond.contains("in the other (more than in this record), from"), "{beyond}");
+    }
+
+    #[test]
+    fn that_no_input_distinguishes_them_is_said_too() {
+        let separation = Separation { is_clear: false, ..separation(&[1.0]) };
+        let said = separation_sentence(&joint(), &separation);
+        assert!(said.starts_with("No input that was tried") && said.ends_with("another gain."));
+        let same = Separation { times_noise: 0.0, ..separation.clone() };
+        assert!(separation_sentence(&joint(), &same).ends_with("the two do the same."));
+    }
+
+    #[test]
+    fn runs_differ_in_what_they_are_to_show() {
+        let start = Start { angle: 12.0, others: 0.0, worked_s: 60.0 };
+        let cold = starts(&joint(), &[Start { worked_s: 0.0, ..start }, start]);
+        assert_eq!(cold, "from rest at 12 deg, once after 0 s and once after 60 s of work");
+        let moving = starts(&joint(), &[start, Start { others: 1.0, ..start }]);
+        assert!(moving.ends_with("once while the other joints rest and once while they move"));
+    }
 }

@@ -3,14 +3,11 @@
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::decisions::{DECISION, DecisionFact};
-use super::doubt::by_doubt;
-use super::facts::{self, Part::Paper, Place, UNSAID, Unit, fact};
-use super::text_table::TextTable;
-use super::{
-    DataTable, Doubted, EstimatedJoint,
-    Kind::{Real, Text, Whole},
-};
+use super::Kind::{Real, Text, Whole};
+use super::decisions::{DECISION, DecisionFact, by_doubt};
+use super::facts::Part::Paper;
+use super::facts::{self, Place, UNSAID, Unit, fact};
+use super::{DataTable, Doubted, EstimatedJoint, TextTable};
 use crate::delay::Verdict;
 use crate::numerics::to_decimals;
 use crate::wording::counted;
@@ -48,21 +45,21 @@ impl Doubted<'_> {
 
 /// A row of the sheet by the names of its columns.
 pub(super) fn review_json(found: &Doubted<'_>) -> Map<String, Value> {
-    facts::object(REVIEW, Paper, |value| value(found))
+    facts::object(REVIEW, Paper, found)
 }
 
 /// The decisions that persons spoke of.
 pub(super) fn reviewed_table(joint: EstimatedJoint<'_>) -> TextTable {
     let rows = by_doubt(&[joint]).into_iter();
     let rows = rows.filter(|found| found.decision.reviewer_verdict.is_some());
-    facts::text_table(REVIEW, Place::Report, None, (rows, |value, found| value(found)))
+    facts::text_table(REVIEW, Place::Report, None, rows)
 }
 
 /// A review sheet of all decisions: a table for `--review` to fill in, the most doubtful
 /// decision first. Verdicts that were given already are in it.
 pub(crate) fn review_sheet(joints: &[EstimatedJoint<'_>]) -> DataTable {
     let rows = by_doubt(joints).into_iter();
-    facts::data_table(REVIEW, Paper, (rows, |value, found| value(found)))
+    facts::data_table(REVIEW, Paper, rows)
 }
 
 /// How many steps of a joint persons spoke of.

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::{EstimatedJoint, ReviewCount};
+use super::EstimatedJoint;
+use super::review::ReviewCount;
 use crate::delay::{Condition, KindDelay, Verdict};
 use crate::experiment::longest_gap_s;
 use crate::numerics::to_nanoseconds;

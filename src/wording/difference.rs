@@ -2,8 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::counted;
-use super::number::to_place;
+use super::{counted, to_place};
 use crate::delay::Verdict;
 use crate::study::{JointDifferences, StepPair, StepResult, Verdicts};
 

@@ -1,10 +1,9 @@
-//! The doubt of a decision in words.
+//! The doubt of a decision in words, and what would have accepted its step.
 
-use super::number::to_place;
-use super::percent;
 #[cfg(feature = "rrd")]
 use super::{counted, number};
-use crate::delay::{Condition, Doubt, Flag, Verdict};
+use super::{percent, to_place};
+use crate::delay::{Condition, Doubt, Flag, Remedy, Verdict};
 
 /// Margin of a condition that failed up to which it failed by little.
 const LITTLE: f64 = 0.3;
@@ -122,4 +121,20 @@ would turn it; it is no probability.";
 /// The doubt in percent.
 pub(crate) fn doubt_percent(doubt: &Doubt) -> String {
     format!("{:.0} %", 100.0 * doubt.value())
+}
+
+/// The option with its value between two `quote`s, or that no setting helps.
+pub(crate) fn remedy_text(remedy: Remedy, quote: &str) -> String {
+    let option = match remedy {
+        Remedy::KeepFirstLast => "--keep-first-last".to_owned(),
+        Remedy::OutputLimits(low, high) => format!("--output-limits {low},{high}"),
+        Remedy::MinSlopeChange(change) => format!("--min-slope-change {change}"),
+        Remedy::MinDelay(samples) => format!("--min-delay {samples}"),
+        Remedy::MaxSse(sse) => format!("--max-sse {sse}"),
+        Remedy::Beta(samples) => format!("--beta {samples}"),
+        Remedy::Confidence(Some(confidence)) => format!("--confidence {confidence}"),
+        Remedy::Confidence(None) => "--confidence none".to_owned(),
+        Remedy::None(condition) => return format!("no setting: {}", condition.meaning()),
+    };
+    format!("{quote}{option}{quote}")
 }

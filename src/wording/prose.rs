@@ -1,4 +1,6 @@
-//! Sentences: lists, counts, and lines of a terminal.
+//! Sentences: lists, counts, lines of a terminal, and what a text may hold that is shown.
+
+use crate::experiment::is_control;
 
 /// Columns of a line of prose.
 const WIDTH: usize = 92;
@@ -64,6 +66,12 @@ pub(crate) fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
+/// `text` of several lines with `U+FFFD` in the place of what moves a cursor or turns the direction of
+/// writing.
+pub(crate) fn legible(text: &str) -> String {
+    text.replace(|letter| is_control(letter) && !matches!(letter, '\n' | '\t'), "\u{fffd}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -88,5 +96,18 @@ mod tests {
         assert_eq!(lines.split_whitespace().count(), 40);
         let shares = wrapped(&"12 % ".repeat(40));
         assert!(shares.lines().all(|line| line.starts_with("12 %") && line.ends_with('%')));
+    }
+}
+
+#[cfg(test)]
+mod legible_tests {
+    use super::*;
+
+    #[test]
+    fn lines_stay_and_what_moves_a_cursor_goes() {
+        assert_eq!(
+            legible("a\n\tb\u{1b}[2J\u{202e}c\u{2028}\0"),
+            "a\n\tb\u{fffd}[2J\u{fffd}c\u{fffd}\u{fffd}"
+        );
     }
 }

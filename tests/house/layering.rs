@@ -287,7 +287,7 @@ const PLACES: [(&str, &[&str]); 22] = [
     ("arrow_schema", &["src/experiment/format/parquet.rs"]),
     ("calamine", &["src/experiment/format/xlsx.rs"]),
     ("hdf5_pure", &["src/experiment/format/mat"]),
-    ("minijinja", &["src/export"]),
+    ("minijinja", &["src/export", "src/report/lookup.rs"]),
     ("zip", &["src/export/fmu.rs", "src/experiment/format/xlsx.rs"]),
     ("mcap", &["src/experiment/format"]),
     ("re_cdr", &["src/experiment/format/mcap"]),

@@ -3,8 +3,10 @@
 use crate::batch::Threads;
 use crate::experiment::Joint;
 use crate::explain::{Addition, Change, Improvement, Revision as Step, Verdict};
-use crate::report::add_text;
-use crate::report::{AddedJoint, ImprovedJoint, add_json};
+use crate::report::ImprovedJoint;
+use crate::report::add::AddedJoint;
+use crate::report::add::add_json;
+use crate::report::add::add_text;
 use crate::study::{Mode, add_to_joints};
 use clap::Args as ClapArgs;
 

@@ -12,7 +12,7 @@ use crate::cli::exit::Completion;
 use crate::cli::output::{OutputKind, Outputs, write_bytes};
 use crate::cli::typed::mapping_options;
 use crate::experiment::{ColumnMap, Experiment, KEPT, MemoryLimit, ReadOptions, Survey};
-use crate::report::{columns_json, columns_table};
+use crate::report::columns::{columns_json, columns_table};
 
 /// Say what each column of a log is taken for, and why
 ///

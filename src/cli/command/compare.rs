@@ -7,7 +7,9 @@ use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, listed};
 use crate::fit::FitError;
 use crate::model::{JointModel, ModelFile};
-use crate::report::{ComparedJoint, compare_json, compare_text};
+use crate::report::ComparedJoint;
+use crate::report::compare::compare_json;
+use crate::report::compare::compare_text;
 use crate::study::{Mode, compare_joints};
 use clap::Args as ClapArgs;
 

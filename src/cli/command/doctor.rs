@@ -16,7 +16,7 @@ use crate::cli::args::Format;
 use crate::cli::console::{self, Tone};
 use crate::cli::exit::Completion;
 use crate::cli::viewer::{NEWEST, PORT, VERSION, installed, is_listening, on_path};
-use crate::report::document;
+use crate::report::json::document;
 
 /// Say what is missing to make recordings and to look at them
 ///

@@ -1,7 +1,7 @@
 //! `tauscope effects`
 
 use crate::effect::{REGISTRY, find};
-use crate::report::{effects_json, listing, sheet};
+use crate::report::effects::{effects_json, listing, sheet};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::Format;

@@ -6,7 +6,9 @@ use crate::batch::Threads;
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Other};
 use crate::explain::Explanation;
-use crate::report::{ComparedJoint, ImprovedJoint, explain_json, explain_text};
+use crate::report::explain::explain_json;
+use crate::report::explain::explain_text;
+use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::study::{Mode, OfJoints, compare_joints, explain_joints};
 use clap::Args as ClapArgs;
 

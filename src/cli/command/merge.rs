@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::report::FolderReport;
+use crate::report::folder::FolderReport;
 use clap::Args as ClapArgs;
 
 use crate::cli::args::Format;

@@ -11,7 +11,7 @@ mod work;
 
 use std::path::{Path, PathBuf};
 
-use crate::report::{FolderReport, folder_json};
+use crate::report::folder::{FolderReport, folder_json};
 use anyhow::{Context as _, bail};
 use clap::Args;
 

@@ -11,5 +11,5 @@ pub(crate) use limit::meet_file_limits;
 pub(crate) use outputs::{OutputKind, Outputs};
 #[cfg(not(feature = "rrd"))]
 pub(crate) use recording::left_out;
-pub(crate) use recording::{Contents, Detail, Recorded, SweepContents};
+pub(crate) use recording::{Detail, Recorded, of_delays};
 pub(crate) use table::{CsvText, FileKind, write_csv, write_parquet, write_table};

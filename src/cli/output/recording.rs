@@ -7,19 +7,15 @@ use std::path::PathBuf;
 #[cfg(feature = "rrd")]
 use anyhow::bail;
 
-use crate::delay::Settings;
-use crate::delay::sweep::Grid;
-use crate::experiment::{Experiment, ReadOptions, Source};
-use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep};
-
-use crate::study::OtherResult;
-
 #[cfg(feature = "rrd")]
 use super::file::filled_file;
 use super::file::{OutputFile, is_file, write_file};
 #[cfg(feature = "rrd")]
 use super::outputs::{OutputKind, Outputs};
 use crate::cli::console::{Bar, Verbosity};
+use crate::delay::Settings;
+use crate::experiment::Experiment;
+use crate::report::{self, EstimatedJoint, Recording, SweepRecording};
 
 /// How many candidates are recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -32,60 +28,49 @@ pub(crate) enum Detail {
     Lean,
 }
 
-/// What a recording holds.
-#[derive(Clone, Copy)]
-#[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
-pub(crate) struct Contents<'a> {
-    /// The name of the command.
-    pub(crate) command: &'a str,
-    pub(crate) joints: &'a [EstimatedJoint<'a>],
-    pub(crate) settings: &'a Settings,
-    /// What is shown beside it.
-    pub(crate) also: &'a [OtherResult],
-    pub(crate) sources: &'a [Source],
-    pub(crate) reading: &'a ReadOptions,
-    pub(crate) models: &'a [ComparedJoint<'a>],
-    pub(crate) revisions: &'a [ImprovedJoint<'a>],
-    pub(crate) detail: Detail,
+/// Joints up to which all are in one recording: with more of them a viewer takes long to open
+/// it, and gigabytes.
+const TOGETHER: usize = 20;
+
+/// Joints of a file, where there are more.
+#[cfg(feature = "rrd")]
+const OF_A_FILE: usize = 8;
+
+/// Candidates up to which all are recorded. Each takes 230 bytes: above it they are more than half
+/// of a recording of 14 joints of 100,000 samples.
+const CANDIDATES: usize = 200_000;
+
+impl Detail {
+    /// How many are recorded of `joints`.
+    pub(crate) fn of(self, joints: &[EstimatedJoint<'_>]) -> report::Detail {
+        let trials = joints.iter().flat_map(|joint| joint.estimate.estimated());
+        let decisions = trials.flat_map(|trial| &trial.decisions);
+        let all = || decisions.map(|decision| decision.candidates.len()).sum::<usize>();
+        match self {
+            Self::Full => report::Detail::Full,
+            Self::Auto if all() <= CANDIDATES => report::Detail::Full,
+            Self::Auto | Self::Lean => report::Detail::Lean,
+        }
+    }
 }
 
-impl<'a> Contents<'a> {
-    /// The delays of `joints`, alone.
-    pub(crate) fn of_delays(
-        command: &'a str,
-        experiment: &'a Experiment,
-        (joints, settings): (&'a [EstimatedJoint<'a>], &'a Settings),
-    ) -> Self {
-        let Experiment { sources, options: reading, .. } = experiment;
-        let (also, models, revisions, detail) = (&[], &[], &[], Detail::Auto);
-        Self { command, joints, settings, also, sources, reading, models, revisions, detail }
-    }
+/// The delays of `joints`, alone.
+pub(crate) fn of_delays<'a>(
+    command: &'a str,
+    experiment: &'a Experiment,
+    (joints, settings): (&'a [EstimatedJoint<'a>], &'a Settings),
+) -> Recording<'a> {
+    let Experiment { sources, options: reading, .. } = experiment;
+    let (also, models, revisions, detail) = (&[], &[], &[], Detail::Auto.of(joints));
+    Recording { command, joints, settings, sources, reading, detail, models, also, revisions }
+}
 
-    /// Joints up to which all are in one recording: with more of them a viewer takes long to open
-    /// it, and gigabytes.
-    const TOGETHER: usize = 20;
-
-    /// Joints of a file, where there are more.
-    #[cfg(feature = "rrd")]
-    const OF_A_FILE: usize = 8;
-
-    /// Candidates up to which all are recorded. Each takes 230 bytes: above it they are more than half
-    /// of a recording of 14 joints of 100,000 samples.
-    #[cfg(feature = "rrd")]
-    const CANDIDATES: usize = 200_000;
-
-    #[cfg(feature = "rrd")]
-    fn candidates(&self) -> usize {
-        let trials = self.joints.iter().flat_map(|joint| joint.estimate.estimated());
-        let decisions = trials.flat_map(|trial| &trial.decisions);
-        decisions.map(|decision| decision.candidates.len()).sum()
-    }
-
+impl Recording<'_> {
     /// Writes the recording to `path` and says how to look at it. Of many joints it writes a
     /// recording of some of them each to `path_1`, `path_2` and so on, and to `path` one that leads
     /// to them.
     pub(crate) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
-        if self.joints.len() <= Self::TOGETHER || !is_file(path) {
+        if self.joints.len() <= TOGETHER || !is_file(path) {
             return Recorded::Decisions(self).record(path, verbosity);
         }
         let parts = {
@@ -106,7 +91,7 @@ impl<'a> Contents<'a> {
     fn write_parts(&self, path: &Path) -> anyhow::Result<Vec<String>> {
         use crate::recording::{IndexRecording, Volume, write_index};
 
-        let groups: Vec<_> = self.joints.chunks(Self::OF_A_FILE).collect();
+        let groups: Vec<_> = self.joints.chunks(OF_A_FILE).collect();
         let paths: Vec<PathBuf> = (1..=groups.len()).map(|number| part(path, number)).collect();
         let inputs: Vec<PathBuf> = self.sources.iter().map(|source| source.path.clone()).collect();
         let outputs: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
@@ -119,7 +104,7 @@ impl<'a> Contents<'a> {
             let ends = first.into_iter().chain(last).map(|joint| joint.joint.name.as_str());
             let ends: Vec<&str> = ends.collect();
             let command = format!("{} of {}", self.command, ends.join(" … "));
-            let some = Contents { joints, command: &command, ..*self };
+            let some = Recording { joints, command: &command, ..*self };
             files.push(filled_file(path, |file| Recorded::Decisions(&some).write(file))?);
         }
         let volume = |(path, joints): (&PathBuf, &&[EstimatedJoint<'_>])| Volume {
@@ -128,7 +113,7 @@ impl<'a> Contents<'a> {
         };
         let volumes: Vec<Volume> = paths.iter().zip(&groups).map(volume).collect();
         let index = |file: &mut OutputFile| {
-            self.with_recording(|all| write_index(&IndexRecording { all, volumes: &volumes }, file))
+            write_index(&IndexRecording { all: self, volumes: &volumes }, file)
         };
         files.push(filled_file(path, |file| Ok(index(file)?))?);
         files.into_iter().try_for_each(OutputFile::commit)?;
@@ -139,34 +124,6 @@ impl<'a> Contents<'a> {
     #[expect(clippy::unused_self, reason = "with recordings it is used")]
     fn write_parts(&self, _: &Path) -> anyhow::Result<Vec<String>> {
         Err(left_out())
-    }
-
-    /// Does `work` with the recording.
-    #[cfg(feature = "rrd")]
-    pub(crate) fn with_recording<T>(
-        &self,
-        work: impl FnOnce(&crate::recording::Recording<'_>) -> T,
-    ) -> T {
-        use crate::recording::{self, Recording};
-
-        let Self { command, joints, settings, sources, reading, .. } = *self;
-        let Self { models, revisions, detail, also, .. } = *self;
-        let detail = match detail {
-            Detail::Auto if self.candidates() > Self::CANDIDATES => recording::Detail::Lean,
-            Detail::Auto | Detail::Full => recording::Detail::Full,
-            Detail::Lean => recording::Detail::Lean,
-        };
-        work(&Recording {
-            command,
-            joints,
-            settings,
-            sources,
-            reading,
-            detail,
-            models,
-            also,
-            revisions,
-        })
     }
 }
 
@@ -193,31 +150,12 @@ fn part(path: &Path, number: usize) -> PathBuf {
     path.with_file_name(format!("{stem}_{number}{}", ending.unwrap_or_default()))
 }
 
-/// Delays over all settings, to be recorded.
-#[derive(Clone, Copy)]
-#[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
-pub(crate) struct SweepContents<'a> {
-    pub(crate) joints: &'a [ReportedSweep<'a>],
-    pub(crate) grid: &'a Grid,
-    pub(crate) tolerance: f64,
-    pub(crate) sources: &'a [Source],
-    pub(crate) reading: &'a ReadOptions,
-}
-
-#[cfg(feature = "rrd")]
-impl SweepContents<'_> {
-    pub(crate) fn recording(&self) -> crate::recording::SweepRecording<'_> {
-        let Self { joints, grid, tolerance, sources, reading } = *self;
-        crate::recording::SweepRecording { joints, grid, tolerance, sources, reading }
-    }
-}
-
 /// What goes into one file.
 #[derive(Clone, Copy)]
 #[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
 pub(crate) enum Recorded<'a> {
-    Decisions(&'a Contents<'a>),
-    Sweep(&'a SweepContents<'a>),
+    Decisions(&'a Recording<'a>),
+    Sweep(&'a SweepRecording<'a>),
 }
 
 impl Recorded<'_> {
@@ -237,10 +175,8 @@ impl Recorded<'_> {
         use crate::recording::{write_recording, write_sweep};
 
         match self {
-            Self::Decisions(contents) => {
-                contents.with_recording(|recording| write_recording(recording, file))?;
-            }
-            Self::Sweep(contents) => write_sweep(&contents.recording(), file)?,
+            Self::Decisions(recording) => write_recording(recording, file)?,
+            Self::Sweep(recording) => write_sweep(recording, file)?,
         }
         Ok(())
     }

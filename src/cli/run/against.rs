@@ -8,7 +8,9 @@ use super::estimates::Estimates;
 use super::session::Session;
 use crate::cli::args::{AgainstArgs, DataArgs, read};
 use crate::delay::{Automatic, Settings};
-use crate::report::{Against, EstimatedJoint, settings_in_short};
+use crate::report::EstimatedJoint;
+use crate::report::difference::Against;
+use crate::report::settings::settings_in_short;
 use crate::study::OtherResult;
 
 /// What is said of a file that is none of these.

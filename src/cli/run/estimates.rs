@@ -6,7 +6,8 @@ use crate::delay::{
 };
 use crate::experiment::{Experiment, Joint, Trial, coarse_resolution, saturations, spike_count};
 use crate::numerics::{median, quantile, to_digits};
-use crate::report::{EstimatedJoint, input_note};
+use crate::report::EstimatedJoint;
+use crate::report::answer::input_note;
 use crate::study::JointEstimate;
 use crate::wording::{number, percent};
 

@@ -10,9 +10,10 @@ use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Source};
 use crate::explain::{Change, Explanation, Improvement, Revision as Step, Verdict};
 use crate::model::{Fitted, FittedParameter, JointModel, LogHash, ModelFile, Revision};
-use crate::report::{
-    Before, ComparedJoint, Finding, History, ImprovedJoint, errors_of, gone, revision_line,
-};
+use crate::report::add::gone;
+use crate::report::improve::revision_line;
+use crate::report::ladder::errors_of;
+use crate::report::{Before, ComparedJoint, Finding, History, ImprovedJoint};
 use crate::wording::parameter_units;
 
 /// Which revisions there are so far, reported as they come.

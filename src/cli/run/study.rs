@@ -9,12 +9,12 @@ use super::session::Session;
 use crate::cli::args::{DataArgs, ResultArgs};
 use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
-use crate::cli::output::{Contents, OutputKind, Outputs};
+use crate::cli::output::{OutputKind, Outputs, of_delays};
 use crate::delay::{Automatic, Settings};
 use crate::experiment::{Experiment, Joint, Other};
 use crate::explain::Revision as Step;
 use crate::fit::Mended;
-use crate::report::{ComparedJoint, ImprovedJoint};
+use crate::report::{ComparedJoint, ImprovedJoint, Recording};
 use crate::study::{OtherResult, others_of};
 
 /// Logs and the delays in them.
@@ -119,19 +119,19 @@ impl<'a> Study<'a> {
             return Ok(());
         }
         let stream = &self.session.stream;
-        self.with_contents(models, revisions, |contents| stream.send(contents, joint))
+        self.with_recording(models, revisions, |recording| stream.send(recording, joint))
     }
 
-    fn with_contents(
+    fn with_recording(
         &self,
         models: &[ComparedJoint<'_>],
         revisions: &[ImprovedJoint<'_>],
-        take: impl FnOnce(&Contents<'_>) -> anyhow::Result<()>,
+        take: impl FnOnce(&Recording<'_>) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
         let Session { experiment, command, beside, .. } = &self.session;
         let joints = estimated(experiment, &self.estimates);
-        let contents = Contents::of_delays(command, experiment, (&joints, &self.settings));
-        take(&Contents { also: beside, models, revisions, ..contents })
+        let recording = of_delays(command, experiment, (&joints, &self.settings));
+        take(&Recording { also: beside, models, revisions, ..recording })
     }
 
     /// Records `models` and `revisions` beside the decisions, and shows them.
@@ -142,8 +142,8 @@ impl<'a> Study<'a> {
         revisions: &[ImprovedJoint<'_>],
     ) -> anyhow::Result<()> {
         if let Some(path) = path {
-            let record = |contents: &Contents<'_>| contents.record(path, self.verbosity());
-            self.with_contents(models, revisions, record)?;
+            let record = |recording: &Recording<'_>| recording.record(path, self.verbosity());
+            self.with_recording(models, revisions, record)?;
         }
         self.show(models, revisions, None)
     }

@@ -11,7 +11,7 @@ use crate::cli::console::{self, Interrupt};
 use crate::cli::exit::Completion;
 #[cfg(feature = "rrd")]
 use crate::cli::failure::said;
-use crate::cli::output::{Contents, SweepContents};
+use crate::report::{Recording, SweepRecording};
 
 /// Which viewer shows the recording while it is made.
 #[derive(Args, Debug)]
@@ -108,22 +108,25 @@ impl Stream {
         self.0.is_some()
     }
 
-    /// Shows what is new of `contents`; of one joint alone where it is named.
-    pub(crate) fn send(&self, contents: &Contents<'_>, joint: Option<&str>) -> anyhow::Result<()> {
+    /// Shows what is new of `recording`; of one joint alone where it is named.
+    pub(crate) fn send(
+        &self,
+        recording: &Recording<'_>,
+        joint: Option<&str>,
+    ) -> anyhow::Result<()> {
         let Some(live) = &self.0 else { return Ok(()) };
         let mut live = live.lock().map_err(|_poisoned| bug())?;
-        contents.with_recording(|recording| match joint {
+        Ok(match joint {
             Some(joint) => live.send_joint(recording, joint),
             None => live.send(recording),
-        })?;
-        Ok(())
+        }?)
     }
 
     /// Shows delays over all settings.
-    pub(crate) fn send_sweep(&self, contents: &SweepContents<'_>) -> anyhow::Result<()> {
+    pub(crate) fn send_sweep(&self, sweep: &SweepRecording<'_>) -> anyhow::Result<()> {
         let Some(live) = &self.0 else { return Ok(()) };
         let mut live = live.lock().map_err(|_poisoned| bug())?;
-        Ok(live.send_sweep(&contents.recording())?)
+        Ok(live.send_sweep(sweep)?)
     }
 
     /// Waits until the viewer has everything; where viewers are served, until Ctrl-C.
@@ -168,11 +171,11 @@ impl Stream {
         false
     }
 
-    pub(crate) fn send(&self, _: &Contents<'_>, _: Option<&str>) -> anyhow::Result<()> {
+    pub(crate) fn send(&self, _: &Recording<'_>, _: Option<&str>) -> anyhow::Result<()> {
         Ok(())
     }
 
-    pub(crate) fn send_sweep(&self, _: &SweepContents<'_>) -> anyhow::Result<()> {
+    pub(crate) fn send_sweep(&self, _: &SweepRecording<'_>) -> anyhow::Result<()> {
         Ok(())
     }
 

@@ -9,7 +9,7 @@ use super::quantity::Quantity;
 use crate::delay::{AgainstState, StepState};
 use crate::experiment::{Joint, Trial};
 use crate::figure::course::Bin;
-use crate::figure::delay_against::Way;
+use crate::figure::delay_levels::Way;
 use crate::figure::{Axis, Mark, Panel, Role, Shape};
 use crate::recording::canvas::{Plot, SHEET, Span, Text};
 use crate::recording::chunk::Chunks;
@@ -19,7 +19,7 @@ use crate::recording::layout::JointLayout;
 use crate::recording::palette::{self, role};
 use crate::recording::panels::{self, Placed};
 use crate::recording::paths;
-use crate::report::variable_text;
+use crate::report::against::variable_text;
 use crate::units::SamplePeriod;
 use crate::wording::number;
 

@@ -2,7 +2,7 @@
 
 use crate::delay::{StepState, Verdict};
 use crate::experiment::Joint;
-use crate::figure::delay_against::Way;
+use crate::figure::delay_levels::Way;
 use crate::recording::chunk::{Chunks, Index, fine_columns, integers, numbers};
 use crate::recording::error::RecordError;
 use crate::recording::layout::{JointLayout, SegmentLayout, TrialLayout};

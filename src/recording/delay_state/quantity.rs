@@ -5,8 +5,8 @@ use std::f64::consts::GOLDEN_RATIO;
 use crate::delay::{AgainstState, Correlation, Direction, StepState};
 use crate::figure::Span;
 use crate::figure::course::{Bin, course};
-use crate::figure::delay_against::Way;
-use crate::report::variable_text;
+use crate::figure::delay_levels::Way;
+use crate::report::against::variable_text;
 use crate::wording::{number, p_cell};
 
 /// Something the delay may depend on.

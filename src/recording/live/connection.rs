@@ -16,8 +16,7 @@ use crate::recording::content::{
     Content, Growth, Part, application, first_messages, for_each_chunk, view_messages,
 };
 use crate::recording::error::RecordError;
-use crate::recording::recorded::Recording;
-use crate::recording::sweep::SweepRecording;
+use crate::report::{Recording, SweepRecording};
 
 /// Longest time that a viewer may take to answer.
 const ANSWER: Duration = Duration::from_secs(5);

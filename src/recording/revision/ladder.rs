@@ -6,7 +6,8 @@ use crate::figure::Role;
 use crate::figure::ladder::{Rung, panel};
 use crate::recording::palette::{self, role};
 use crate::recording::panels::Placed;
-use crate::report::{ImprovedJoint, change_in_words};
+use crate::report::ImprovedJoint;
+use crate::report::ladder::change_in_words;
 
 /// Left end of the bars of the ladder and of the ranking, and their right end: on the left are names.
 const LADDER: (f32, f32) = (370.0, 640.0);

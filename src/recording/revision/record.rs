@@ -9,7 +9,9 @@ use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
 use crate::recording::panels::{self, Placed};
 use crate::recording::shaded::{Spans, named, validation};
-use crate::report::{ComparedJoint, Marked, Timeline, simulated_panels, worst_panel};
+use crate::report::ComparedJoint;
+use crate::report::page::simulated::{Marked, simulated_panels, worst_panel};
+use crate::report::page::timeline::Timeline;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 690.0);

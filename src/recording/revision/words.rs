@@ -5,7 +5,11 @@ use crate::explain::{Change, Revision};
 use crate::fit::Termination;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
-use crate::report::{ImprovedJoint, MANY_TIMES_NOISE, Topic, change_in_words, parameter_table};
+use crate::report::ImprovedJoint;
+use crate::report::conclusion::Topic;
+use crate::report::finding::MANY_TIMES_NOISE;
+use crate::report::ladder::change_in_words;
+use crate::report::parameters::parameter_table;
 use crate::wording::{rounded, unit_suffix};
 
 /// The page of the revision at `place`: the answers of the last, then what is concluded of this one.
@@ -20,11 +24,11 @@ pub(super) fn page(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>, place
     lines.extend(without_gain(improved).map(|sentence| line("No gain", &sentence)));
     lines.push(format!("## Revision {revision} of {last}: {}\n", plain(&change_in_words(step))));
     // Where nothing is missing that is said in the conclusion.
-    if conclusion.passages.iter().all(|passage| passage.topic != Topic::Error) {
+    if conclusion.passages.iter().all(|passage| passage.topic != Topic::ERROR) {
         lines.push(format!("**{}**\n", plain(&fall(improved, place))));
     }
     lines.push(line(&format!("At revision {revision}"), &conclusion.headline));
-    lines.extend(conclusion.passages.iter().map(|one| line(one.topic.label(), &one.text())));
+    lines.extend(conclusion.passages.iter().map(|one| line(one.topic.0, &one.text())));
     // What an earlier revision lacks is in the next one: what to do is that of the last.
     let commands = conclusion.commands.iter().filter(|_| place + 1 == improved.revisions.len());
     lines.extend(commands.map(|command| format!("    {command}\n")));

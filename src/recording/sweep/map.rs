@@ -8,7 +8,7 @@ use super::swept::{Cell, Opinion, Swept};
 use crate::delay::sweep::{Factor, Grid};
 use crate::recording::canvas::Plot;
 use crate::recording::palette::{self, Rgb};
-use crate::report::level_text;
+use crate::report::sweep::level_text;
 
 /// Rows and columns that a picture may have; of those that share one, the farthest is seen.
 const MOST: usize = 2000;

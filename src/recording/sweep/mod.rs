@@ -9,5 +9,3 @@ mod recording;
 mod sheet;
 mod swept;
 mod words;
-
-pub use recording::SweepRecording;

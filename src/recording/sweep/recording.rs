@@ -6,8 +6,7 @@ use rerun::external::re_sdk_types::blueprint::components::PlayState;
 
 use super::swept::Swept;
 use super::{data, sheet, words};
-use crate::delay::sweep::{Factor, Grid};
-use crate::experiment::{ReadOptions, Source};
+use crate::delay::sweep::Factor;
 use crate::recording::blueprint::{Blueprint, Page};
 use crate::recording::chunk::Chunks;
 use crate::recording::content::{Content, Growth, Tab, hashed, name_of};
@@ -16,23 +15,11 @@ use crate::recording::layout::TrialStarts;
 use crate::recording::markdown::plain;
 use crate::recording::origin::made_from;
 use crate::recording::paths::{self, at, joint_root};
-use crate::report::{ReportedSweep, level_text, settings_table, sweep_sentences};
+use crate::report::SweepRecording;
+use crate::report::settings::settings_table;
+use crate::report::sweep::level_text;
+use crate::report::sweep::text::sweep_sentences;
 use crate::wording::number;
-
-/// Everything that a recording of a sweep holds.
-#[derive(Clone, Copy, Debug)]
-pub struct SweepRecording<'a> {
-    /// The joints, in the order of their tabs.
-    pub joints: &'a [ReportedSweep<'a>],
-    /// The settings that were tried.
-    pub grid: &'a Grid,
-    /// Delays that differ by so many samples more than each allows still agree.
-    pub tolerance: f64,
-    /// The files that were read.
-    pub sources: &'a [Source],
-    /// How they were read.
-    pub reading: &'a ReadOptions,
-}
 
 impl Content for SweepRecording<'_> {
     fn name(&self) -> String {

@@ -17,7 +17,7 @@ use crate::recording::layers::Layers;
 use crate::recording::palette::{self, Rgb, role};
 use crate::recording::panels::{self, Placed};
 use crate::recording::paths;
-use crate::report::settings_in_words;
+use crate::report::sweep::text::settings_in_words;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1130.0);

@@ -5,7 +5,8 @@ use crate::experiment::Trial;
 use crate::recording::chunk::Index;
 use crate::recording::layout::TrialStarts;
 use crate::recording::palette::{self, Rgb};
-use crate::report::{ReportedSweep, run_text};
+use crate::report::ReportedSweep;
+use crate::report::sweep::run_text;
 
 /// A joint over all settings, as it is recorded.
 pub(super) struct Swept<'a> {

@@ -3,7 +3,7 @@
 use super::figures::first_of;
 use crate::diagnosis::failure::FailsWhere;
 use crate::explain::{Candidate, Contribution, Verdict};
-use crate::report::finding::Finding;
+use crate::report::Finding;
 use crate::wording::misfit_units;
 
 /// What a reviewer asks of a model first: question and answer.

@@ -3,7 +3,7 @@
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
 use crate::fit::{AssessedModel, follows_input, time_constant_s};
-use crate::report::finding::Finding;
+use crate::report::Finding;
 use crate::wording::{effects_text, measure, percent, rounded};
 
 /// Times the noise above which an error is said to be more than noise.

@@ -1,20 +1,16 @@
 //! A verdict in words that an engineer can act on.
 
-mod adequate;
 mod answers;
-mod curves;
 mod figures;
-mod missing;
 mod passage;
-mod place;
-mod unexplained;
+mod verdict;
 
 use figures::first_order;
 pub(crate) use passage::{Passage, Topic};
 
-use super::EstimatedJoint;
-use super::finding::{Finding, added};
+use super::finding::added;
 use super::model_delay::model_delay;
+use super::{EstimatedJoint, Finding};
 use crate::explain::{Candidate, Verdict};
 use crate::wording::hanging;
 
@@ -38,7 +34,7 @@ impl Conclusion {
 
     /// The words below the headline as they are printed.
     pub(super) fn printed(&self) -> String {
-        let passage = |one: &Passage| hanging(&format!("{}: {}", one.topic.label(), one.text()));
+        let passage = |one: &Passage| hanging(&format!("{}: {}", one.topic.0, one.text()));
         let passages: Vec<String> = self.passages.iter().map(passage).collect();
         let commands = self.commands.iter().map(|command| format!("    {command}"));
         let blocks = std::iter::once(passages.join("\n")).chain(commands);
@@ -58,9 +54,9 @@ impl Finding<'_> {
         };
         passages.extend(self.curves());
         let structure = first_order(self.joint(), self.consequence().fit);
-        passages.extend(Passage::of(Topic::Structure, structure));
-        passages.extend(Passage::of(Topic::Delay, self.delay()));
-        passages.extend(Passage::of(Topic::Trials, self.conditions(best)));
+        passages.extend(Passage::of(Topic::STRUCTURE, structure));
+        passages.extend(Passage::of(Topic::DELAY, self.delay()));
+        passages.extend(Passage::of(Topic::TRIALS, self.conditions(best)));
         let command = |id: &&'static str| {
             // A bracket is a pattern to a shell.
             let id = if id.contains('[') { format!("'{id}'") } else { (*id).to_owned() };

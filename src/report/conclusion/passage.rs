@@ -1,52 +1,43 @@
-//! What is said on one question.
+//! What is said on one question: how large an error is, where it arises, which measured curves the model
+//! does not follow.
 
-/// What a reader asks of a model.
+use crate::diagnosis::failure::WorstSegment;
+use crate::diagnosis::{Curve, CurveOf, ShownBy};
+use crate::report::Finding;
+use crate::report::finding::{in_proportion, times_as_large};
+use crate::wording::{
+    capitalized, failure_sentences, measure, percent, rounded, unit_suffix, worst_segment_text,
+};
+
+/// What a reader asks of a model: what stands before the sentences.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Topic {
-    /// How large the error is, and whether it is more than noise.
-    Error,
-    /// In which part of the record most of the error arises.
-    WhereItFails,
-    /// The parts of the record in which the simulated output is farthest off.
-    WorstSegments,
-    /// The effect that is missing.
-    Missing,
-    /// What comes next in a search.
-    Next,
-    /// What the residual follows.
-    Residual,
-    /// The measured curves that the model does not follow.
-    Curves,
-    /// The part of the error that each effect explains.
-    Shares,
-    /// Why the model has the structure that it has.
-    Structure,
-    /// The delay of the model beside those that were measured.
-    Delay,
-    /// In which trials an effect acts.
-    Trials,
-    /// Where the conclusion holds.
-    Limits,
-}
+pub(crate) struct Topic(pub(crate) &'static str);
 
 impl Topic {
-    /// What stands before the sentences.
-    pub(crate) fn label(self) -> &'static str {
-        match self {
-            Self::Error => "Error",
-            Self::WhereItFails => "Where the error arises",
-            Self::WorstSegments => "Worst segments",
-            Self::Missing => "What is missing",
-            Self::Next => "What comes next",
-            Self::Residual => "What the residual follows",
-            Self::Curves => "Measured curves",
-            Self::Shares => "What each effect explains",
-            Self::Structure => "Structure",
-            Self::Delay => "Delay",
-            Self::Trials => "Trials",
-            Self::Limits => "Limits",
-        }
-    }
+    /// How large the error is, and whether it is more than noise.
+    pub(crate) const ERROR: Self = Self("Error");
+    /// In which part of the record most of the error arises.
+    pub(crate) const WHERE_IT_FAILS: Self = Self("Where the error arises");
+    /// The parts of the record in which the simulated output is farthest off.
+    pub(crate) const WORST_SEGMENTS: Self = Self("Worst segments");
+    /// The effect that is missing.
+    pub(crate) const MISSING: Self = Self("What is missing");
+    /// What comes next in a search.
+    pub(crate) const NEXT: Self = Self("What comes next");
+    /// What the residual follows.
+    pub(crate) const RESIDUAL: Self = Self("What the residual follows");
+    /// The measured curves that the model does not follow.
+    pub(crate) const CURVES: Self = Self("Measured curves");
+    /// The part of the error that each effect explains.
+    pub(crate) const SHARES: Self = Self("What each effect explains");
+    /// Why the model has the structure that it has.
+    pub(crate) const STRUCTURE: Self = Self("Structure");
+    /// The delay of the model beside those that were measured.
+    pub(crate) const DELAY: Self = Self("Delay");
+    /// In which trials an effect acts.
+    pub(crate) const TRIALS: Self = Self("Trials");
+    /// Where the conclusion holds.
+    pub(crate) const LIMITS: Self = Self("Limits");
 }
 
 /// Sentences on one question.
@@ -67,4 +58,131 @@ impl Passage {
     pub(crate) fn text(&self) -> String {
         self.sentences.join(" ")
     }
+}
+
+impl Finding<'_> {
+    /// How large the error is.
+    pub(super) fn size(&self) -> String {
+        let error = self.output(self.error());
+        match (self.comparison().judged(), self.noise()) {
+            (Some(judged), Some(noise)) => {
+                format!("The error is {error}, {}.", in_proportion(judged, Some(noise)))
+            }
+            _ => format!("The error is {error}."),
+        }
+    }
+
+    /// How large the error is, and where.
+    pub(in crate::report) fn fails(&self) -> Vec<Passage> {
+        let size = std::iter::once(self.size()).chain(self.shown_beside_size());
+        let passages =
+            [Passage::of(Topic::ERROR, size), self.where_it_fails(), self.worst_segments()];
+        passages.into_iter().flatten().collect()
+    }
+
+    /// What shows the lack of fit of an error that may be no larger than noise.
+    fn shown_beside_size(&self) -> Option<String> {
+        let test = self.comparison().lack_of_fit?;
+        match test.shown_by? {
+            ShownBy::UnseenPart => {
+                let times = times_as_large(test.times_training?);
+                Some(format!("On the part that was not fitted it is {times}."))
+            }
+            ShownBy::FewWindows => {
+                let times = rounded(test.local?.times_noise?);
+                Some(format!(
+                    "It is not spread as noise would be: in one window the motion that is \
+                     missed is {times} times the noise."
+                ))
+            }
+            ShownBy::Shapes | ShownBy::Size => None,
+        }
+    }
+
+    /// Under which conditions most of the error arises.
+    pub(super) fn where_it_fails(&self) -> Option<Passage> {
+        let conditions = failure_sentences(self.joint(), self.comparison());
+        let has_segments = self.segments().next().is_some();
+        let none = "No condition was found that holds most of the error.".to_owned();
+        let none = Some(none).filter(|_| conditions.is_empty() && has_segments);
+        let conditions = conditions.iter().map(|when| format!("{}.", capitalized(when)));
+        Passage::of(Topic::WHERE_IT_FAILS, conditions.chain(none))
+    }
+
+    /// Times to look at.
+    pub(super) fn worst_segments(&self) -> Option<Passage> {
+        let several = self.joint().trials.len() > 1;
+        let time = |(index, worst): (usize, &WorstSegment)| {
+            let trial = if several { format!("trial {}, ", worst.trial) } else { String::new() };
+            let of = if index == 0 { " of its squared error" } else { "" };
+            let share = percent(worst.share_of_squared_error);
+            format!("{trial}{} ({share}{of})", worst_segment_text(worst))
+        };
+        let times: Vec<String> = self.segments().take(3).enumerate().map(time).collect();
+        let look = format!("The residual is largest in {}.", times.join(", "));
+        Passage::of(Topic::WORST_SEGMENTS, Some(look).filter(|_| !times.is_empty()))
+    }
+
+    fn segments(&self) -> impl Iterator<Item = &WorstSegment> {
+        self.comparison().failure.iter().flat_map(|failure| &failure.worst_segments)
+    }
+}
+
+impl Finding<'_> {
+    /// Each measured curve on which the model leaves the band, with the place where it does most.
+    pub(super) fn curves(&self) -> Option<Passage> {
+        let sentences = self.comparison().curves.iter().filter_map(|curve| self.curve(curve));
+        Passage::of(Topic::CURVES, sentences)
+    }
+
+    fn curve(&self, curve: &Curve) -> Option<String> {
+        let (x, y, band, model) = farthest(curve)?;
+        let joint = self.joint();
+        let speed = joint.output_unit.as_deref().map(|unit| format!("{unit}/s"));
+        let input = unit_suffix(joint.input_unit.as_deref());
+        let between = |what: &str| {
+            let (y, model) = (rounded(y), measure(model, speed.as_deref()));
+            format!(
+                "At {what} {}{input} the measured speed is {y} ± {}, the model's {model}.",
+                rounded(x),
+                rounded(band)
+            )
+        };
+        let gain = |place: String| {
+            format!(
+                "{place} the measured speed is {} ± {} times that of the whole record, the model's {}.",
+                rounded(y),
+                rounded(band),
+                rounded(model)
+            )
+        };
+        Some(match curve.of {
+            CurveOf::Input => between("a delayed input of"),
+            CurveOf::InputRising => between("a delayed input, reached from below, of"),
+            CurveOf::InputFalling => between("a delayed input, reached from above, of"),
+            CurveOf::Angle => gain(format!("At {}", measure(x, joint.output_unit.as_deref()))),
+            CurveOf::Time => gain(format!("{} s after the start", rounded(x))),
+        })
+    }
+}
+
+/// Where the model is farthest beyond the band of a curve: the place, what was measured, half the
+/// width of its band, and the model's value; none where it is within the band everywhere, or off by a
+/// part of the curve that nobody sees.
+fn farthest(curve: &Curve) -> Option<(f64, f64, f64, f64)> {
+    /// Part of the curve's largest value that is seen in a drawing.
+    const SEEN: f64 = 0.02;
+    /// Half widths of a 95 % band: of the few dozen points of all curves none is out by chance.
+    const BEYOND: f64 = 1.8;
+    let largest = curve.y.iter().fold(0.0_f64, |largest, y| largest.max(y.abs()));
+    let points = curve.x.iter().zip(&curve.y).zip(curve.high.iter().zip(&curve.model));
+    let off = points.map(|((x, y), (high, model))| (*x, *y, high - y, *model));
+    let times = |(_, y, band, model): &(f64, f64, f64, f64)| {
+        (model - y).abs() / band.max(f64::MIN_POSITIVE)
+    };
+    let seen = off.filter(|point| {
+        let (_, y, _, model) = *point;
+        times(point) > BEYOND && (model - y).abs() > SEEN * largest
+    });
+    seen.max_by(|a, b| (a.1 - a.3).abs().total_cmp(&(b.1 - b.3).abs()))
 }

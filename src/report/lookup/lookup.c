@@ -1,5 +1,8 @@
 /*
-{origin} *
+{% for line in origin %}
+ * {{ line | plain }}
+{% endfor %}
+ *
  * double tauscope_delay_s(const char *joint, double level_from, double level_to);
  *
  * The delay in seconds of a step of the input of `joint` from one level to another, in
@@ -28,8 +31,27 @@ typedef struct {
     const tauscope_curve *curves;
 } tauscope_joint;
 
-{tables}static const tauscope_joint tauscope_joints[] = {
-{joints}};
+{% for joint in joints %}
+{% set number = loop.index0 %}
+{% if joint.curves %}
+{% for curve in joint.curves %}
+/* {{ curve.support }} */
+static const double level_{{ number }}_{{ loop.index0 }}[] = {{ "{" }}{{ curve.levels }}};
+static const double delay_{{ number }}_{{ loop.index0 }}[] = {{ "{" }}{{ curve.delays }}};
+{% endfor %}
+static const tauscope_curve curves_{{ number }}[] = {
+{% for curve in joint.curves %}
+    {{ "{" }}{{ curve.key }}, {{ curve.count }}, level_{{ number }}_{{ loop.index0 }}, delay_{{ number }}_{{ loop.index0 }}},
+{% endfor %}
+};
+
+{% endif %}
+{% endfor %}
+static const tauscope_joint tauscope_joints[] = {
+{% for joint in joints %}
+    {{ "{" }}{{ joint.name }}, {{ joint.low }}, {{ joint.high }}, {{ joint.curves | length }}, {{ "curves_" ~ loop.index0 if joint.curves else "NULL" }}},
+{% endfor %}
+};
 
 static int tauscope_side(const tauscope_joint *joint, double level)
 {

@@ -1,16 +1,32 @@
-function delay_s = {name}(joint, level_from, level_to)
-%{upper} Delay in seconds of a step of the input of a joint.
-%   delay_s = {name}(joint, level_from, level_to), levels in the units of the log.
+function delay_s = {{ name }}(joint, level_from, level_to)
+%{{ upper }} Delay in seconds of a step of the input of a joint.
+%   delay_s = {{ name }}(joint, level_from, level_to), levels in the units of the log.
 %   Between measured levels it is interpolated within starts, stops, changes and
 %   reversals of one side and direction; beyond them it stays that of the last level.
 %   NaN where no such step was measured; an error where no joint is called so.
 %
-{origin}
+{% for line in origin %}
+%   {{ line }}
+{% endfor %}
+
   % A row per curve: 0 start, 1 stop, 2 change, 3 reversal; side of neutral; whether
   % the input rises; levels; delays in seconds.
   switch joint
-{joints}    otherwise
-      error('{name}:joint', 'no joint is called ''%s''', joint);
+{% for joint in joints %}
+    case '{{ joint.name }}'
+      neutral = [{{ joint.low }}, {{ joint.high }}];
+{% if joint.curves %}
+      curves = {
+{% for curve in joint.curves %}
+        {{ curve.key }}, [{{ curve.levels }}], [{{ curve.delays }}] % {{ curve.support }}
+{% endfor %}
+      };
+{% else %}
+      curves = cell(0, 5);
+{% endif %}
+{% endfor %}
+    otherwise
+      error('{{ name }}:joint', 'no joint is called ''%s''', joint);
   end
   delay_s = NaN;
   before = (level_from > neutral(2)) - (level_from < neutral(1));

@@ -1,11 +1,21 @@
 # Delays of the steps of an input: delay_s(joint, level_from, level_to).
 #
-{origin}import math
+{% for line in origin %}
+# {{ line }}
+{% endfor %}
+import math
 
 # The neutral band of each joint; levels and delays in seconds by kind of step, side
 # of neutral (0 where it is not known) and whether the input rises.
 JOINTS = {
-{joints}}
+{% for joint in joints %}
+    {{ joint.name }}: (({{ joint.low }}, {{ joint.high }}), {
+{% for curve in joint.curves %}
+        ("{{ curve.kind }}", {{ curve.side }}, {{ "True" if curve.rises else "False" }}): ([{{ curve.levels }}], [{{ curve.delays }}]),  # {{ curve.support }}
+{% endfor %}
+    }),
+{% endfor %}
+}
 
 
 def delay_s(joint, level_from, level_to):

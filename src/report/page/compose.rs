@@ -1,10 +1,17 @@
 //! The report as a document: its parts in their order.
 
-use super::document::{Block, Document, Entry, slug};
-use super::report::Report;
-use super::{delays, joint, origin};
-use crate::experiment::{Joint, Trial};
-use crate::report::EstimatedJoint;
+use serde_json::{Value, json};
+
+use super::document::{Attachment, Block, Document, Entry, slug};
+use super::report::{RecordingFile, Report};
+use super::{delays, joint};
+use crate::experiment::{Joint, Source, Trial};
+use crate::report::difference::differences_json;
+use crate::report::estimate::chosen_line;
+use crate::report::explain::conclusion_json;
+use crate::report::json::{document, without_empty};
+use crate::report::settings::settings_table;
+use crate::report::{EstimatedJoint, ImprovedJoint, TextTable};
 use crate::wording::counted;
 
 impl Report<'_> {
@@ -24,7 +31,7 @@ impl Report<'_> {
             blocks.push(Block::section(&joint.joint.name, &anchor(index, joint.joint)));
             blocks.extend(joint::blocks(self, *joint, &anchor(index, joint.joint)));
         }
-        blocks.extend(origin::blocks(self));
+        blocks.extend(origin(self));
         Document { title: self.title(), blocks }
     }
 
@@ -80,4 +87,80 @@ fn anchor(index: usize, joint: &Joint) -> String {
 pub(crate) fn report_text(report: &Report<'_>) -> String {
     let lines = report.sentences().into_iter();
     lines.map(|(joint, sentence)| [joint, ": ", &sentence, "\n"].concat()).collect()
+}
+
+pub(super) fn origin(report: &Report<'_>) -> Vec<Block> {
+    let mut blocks = vec![Block::section("How this was made", "how-this-was-made")];
+    blocks.push(Block::text(format!(
+        "Made by tauscope {} with this command, which makes it again from the same files:",
+        env!("CARGO_PKG_VERSION")
+    )));
+    blocks.push(Block::Code(report.command.to_owned()));
+    blocks.push(Block::Table(files(&report.experiment.sources)));
+    if !report.notes.is_empty() {
+        blocks.push(Block::List(report.notes.to_vec()));
+    }
+    blocks.extend(report.recording.iter().flat_map(recording));
+    blocks.push(Block::part("Settings"));
+    blocks.push(Block::Table(settings_table(report.settings)));
+    let chosen: Vec<String> = report.joints.iter().filter_map(chosen_line).collect();
+    if !chosen.is_empty() {
+        blocks.push(Block::text("Chosen from the record of"));
+        blocks.push(Block::List(chosen));
+    }
+    if let Some(text) = report.revised {
+        let file = vec![Block::Code(text.to_owned())];
+        blocks.push(Block::details("The models, as a model file", file));
+    }
+    blocks
+}
+
+/// The files that were read.
+pub(super) fn files(sources: &[Source]) -> TextTable {
+    let row = |source: &Source| {
+        let path = source.path.display().to_string();
+        [path, source.bytes.to_string(), source.sha256.clone()]
+    };
+    TextTable::of(["file", "bytes", "SHA-256"], &[1], sources.iter().map(row))
+}
+
+/// How to look at the recording.
+fn recording(recording: &RecordingFile<'_>) -> Vec<Block> {
+    let RecordingFile { name, bytes } = recording;
+    let location = if bytes.is_some() { "is in this page" } else { "is beside this report" };
+    let mut blocks = vec![
+        Block::part("Recording"),
+        Block::text(format!(
+            "{name} {location}: every decision, to be stepped through in the Rerun viewer \
+             (package rerun-sdk of PyPI), with:"
+        )),
+        Block::Code(format!("rerun {name}")),
+    ];
+    let file = bytes.map(|bytes| Attachment { name: (*name).to_owned(), bytes: bytes.to_vec() });
+    blocks.extend(file.map(Block::Attachment));
+    blocks
+}
+
+/// The document of `report --format json`: what was written where, and what is said of each joint; its
+/// conclusion, where a model is asked for.
+pub(crate) fn report_json(
+    report: &Report<'_>,
+    path: Option<&str>,
+    recording: Option<&str>,
+) -> Value {
+    let joint = |(joint, sentence): (&str, String)| {
+        let model = report.models.iter().find(|improved| improved.name() == joint);
+        let conclusion = model.map(|ImprovedJoint { finding, .. }| {
+            conclusion_json(&finding.conclusion().headline, &finding.consequence())
+        });
+        json!({ "joint": joint, "sentence": sentence, "conclusion": conclusion })
+    };
+    let facts = json!({
+        "report": path,
+        "recording": recording,
+        "joints": report.sentences().into_iter().map(joint).collect::<Value>(),
+        "against": differences_json(report.against),
+        "failures": report.failures,
+    });
+    document("tauscope/report/1", without_empty(facts, &["against"]))
 }

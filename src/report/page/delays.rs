@@ -1,14 +1,84 @@
-//! The delays of a joint: over time, and against its state.
+//! The record of a joint, its delays over time and against its state, and its dead time, as drawings.
 
-use super::document::{Figure, HALF, WIDTH, slug};
-use super::timeline::Timeline;
-use crate::delay::{AgainstOfKind, AgainstState, DelayProfile, DelayTable, Transition};
-use crate::figure::delay_levels;
-use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, thinned_places};
+use super::document::{Block, Figure, HALF, WIDTH, slug};
+use super::timeline::{Timeline, values_of};
+use crate::delay::{
+    AgainstOfKind, AgainstState, Bounds, DeadTime, Decision, DelayProfile, DelayTable, Transition,
+    Verdict,
+};
+use crate::experiment::Trial;
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, delay_levels, thinned_places};
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;
-use crate::report::doubt::doubted;
-use crate::wording::{capitalized, p_cell};
+use crate::report::answer::dead_time_sentences;
+use crate::report::decisions::doubted;
+use crate::wording::{bracketed, capitalized, p_cell};
+
+/// Input and output over time.
+pub(super) fn record_figure(estimated: EstimatedJoint<'_>, file: String) -> Figure {
+    let joint = estimated.joint;
+    let name = format!("Input and output of {} over time", joint.name);
+    let caption =
+        "What was measured, and where the output of each step of the input breaks.".to_owned();
+    let panels = record_panels(estimated, &Timeline::of(joint)).into();
+    Figure { file, name, width: WIDTH, panels, caption }
+}
+
+/// The output with the breakpoints above, the input below.
+pub(crate) fn record_panels(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> [Panel; 2] {
+    let joint = estimated.joint;
+    let (accepted, rejected) = breakpoints(estimated, timeline);
+    let span = |values: fn(&Trial) -> &[f64]| Span::around(values_of(joint, values), 0.06);
+    let output = Panel {
+        x: timeline.axis().bare(),
+        y: Axis::new(span(Trial::output), bracketed("output", joint.output_unit.as_deref()), 5.0),
+        height: 170,
+        marks: vec![
+            timeline.borders(),
+            Mark::lines(Role::Measured, 1.3, timeline.lines(|_, t| t.output())).named("output"),
+            Mark::dots(Role::Accepted, accepted).named("breakpoint, accepted"),
+            Mark::new(Role::Rejected, Shape::Crosses(rejected)).named("rejected"),
+        ],
+    };
+    let input = Panel {
+        x: timeline.axis(),
+        y: Axis::new(span(Trial::input), bracketed("input", joint.input_unit.as_deref()), 3.0),
+        height: 80,
+        marks: vec![
+            timeline.borders(),
+            Mark::lines(Role::Input, 1.4, timeline.held(|_, t| t.input())),
+        ],
+    };
+    [output, input]
+}
+
+/// Where each breakpoint is: of accepted decisions, and of rejected ones.
+fn breakpoints(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> (Vec<Place>, Vec<Place>) {
+    let (mut accepted, mut rejected) = (Vec::new(), Vec::new());
+    let trials = estimated.joint.trials.iter().zip(&estimated.estimate.trials).enumerate();
+    for (index, (trial, result)) in trials {
+        for decision in result.iter().flat_map(|estimate| &estimate.decisions) {
+            let Some(place) = breakpoint(decision, trial, index, timeline) else { continue };
+            match decision.verdict() {
+                Verdict::Accepted => accepted.push(place),
+                Verdict::Rejected(_) => rejected.push(place),
+            }
+        }
+    }
+    (accepted, rejected)
+}
+
+fn breakpoint(
+    decision: &Decision,
+    trial: &Trial,
+    index: usize,
+    timeline: &Timeline<'_>,
+) -> Option<Place> {
+    let best = decision.breakpoint()?.candidate;
+    let sample = decision.input_step.sample as f64 + decision.delay()?;
+    let output = *trial.output().get(best.breakpoint.checked_sub(1)?)?;
+    Some((timeline.at(index, sample), output))
+}
 
 /// Steps between which the delay is drawn.
 const MOST_STEPS: usize = 2000;
@@ -24,7 +94,7 @@ struct Delays {
 
 /// The delay of each step over time; none where none was accepted.
 pub(super) fn over_time(estimated: EstimatedJoint<'_>, file: String) -> Option<Figure> {
-    let panels = vec![panel(estimated, &Timeline::of(estimated.joint))?];
+    let panels = vec![delay_panel(estimated, &Timeline::of(estimated.joint))?];
     let name = format!("Delay of {} over time", estimated.joint.name);
     let caption = "The delay of each step, at the time of the step; rejected steps stand at \
                    the bottom."
@@ -32,7 +102,7 @@ pub(super) fn over_time(estimated: EstimatedJoint<'_>, file: String) -> Option<F
     Some(Figure { file, name, width: WIDTH, panels, caption })
 }
 
-pub(crate) fn panel(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> Option<Panel> {
+pub(crate) fn delay_panel(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> Option<Panel> {
     let Delays { accepted, intervals, rejected, held } = delays(estimated, timeline);
     if accepted.is_empty() {
         return None;
@@ -236,6 +306,83 @@ impl Spread {
         let (low, high) = (*delays.first()?, *delays.last()?);
         Some(Self { name, low, lower: at(0.25)?, median: at(0.5)?, upper: at(0.75)?, high })
     }
+}
+
+/// What is said and drawn of it; nothing for an input that is made of steps.
+pub(super) fn dead_time_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
+    let Some(found) = &estimated.estimate.dead_time else { return Vec::new() };
+    let mut blocks = vec![Block::part("Dead time")];
+    let sentences = dead_time_sentences(&estimated);
+    blocks.extend(sentences.into_iter().map(|sentence| Block::text(format!("{sentence}."))));
+    let mut figures = Vec::new();
+    figures.extend(windows_over_time(estimated, found, format!("{file}-windows")));
+    figures.extend(curve(estimated, found, format!("{file}-dead-time")));
+    if !figures.is_empty() {
+        blocks.push(Block::Figures(figures));
+    }
+    blocks
+}
+
+/// The dead time of each window, with its interval.
+fn windows_over_time(
+    estimated: EstimatedJoint<'_>,
+    found: &DeadTime,
+    file: String,
+) -> Option<Figure> {
+    let panels = vec![dead_time_panel(found, &Timeline::of(estimated.joint))?];
+    let name = format!("Dead time of {} over time", estimated.joint.name);
+    let caption = "The dead time in windows of the record, with intervals; where the input moves \
+                   the output too little there is none."
+        .to_owned();
+    Some(Figure { file, name, width: WIDTH, panels, caption })
+}
+
+pub(crate) fn dead_time_panel(found: &DeadTime, timeline: &Timeline<'_>) -> Option<Panel> {
+    let known = found.windows.iter().filter_map(|window| {
+        let at = |sample: usize| timeline.at(window.trial, sample as f64);
+        Some((at(window.first), at(window.last), window.estimate?))
+    });
+    let known: Vec<(f64, f64, Bounds)> = known.collect();
+    if known.is_empty() {
+        return None;
+    }
+    let middle = |(from, to, _): &(f64, f64, Bounds)| f64::midpoint(*from, *to);
+    let interval =
+        |one: &(f64, f64, Bounds)| vec![(middle(one), one.2.low_s), (middle(one), one.2.high_s)];
+    let reach = |(from, to, b): &(f64, f64, Bounds)| vec![(*from, b.value_s), (*to, b.value_s)];
+    let dots: Vec<Place> = known.iter().map(|one| (middle(one), one.2.value_s)).collect();
+    let intervals: Vec<Vec<Place>> = known.iter().map(interval).collect();
+    let y = Span::around(intervals.iter().flatten().map(|place| place.1), 0.14);
+    let mut marks = vec![timeline.borders()];
+    if let Some(Bounds { low_s, high_s, .. }) = found.bounds() {
+        marks.push(Mark::new(Role::Noise, Shape::Band(low_s, high_s)).named("whole record"));
+    }
+    let reaches = known.iter().map(reach).collect();
+    marks.push(Mark::lines(Role::Smoothed, 1.0, reaches).named("window"));
+    marks.push(Mark::lines(Role::Faint, 1.4, intervals).named("interval"));
+    marks.push(Mark::dots(Role::Accepted, dots).named("dead time"));
+    let axis = Axis::new(y, "dead time [s]", 5.0);
+    Some(Panel { x: timeline.axis(), y: axis, height: 150, marks })
+}
+
+/// The prediction error of each dead time.
+fn curve(estimated: EstimatedJoint<'_>, found: &DeadTime, file: String) -> Option<Figure> {
+    let points: Vec<Place> = found.curve.iter().map(|p| (p.delay_s, p.error)).collect();
+    let (bounds, last) = found.bounds().zip(points.last())?;
+    let y = Span::around(points.iter().map(|place| place.1), 0.1);
+    let x = Axis::new(Span::new(0.0, last.0), "dead time [s]", 10.0);
+    let marks = vec![
+        Mark::new(Role::Noise, Shape::Spans(vec![(bounds.low_s, bounds.high_s)], 1.0))
+            .named("interval"),
+        Mark::new(Role::Accepted, Shape::Verticals(vec![bounds.value_s], 1.4)).named("dead time"),
+        Mark::lines(Role::Error, 1.4, vec![points]).named("error"),
+    ];
+    let panel = Panel { x, y: Axis::new(y, "error over the least", 5.0), height: 150, marks };
+    let name = format!("Prediction error of {} by dead time", estimated.joint.name);
+    let caption = "The error of the prediction against the dead time, all else being fitted anew \
+                   to each."
+        .to_owned();
+    Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
 }
 
 #[cfg(test)]

@@ -1,14 +1,13 @@
 //! The next experiment as a page: what is to be played, and what is expected of it.
 
+use super::compose::files;
 use super::document::{Block, Document, Figure, WIDTH, slug};
-use super::origin;
 use crate::design::{Apart, Prediction, apart};
 use crate::experiment::Source;
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, thinned_places};
-use crate::report::DesignedJoint;
-use crate::report::design::{Held, holds};
+use crate::report::TextTable;
+use crate::report::design::{DesignedJoint, Held, holds};
 use crate::report::design_words::{design_sentences, side_table};
-use crate::report::text_table::TextTable;
 use crate::wording::{bracketed, measure, number, percent};
 
 /// Points of a line: two for each column that is seen.
@@ -20,7 +19,7 @@ pub(crate) fn design_document(joints: &[DesignedJoint], sources: &[Source]) -> D
     blocks.push(Block::section("How this was made", "how-this-was-made"));
     blocks.push(Block::text(format!("Made by tauscope {}.", env!("CARGO_PKG_VERSION"))));
     if !sources.is_empty() {
-        blocks.push(Block::Table(origin::files(sources)));
+        blocks.push(Block::Table(files(sources)));
     }
     Document { title: "The next experiment".to_owned(), blocks }
 }

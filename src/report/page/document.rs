@@ -1,7 +1,7 @@
 //! What a report says, before it is written down as a page or as Markdown.
 
 use crate::figure::Panel;
-use crate::report::text_table::TextTable;
+use crate::report::TextTable;
 
 /// Width of a drawing by itself, in pixels.
 pub(super) const WIDTH: u32 = 760;

@@ -1,19 +1,19 @@
 //! What is said of one joint.
 
+use super::delays::{dead_time_blocks, record_figure};
 use super::document::Block;
 use super::report::Report;
-use super::{dead_time, delays, model, record, segment};
+use super::{delays, model, segment};
 use crate::delay::{AgainstState, Condition, DelayTable};
 use crate::report::against::{AGAINST_HEADER, CORRECTED, against_rows, confounded_sentences};
-use crate::report::decisions::{decision_names, decision_text};
-use crate::report::delay_table::{level_text, neutral_sentence};
+use crate::report::answer::delay_answer;
+use crate::report::decisions::{by_doubt, decision_names, decision_text, doubted};
+use crate::report::delays::{levels_text, neutral_sentence};
 use crate::report::difference::difference_table;
-use crate::report::doubt::doubted;
+use crate::report::estimate::{onset_line, tracking_line};
 use crate::report::facts::Place;
-use crate::report::review::reviewed_table;
-use crate::report::text::{onset_line, tracking_line};
-use crate::report::text_table::TextTable;
-use crate::report::{EstimatedJoint, JointSummary, ReviewCount, by_doubt, delay_answer};
+use crate::report::review::{ReviewCount, reviewed_table};
+use crate::report::{EstimatedJoint, JointSummary, TextTable};
 use crate::wording::{capitalized, difference_sentences};
 
 /// Rows of a table that a reader may still want to scroll through.
@@ -21,9 +21,8 @@ const MOST_ROWS: usize = 2000;
 
 /// All that is said of a joint, but for its [`sentences`], which stand at the head of the page.
 pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
-    let mut blocks =
-        vec![Block::Figures(vec![record::figure(estimated, format!("{file}-record"))])];
-    blocks.extend(dead_time::blocks(estimated, file));
+    let mut blocks = vec![Block::Figures(vec![record_figure(estimated, format!("{file}-record"))])];
+    blocks.extend(dead_time_blocks(estimated, file));
     let segments = segment::figures(estimated, &format!("{file}-segment"));
     if !segments.is_empty() {
         blocks.push(Block::part("Single decisions"));
@@ -94,7 +93,7 @@ fn level_blocks(estimated: EstimatedJoint<'_>, file: &str, found: &DelayTable) -
     ];
     blocks.extend(figure.map(|figure| Block::Figures(vec![figure])));
     let rows = found.rows.iter().map(|row| (estimated.joint.name.as_str(), row));
-    blocks.push(Block::Table(level_text(Place::Terminal, rows)));
+    blocks.push(Block::Table(levels_text(Place::Terminal, rows)));
     blocks
 }
 

@@ -1,19 +1,26 @@
-//! What is said of a joint's model: verdict, equations, parameters, errors, ranking.
+//! What is said and drawn of a joint's model: verdict, equations, parameters, errors, ranking.
 
-use super::document::Block;
+use super::document::{Block, Figure, HALF, WIDTH};
 use super::report::Report;
-use super::{model_figures, simulated};
+use super::simulated;
+use crate::diagnosis::{Curve, CurveOf, sensor_noise};
 use crate::effect::Stage;
+use crate::experiment::Joint;
 use crate::explain::Revision;
+use crate::figure::error_share::FeatureShares;
+use crate::figure::ladder::{Rung, panel};
+use crate::figure::{Axis, Mark, Panel, Role, Span};
 use crate::fit::{Split, Termination};
 use crate::model::Component;
 use crate::report::compare::errors_note;
-use crate::report::equation::filled_in;
-use crate::report::ladder::ladder_table;
+use crate::report::conclusion::Topic;
+use crate::report::ladder::{LadderRow, ladder_table};
+use crate::report::parameters::{delay_of_steps, filled_in, parameter_table};
 use crate::report::ranking::ranking_table;
-use crate::report::{ComparedJoint, ImprovedJoint, Topic, delay_of_steps, parameter_table};
+use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::{
-    capitalized, correlation_sentences, failure_sentences, parameter_units, parameter_value,
+    bracketed, capitalized, correlation_sentences, failure_sentences, feature_with_unit,
+    parameter_units, parameter_value,
 };
 
 /// All that is said of the model of a joint.
@@ -23,12 +30,9 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
     let mut blocks = vec![Block::part("Model")];
     // Where the error arises has a part of its own.
     let passages = conclusion.passages.into_iter();
-    let passages = passages.filter(|passage| passage.topic != Topic::WhereItFails);
+    let passages = passages.filter(|passage| passage.topic != Topic::WHERE_IT_FAILS);
     blocks.extend(
-        passages.map(|passage| Block::Passage {
-            question: passage.topic.label(),
-            text: passage.text(),
-        }),
+        passages.map(|passage| Block::Passage { question: passage.topic.0, text: passage.text() }),
     );
     blocks.extend(conclusion.commands.into_iter().map(Block::Code));
     blocks.push(Block::Code(equations(compared)));
@@ -104,7 +108,7 @@ fn law(component: &Component) -> String {
 fn errors(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     let mut blocks = vec![Block::part("Errors")];
     if improved.ladder().len() > 1 {
-        let figure = model_figures::ladder(improved, format!("{file}-ladder"));
+        let figure = ladder(improved, format!("{file}-ladder"));
         blocks.push(Block::Figures(vec![figure]));
     }
     blocks.push(Block::Table(ladder_table(improved.finding.compared.joint, &improved.ladder())));
@@ -125,7 +129,7 @@ fn beside_the_measurement(
     let mut blocks = vec![Block::part("Measured and simulated"), Block::Figures(vec![figure])];
     let earlier = simulated::earlier(improved, format!("{file}-earlier-residuals"));
     blocks.extend(earlier.map(|figure| Block::Figures(vec![figure])));
-    let curves = model_figures::curves(compared, file);
+    let curves = curves(compared, file);
     if !curves.is_empty() {
         blocks.push(Block::part("Measured curves"));
         blocks.push(Block::Figures(curves));
@@ -161,7 +165,7 @@ fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     } else {
         blocks.push(Block::List(said));
     }
-    let share = model_figures::share(&compared, format!("{file}-error-share"));
+    let share = share(&compared, format!("{file}-error-share"));
     let worst = simulated::worst(&compared, place, format!("{file}-worst-segment"));
     blocks.push(Block::Figures(share.into_iter().chain(worst).collect()));
     blocks
@@ -189,4 +193,114 @@ fn rankings(improved: &ImprovedJoint<'_>) -> Vec<Block> {
         blocks.push(Block::details(summary, vec![table]));
     }
     blocks
+}
+
+/// A bar for the error of each revision, and the noise as a line.
+pub(super) fn ladder(improved: &ImprovedJoint<'_>, file: String) -> Figure {
+    let joint = improved.finding.compared.joint;
+    let rows = improved.ladder();
+    // A revision has its colour in all figures, and in the recording.
+    let rung = |(place, row): (usize, &LadderRow)| Rung {
+        name: format!("{}: {}", row.number, row.change),
+        error: row.errors.judged(),
+        training: row.errors.train_rmse.filter(|_| row.errors.validation_rmse.is_some()),
+        role: Role::of_revision(place),
+    };
+    let rungs: Vec<Rung> = rows.iter().enumerate().map(rung).collect();
+    let unit = joint.output_unit.as_deref();
+    let name = (bracketed("root-mean-square error", unit), "ladder");
+    let mut panel = panel(name, &rungs, (sensor_noise(&joint.trials), unit), 1.2);
+    if let Some(first) = panel.marks.first_mut() {
+        first.name = Some(judged_on(&rows).to_owned());
+    }
+    let name = format!("Errors of the revisions of {}", joint.name);
+    let caption = "How the error falls from revision to revision.".to_owned();
+    Figure { file, name, width: WIDTH, panels: vec![panel], caption }
+}
+
+fn judged_on(rungs: &[LadderRow]) -> &'static str {
+    let validated = rungs.iter().all(|row| row.errors.validation_rmse.is_some());
+    if validated { "error on data that were not fitted" } else { "error" }
+}
+
+/// Shares of the squared error and of the time in each part of the feature whose parts
+/// differ most in them.
+pub(super) fn share(compared: &ComparedJoint<'_>, file: String) -> Option<Figure> {
+    let features = FeatureShares::all(&compared.comparison.regions);
+    let found = features.max_by(|a, b| a.unevenness().total_cmp(&b.unevenness()));
+    let (shares, feature) = found.and_then(|found| Some((found, found.feature()?)))?;
+    let joint = compared.joint;
+    let by = feature_with_unit(feature, joint);
+    let name = format!("Share of the error of {}", joint.name);
+    let caption = format!(
+        "Where the error arises, by {by}: the squared error of the speed, {}. A bar beyond its mark is \
+         a part with too much of it.",
+        compared.comparison.arising
+    );
+    let panel = shares.panel(joint, &[(Role::Error, compared.comparison)])?;
+    Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
+}
+
+/// A figure for the input, one for the angle and one for the time, as far as the record shows them.
+pub(super) fn curves(compared: &ComparedJoint<'_>, file: &str) -> Vec<Figure> {
+    let curves = &compared.comparison.curves;
+    let of = |wanted: &[CurveOf]| -> Vec<&Curve> {
+        curves.iter().filter(|curve| wanted.contains(&curve.of)).collect()
+    };
+    let branches = of(&[CurveOf::InputRising, CurveOf::InputFalling]);
+    let input = if branches.is_empty() { of(&[CurveOf::Input]) } else { branches };
+    let groups =
+        [(input, "input"), (of(&[CurveOf::Angle]), "angle"), (of(&[CurveOf::Time]), "time")];
+    let shown = groups.into_iter().filter(|(curves, _)| !curves.is_empty());
+    shown
+        .map(|(curves, name)| curve(compared.joint, &curves, format!("{file}-curve-{name}")))
+        .collect()
+}
+
+fn curve(joint: &Joint, curves: &[&Curve], file: String) -> Figure {
+    let places = |values: fn(&Curve) -> &Vec<f64>| {
+        let of = move |curve: &&Curve| {
+            let pairs = curve.x.iter().copied().zip(values(curve).iter().copied());
+            pairs.collect::<Vec<(f64, f64)>>()
+        };
+        curves.iter().map(of).collect::<Vec<_>>()
+    };
+    let bands = curves.iter().flat_map(|curve| {
+        let ends = curve.low.iter().zip(&curve.high);
+        curve.x.iter().zip(ends).map(|(x, (low, high))| vec![(*x, *low), (*x, *high)])
+    });
+    let all = curves.iter().flat_map(|curve| [&curve.low, &curve.high, &curve.model]).flatten();
+    let y = Span::around(all.copied(), 0.06);
+    let x = Span::around(curves.iter().flat_map(|curve| curve.x.iter().copied()), 0.04);
+    let (of_input, of_output) = (joint.input_unit.as_deref(), joint.output_unit.as_deref());
+    let speed = of_output.map(|unit| format!("{unit}/s"));
+    let is_of = |of: CurveOf| curves.iter().all(|curve| curve.of == of);
+    let (across, up, caption) = if is_of(CurveOf::Angle) {
+        (bracketed("angle", of_output), "relative speed".to_owned(), "against the angle")
+    } else if is_of(CurveOf::Time) {
+        ("time [s]".to_owned(), "relative speed".to_owned(), "against the time")
+    } else {
+        let caption = match curves.len() {
+            1 => "against the delayed input",
+            _ => "against the delayed input, its levels reached from below and from above",
+        };
+        (bracketed("delayed input", of_input), bracketed("speed", speed.as_deref()), caption)
+    };
+    let panel = Panel {
+        x: Axis::new(x, across, 6.0),
+        y: Axis::new(y, up, 5.0),
+        height: 200,
+        marks: vec![
+            Mark::lines(Role::Model, 1.6, places(|curve| &curve.model)).named("model"),
+            Mark::lines(Role::Measured, 1.0, bands.collect()),
+            Mark::dots(Role::Measured, places(|curve| &curve.y).concat())
+                .named("measured, with 95 % bands"),
+        ],
+    };
+    let name = format!("Speed of {} {caption}", joint.name);
+    let caption = format!(
+        "The speed in settled parts of the holds, {caption}, behind the delay; each curve is free of \
+         what the others explain."
+    );
+    Figure { file, name, width: HALF, panels: vec![panel], caption }
 }

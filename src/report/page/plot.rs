@@ -2,8 +2,15 @@
 //!
 //! Coordinates of the drawing library are whole numbers, so that a figure is drawn
 //! [`FINE`] times as large as it is shown.
+//!
+//! Colours have one meaning each, distinct for colour-blind readers too: Okabe and Ito's hues, which
+//! the recording has as well, in a shade for light ground and one for dark ground. A figure is drawn
+//! in the shades for light ground, which are right wherever no style sheet is read; the style sheet
+//! finds each by its number and gives it the shade that the reader's ground asks for. So each shade
+//! for light ground stands for one meaning only.
 
 use std::collections::HashSet;
+use std::fmt::Write as _;
 use std::ops::Range;
 
 use plotters::coord::Shift;
@@ -12,7 +19,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::document::Figure;
-use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, within};
+use crate::figure::{Axis, Mark, Panel, Place, Revision, Role, Shape, within};
 use crate::wording::{capitalized, legible, listed, rounded};
 
 /// Parts of a pixel that a coordinate resolves.
@@ -298,13 +305,13 @@ impl Mark {
                 let ends = [(middle, y - fine(6)), (middle, y + fine(6))];
                 area.draw(&PathElement::new(ends, stroke(self.role, *width)))
             }
-            Shape::Dots(..) | Shape::Named(_) => area.draw(&dot((middle, y), 3.0, self.role)),
+            Shape::Dots(..) => area.draw(&dot((middle, y), 3.0, self.role)),
             Shape::Crosses(_) => area.draw(&cross((middle, y), self.role)),
-            Shape::Band(..) | Shape::Spans(..) | Shape::Area(_) => {
+            Shape::Band(..) | Shape::Spans(..) => {
                 area.draw(&Rectangle::new(block, filled(self.role, 0.3)))
             }
             Shape::Bars(_) => area.draw(&Rectangle::new(block, filled(self.role, 1.0))),
-            Shape::Words(_) | Shape::Flags(_) => Ok(()),
+            Shape::Words(_) | Shape::Named(_) | Shape::Area(_) | Shape::Flags(_) => Ok(()),
         }
     }
 
@@ -320,14 +327,6 @@ impl Mark {
             Shape::Dots(places, radius) => apart(places)
                 .into_iter()
                 .try_for_each(|place| area.draw(&dot(place, *radius, role))),
-            Shape::Named(dots) => dots
-                .iter()
-                .try_for_each(|(place, radius, _)| area.draw(&dot(*place, *radius, role))),
-            Shape::Area(area_of) => {
-                let upper = area_of.iter().map(|[x, _, high]| (*x, *high));
-                let lower = area_of.iter().rev().map(|[x, low, _]| (*x, *low));
-                area.draw(&Polygon::new(upper.chain(lower).collect::<Vec<_>>(), filled(role, 0.18)))
-            }
             Shape::Spreads(spreads, above) => {
                 let pixel = (y.high - y.low) / f64::from(panel.height);
                 let row = |pixels: f64| y.high + pixels * pixel;
@@ -339,7 +338,8 @@ impl Mark {
                         .try_for_each(|line| area.draw(&PathElement::new(line, stroke(role, 1.4))))
                 })
             }
-            Shape::Flags(_) => Ok(()),
+            // Only recordings have them.
+            Shape::Named(_) | Shape::Area(_) | Shape::Flags(_) => Ok(()),
             Shape::Crosses(places) => {
                 apart(places).into_iter().try_for_each(|place| area.draw(&cross(place, role)))
             }
@@ -389,6 +389,69 @@ fn dot<P>(place: P, radius: f64, role: Role) -> Circle<P, i32> {
 
 fn cross<P>(place: P, role: Role) -> Cross<P, i32> {
     Cross::new(place, fine(4), stroke(role, 1.8))
+}
+
+/// Shades of the revisions behind the first one, on light and on dark ground: the hues that the
+/// recording has.
+const REVISIONS: [(u32, u32); Revision::COUNT as usize] = [
+    (0x00_7F5C, 0x00_9E73),
+    (0xB0_4A8A, 0xCC_79A7),
+    (0xB8_4A00, 0xD5_5E00),
+    (0x1F_6FB5, 0x78_BEFF),
+    (0x7A_6B00, 0xF0_E442),
+    (0x6A_4FC0, 0xA0_78F0),
+    (0x3F_7F2A, 0x96_DC78),
+    (0xB0_4040, 0xFF_9696),
+    (0x00_7C85, 0x00_C8D2),
+];
+
+impl Role {
+    /// Its shades on light and on dark ground, as `0xRRGGBB`.
+    const fn shades(self) -> (u32, u32) {
+        match self {
+            Self::Ink => (0x1C_1F23, 0xE8_EAED),
+            Self::Faint => (0x5A_6067, 0xA7_AEB6),
+            Self::Grid => (0xDD_E0E3, 0x39_3E44),
+            Self::Input => (0x8C_7A00, 0xF0_E442),
+            Self::Measured => (0x80_8487, 0x96_9A9E),
+            Self::Smoothed => (0x00_72B2, 0x56_B4E9),
+            Self::Accepted => (0x00_8F68, 0x00_BE8C),
+            Self::Rejected => (0xD5_5E00, 0xF2_8A4B),
+            Self::Error => (0xA8_4F87, 0xD9_8CB8),
+            Self::Model => (0xC4_7A00, 0xE6_9F00),
+            Self::Noise => (0x2F_8FCB, 0x57_B5EA),
+            Self::Attention => (0xCC_79A7, 0xCC_79A8),
+            Self::Revision(one) => REVISIONS[one.place()],
+            Self::Own(red, green, blue) => {
+                let shade = u32::from_be_bytes([0, red, green, blue]);
+                (shade, shade)
+            }
+        }
+    }
+
+    /// Red, green and blue on light ground.
+    pub(super) const fn rgb(self) -> (u8, u8, u8) {
+        let [_, red, green, blue] = self.shades().0.to_be_bytes();
+        (red, green, blue)
+    }
+}
+
+/// The rules that give the lines and texts of figures their shade.
+pub(super) fn figure_style() -> String {
+    let (mut light, mut dark, mut rules) = (String::new(), String::new(), String::new());
+    for (number, role) in Role::all().enumerate() {
+        let (on_light, on_dark) = role.shades();
+        write!(light, "--c{number}:#{on_light:06X};").unwrap_or_default();
+        write!(dark, "--c{number}:#{on_dark:06X};").unwrap_or_default();
+        for part in ["stroke", "fill"] {
+            write!(rules, "[{part}=\"#{on_light:06X}\"]{{{part}:var(--c{number})}}")
+                .unwrap_or_default();
+        }
+    }
+    format!(
+        ":root{{{light}}}@media (prefers-color-scheme:dark){{:root{{{dark}}}}}\
+         @media print{{:root{{{light}}}}}{rules}"
+    )
 }
 
 #[cfg(test)]
@@ -467,5 +530,43 @@ mod tests {
         };
         assert!((40..70).contains(&at(1.0)), "{}", at(1.0));
         assert_eq!(at(0.0), 1);
+    }
+}
+
+#[cfg(test)]
+mod palette_tests {
+    use super::*;
+
+    #[test]
+    fn a_shade_means_one_thing() {
+        let mut shades: Vec<u32> = Role::all().map(|role| role.shades().0).collect();
+        shades.sort_unstable();
+        shades.dedup();
+        assert_eq!(shades.len(), Role::all().count());
+    }
+
+    /// Relative luminance (WCAG 2.2).
+    fn luminance(shade: u32) -> f64 {
+        let [_, red, green, blue] = shade.to_be_bytes();
+        let linear = |part: u8| {
+            let part = f64::from(part) / 255.0;
+            if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * linear(red) + 0.7152 * linear(green) + 0.0722 * linear(blue)
+    }
+
+    #[test]
+    fn lines_stand_out_from_both_grounds() {
+        let contrast = |a: f64, b: f64| (a.max(b) + 0.05) / (a.min(b) + 0.05);
+        for role in Role::all() {
+            let least = match role {
+                Role::Grid | Role::Attention => 1.2,
+                Role::Ink | Role::Faint => 5.0,
+                _ => 3.0,
+            };
+            let (light, dark) = role.shades();
+            assert!(contrast(luminance(light), 1.0) > least, "{role:?} on white");
+            assert!(contrast(luminance(dark), luminance(0x16_181B)) > least, "{role:?} on black");
+        }
     }
 }

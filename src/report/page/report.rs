@@ -3,7 +3,8 @@
 use crate::delay::Settings;
 use crate::experiment::{Experiment, Joint};
 use crate::fit::Split;
-use crate::report::{Against, EstimatedJoint, ImprovedJoint};
+use crate::report::difference::Against;
+use crate::report::{EstimatedJoint, ImprovedJoint};
 
 /// What a report is about.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@ use super::document::{Figure, NARROW};
 use crate::delay::{Condition, Verdict};
 use crate::experiment::Joint;
 use crate::figure::segment::{Scale, SegmentFigure};
-use crate::report::doubt::doubted;
+use crate::report::decisions::doubted;
 use crate::report::{Doubted, EstimatedJoint};
 use crate::wording::{rounded, to_place};
 

@@ -27,7 +27,7 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, split: Split, file: String) -
     let role = Role::of_revision(improved.revisions.len().saturating_sub(1));
     let timeline = Timeline::of(compared.joint);
     let unfitted = unfitted(compared.joint, split, &timeline);
-    let panels = panels(compared, role, &timeline, Marked { unfitted, fails: None });
+    let panels = simulated_panels(compared, role, &timeline, Marked { unfitted, fails: None });
     let name = format!("Measured and simulated output of {}", compared.joint.name);
     let mut caption = "The measured output beside the simulated one, and the residual.".to_owned();
     if !worst_parts(compared, &timeline).is_empty() {
@@ -38,7 +38,7 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, split: Split, file: String) -
 }
 
 /// The output above, the residual below.
-pub(crate) fn panels(
+pub(crate) fn simulated_panels(
     compared: &ComparedJoint<'_>,
     role: Role,
     timeline: &Timeline<'_>,

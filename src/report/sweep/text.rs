@@ -3,10 +3,10 @@
 
 use comfy_table::{Cell, CellAlignment, Table, presets};
 
+use super::level_text;
 use super::sets::{Clause, clauses};
-use super::{ReportedSweep, level_text};
 use crate::delay::sweep::{Factor, Grid, LevelSummary, Sensitivity, SweptStep};
-use crate::report::text_table::TextTable;
+use crate::report::{ReportedSweep, TextTable};
 use crate::wording::{percent, rounded, wrapped};
 
 /// Clauses of the settings that agree that are said; the JSON has all.

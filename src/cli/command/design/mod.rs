@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-use crate::report::{
-    DesignedJoint, design_document, design_json, design_text, input_table, preview_table,
-};
+use crate::report::design::{DesignedJoint, design_json, input_table, preview_table};
+use crate::report::design_words::design_text;
+use crate::report::page::design::design_document;
 
 use crate::cli::console::{Bar, warn};
 use crate::cli::exit::Completion;

@@ -3,8 +3,9 @@
 use crate::batch::Threads;
 use crate::design::{Band, Logged, Plan, PlanRequest, TestRig, Uncertain, plan, reach, response_s};
 use crate::experiment::Joint;
-use crate::report::{
-    Basis, DesignedJoint, hold_note, left_out_note, no_range_note, shortened_note, trials_note,
+use crate::report::design::{Basis, DesignedJoint};
+use crate::report::design_words::{
+    hold_note, left_out_note, no_range_note, shortened_note, trials_note,
 };
 use crate::study::{OfJoints, know_joints};
 use anyhow::bail;

@@ -8,7 +8,7 @@ use crate::design::{
 use crate::effect::Effect;
 use crate::experiment::Joint;
 use crate::model::JointModel;
-use crate::report::{DesignedJoint, Discrimination};
+use crate::report::design::{DesignedJoint, Discrimination};
 use crate::study::suspect_joints;
 use anyhow::{Context as _, anyhow, bail};
 

@@ -4,19 +4,22 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-use crate::report::{Language, Lookup};
-use crate::report::{decision_table, delay_table, level_table, review_sheet, write_delays};
+use crate::report::decisions::decision_table;
+use crate::report::delays::{delay_table, level_table};
+use crate::report::lookup::{Language, Lookup};
+use crate::report::review::review_sheet;
+use crate::report::{EstimatedJoint, Recording, write_delays};
 
 use super::args::OutputArgs;
 use crate::cli::console::Verbosity;
 use crate::cli::output::{
-    Contents, CsvText, FileKind, OutputKind, Outputs, write_bytes, write_csv, write_file,
+    CsvText, FileKind, OutputKind, Outputs, of_delays, write_bytes, write_csv, write_file,
     write_parquet, write_table,
 };
 use crate::cli::viewer::Stream;
 use crate::delay::Settings;
 use crate::experiment::Experiment;
-use crate::report::{Against, EstimatedJoint};
+use crate::report::difference::Against;
 use crate::study::{FileError, OtherResult, Review};
 
 /// The joints that have an estimate with some settings.
@@ -105,12 +108,13 @@ impl<'a> Files<'a> {
             write_bytes(path, source)?;
         }
         let delays = (result.joints, result.settings);
-        let contents = Contents::of_delays("estimate", result.experiment, delays);
-        let contents = Contents { also: result.others, detail: self.args.detail, ..contents };
+        let recording = of_delays("estimate", result.experiment, delays);
+        let detail = self.args.detail.of(result.joints);
+        let recording = Recording { also: result.others, detail, ..recording };
         if let Some(path) = &self.args.recording {
-            contents.record(path, verbosity)?;
+            recording.record(path, verbosity)?;
         }
-        stream.send(&contents, None)
+        stream.send(&recording, None)
     }
 }
 

@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 use crate::batch::Threads;
 use crate::delay::{Automatic, InputKind, Settings, Verdict, check_growing, final_part};
 use crate::experiment::{Experiment, Joint, ReadOptions, line_end_of};
-use crate::report::{EstimatedJoint, decision_rows, step_line};
+use crate::report::decisions::step_line;
+use crate::report::{EstimatedJoint, Recording, decision_rows};
 use crate::study::{JointEstimate, estimate_each};
 use anyhow::{Context as _, bail};
 use serde::Serialize;
@@ -19,7 +20,7 @@ use super::args::{Args, FollowArgs};
 use crate::cli::args::{Format, OwnSettings};
 use crate::cli::console::{self, Interrupt, message};
 use crate::cli::failure::said;
-use crate::cli::output::Contents;
+use crate::cli::output::of_delays;
 use crate::cli::viewer::Stream;
 
 /// Shortest time between two looks at the log.
@@ -221,8 +222,9 @@ impl Reported {
         if joints.is_empty() {
             return Ok(());
         }
-        let contents = Contents::of_delays("estimate", &experiment, (&joints, settings));
-        stream.send(&Contents { detail: args.output.detail, ..contents }, None)
+        let detail = args.output.detail.of(&joints);
+        let recording = of_delays("estimate", &experiment, (&joints, settings));
+        stream.send(&Recording { detail, ..recording }, None)
     }
 
     fn report_joint(

@@ -9,9 +9,11 @@ use crate::cli::exit::Completion;
 use crate::cli::failure::nothing_usable;
 use crate::cli::run::{Session, compared, estimated, failures, left_over, notes, others};
 use crate::delay::{CandidateLines, Settings};
-use crate::report::{
-    EstimateJson, against_table, against_text, delay_levels_text, estimate_table, steps_table,
-};
+use crate::report::against_table;
+use crate::report::decisions::steps_table;
+use crate::report::delays::delay_levels_text;
+use crate::report::difference::against_text;
+use crate::report::estimate::{EstimateJson, estimate_table};
 use files::{Estimated, Files, Run};
 
 pub(crate) use args::Args;

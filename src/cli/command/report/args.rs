@@ -9,7 +9,7 @@ use crate::cli::args::{
 };
 use crate::cli::viewer::StreamArgs;
 use crate::explain::MAX_EFFECTS;
-use crate::report::Heading;
+use crate::report::page::report::Heading;
 
 /// Write a report: one page with figures and numbers to attach to an experiment
 ///

@@ -9,7 +9,10 @@ use crate::cli::args::{DataArgs, Format, read_model};
 use crate::cli::console;
 use crate::cli::run::{Study, estimated};
 use crate::cli::typed::quoted;
-use crate::report::{Report, estimate_table, extent_table, improve_text};
+use crate::report::columns::extent_table;
+use crate::report::estimate::estimate_table;
+use crate::report::improve::improve_text;
+use crate::report::page::report::Report;
 
 /// Prints what was measured and its delays, as soon as they are known: models take longer.
 pub(super) fn show_delays(args: &Args, study: &Study<'_>) -> anyhow::Result<()> {

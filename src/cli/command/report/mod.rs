@@ -12,9 +12,11 @@ use crate::delay::Automatic;
 use crate::experiment::{Joint, Source};
 use crate::explain::{Improvement, Options, Revision, Verdict};
 use crate::model::{LogHash, ModelFile};
-use crate::report::{
-    EstimatedJoint, ImprovedJoint, RecordingFile, Report, report_json, report_text, review_page,
-};
+use crate::report::page::compose::report_json;
+use crate::report::page::compose::report_text;
+use crate::report::page::report::{RecordingFile, Report};
+use crate::report::review_page::review_page;
+use crate::report::{EstimatedJoint, ImprovedJoint};
 use crate::study::{Known, Mode, OfJoints, explain_unknown_joints, improve_joints};
 use anyhow::{Context as _, bail};
 pub(crate) use args::Args;

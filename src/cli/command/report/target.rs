@@ -8,7 +8,7 @@ use anyhow::{Context as _, bail};
 
 use super::args::OutputArgs;
 use crate::cli::output::{OutputKind, Outputs, write_bytes};
-use crate::report::Document;
+use crate::report::page::Document;
 
 /// Where the report and its recording go.
 pub(super) struct Target {

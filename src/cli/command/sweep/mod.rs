@@ -9,7 +9,9 @@ use crate::delay::sweep::{Base, Grid};
 use crate::delay::{Automatic, EstimateError, Method, Settings};
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::numerics::LowPass;
-use crate::report::{ReportedSweep, StepsShown, sweep_json, sweep_text};
+use crate::report::sweep::sweep_json;
+use crate::report::sweep::text::{StepsShown, sweep_text};
+use crate::report::{ReportedSweep, SweepRecording};
 use crate::study::{SweptJoint, sweep_joints};
 use crate::units::Length;
 use anyhow::bail;
@@ -20,7 +22,7 @@ use crate::cli::args::{ConditionArgs, DataArgs, RunArgs, ids_with, low_pass};
 use crate::cli::console::Bar;
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures, said};
-use crate::cli::output::{OutputKind, Outputs, Recorded, SweepContents};
+use crate::cli::output::{OutputKind, Outputs, Recorded};
 use crate::cli::run::Session;
 use crate::cli::viewer::StreamArgs;
 use values::{Values, lengths, methods, passbands};
@@ -121,7 +123,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         return Err(nothing_usable(failures.last()));
     }
     session.warn(&failures, &notes);
-    let contents = SweepContents {
+    let contents = SweepRecording {
         joints: &swept,
         grid: &grid,
         tolerance: args.tolerance,

@@ -1,12 +1,23 @@
-//! What a recording of decisions and models is made of.
+//! What a recording is made of: results of which other outputs tell, too.
 
-use super::layout::Detail;
+use super::{ComparedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep};
 use crate::delay::Settings;
+use crate::delay::sweep::Grid;
 use crate::experiment::{Joint, ReadOptions, Source};
-use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
 use crate::study::OtherResult;
 
-/// Everything that a recording holds.
+/// How many candidates of each segment are recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Detail {
+    /// All.
+    #[default]
+    Full,
+    /// All of rejected and of doubtful segments; of others the best, its neighbours, and every
+    /// so-manieth, 25 at most.
+    Lean,
+}
+
+/// Everything that a recording of decisions and models holds.
 #[derive(Clone, Copy, Debug)]
 pub struct Recording<'a> {
     /// What was done, in a word: the name of the command.
@@ -31,10 +42,25 @@ pub struct Recording<'a> {
 
 impl<'a> Recording<'a> {
     /// The revisions of the model of `joint`.
-    pub(super) fn revisions_of(&self, joint: &Joint) -> Option<&'a ImprovedJoint<'a>> {
+    pub(crate) fn revisions_of(&self, joint: &Joint) -> Option<&'a ImprovedJoint<'a>> {
         let of_joint = |improved: &&ImprovedJoint<'_>| {
             improved.finding.compared.joint.name == joint.name && !improved.revisions.is_empty()
         };
         self.revisions.iter().find(of_joint)
     }
+}
+
+/// Everything that a recording of a sweep holds.
+#[derive(Clone, Copy, Debug)]
+pub struct SweepRecording<'a> {
+    /// The joints, in the order of their tabs.
+    pub joints: &'a [ReportedSweep<'a>],
+    /// The settings that were tried.
+    pub grid: &'a Grid,
+    /// Delays that differ by so many samples more than each allows still agree.
+    pub tolerance: f64,
+    /// The files that were read.
+    pub sources: &'a [Source],
+    /// How they were read.
+    pub reading: &'a ReadOptions,
 }

@@ -1,4 +1,4 @@
-//! Fitted parameters: status, certainty and units.
+//! What a model consists of: its effects, and its parameters with status, certainty and units.
 
 use super::{number, with_error};
 use crate::effect::{Dimension, is_unlimited};
@@ -48,6 +48,21 @@ pub(crate) fn parameter_units(joint: &Joint, model: &JointModel) -> Vec<String> 
         parameters.map(move |parameter| of(component, parameter.dimension))
     });
     own.chain(parameters).collect()
+}
+
+/// Ids of the effects of a model, in its order.
+pub(crate) fn effect_ids(model: &JointModel) -> Vec<&'static str> {
+    model.components().iter().map(|component| component.effect().spec().id).collect()
+}
+
+/// `dead_band + stiction`; a model without effects is an integrator.
+pub(crate) fn effects_text(model: &JointModel) -> String {
+    effects_named(&effect_ids(model))
+}
+
+/// As [`effects_text`], of the ids of effects.
+pub(crate) fn effects_named(ids: &[&str]) -> String {
+    if ids.is_empty() { "integrator".to_owned() } else { ids.join(" + ") }
 }
 
 #[cfg(test)]

@@ -1,11 +1,123 @@
-//! A report as Markdown, with its drawings as files beside it.
+//! A report as one page that needs nothing else, or as Markdown with its drawings as files beside it.
 
 use std::fmt::Write as _;
 
-use super::document::{Block, Document, Entry, Figure};
-use super::palette::figure_style;
-use super::plot::{PlotError, draw};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::document::{Attachment, Block, Document, Entry, Figure};
+use super::plot::{PlotError, draw, figure_style};
+use crate::report::TextTable;
 use crate::wording::legible;
+
+/// How the page looks, but for the shades of figures.
+const STYLE: &str = include_str!("style.css");
+
+impl Document {
+    /// The report as one HTML page: no script, and nothing is fetched.
+    ///
+    /// # Errors
+    /// When a figure cannot be drawn.
+    pub(crate) fn html(&self) -> Result<String, PlotError> {
+        let style = format!("{}{STYLE}", figure_style());
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="color-scheme" content="light dark";
+                    meta name="generator" content={ "tauscope " (env!("CARGO_PKG_VERSION")) };
+                    // A page without one asks its server for an icon.
+                    link rel="icon" href="data:,";
+                    title { (self.title) }
+                    style { (PreEscaped(style)) }
+                }
+                body {
+                    main {
+                        h1 { (self.title) }
+                        @for block in &self.blocks { (written(block)?) }
+                    }
+                }
+            }
+        };
+        Ok(legible(&page.into_string()) + "\n")
+    }
+}
+
+fn written(block: &Block) -> Result<Markup, PlotError> {
+    Ok(match block {
+        Block::Heading { depth, text, anchor } => heading(*depth, text, anchor.as_deref()),
+        Block::Text(text) => html! { p { (text) } },
+        Block::Passage { question, text } => html! { p { b { (question) ":" } " " (text) } },
+        Block::Lead(text) => html! { p.lead { (text) } },
+        Block::List(entries) => html! { ul { @for entry in entries { li { (entry) } } } },
+        Block::Contents(entries) => contents(entries),
+        Block::Code(text) => html! { pre { code { (text) } } },
+        Block::Figures(figures) => drawn(figures)?,
+        Block::Table(rows) => table(rows),
+        Block::Details { summary, blocks } => html! {
+            details {
+                summary { (summary) }
+                @for block in blocks { (written(block)?) }
+            }
+        },
+        Block::Attachment(file) => attachment(file),
+    })
+}
+
+fn heading(depth: u8, text: &str, anchor: Option<&str>) -> Markup {
+    if depth == 2 {
+        html! { h2 id=[anchor] { (text) } }
+    } else {
+        html! { h3 id=[anchor] { (text) } }
+    }
+}
+
+fn contents(entries: &[Entry]) -> Markup {
+    html! {
+        ul.contents {
+            @for Entry { name, anchor, text } in entries {
+                li { a href={ "#" (anchor) } { (name) } " " (text) }
+            }
+        }
+    }
+}
+
+fn drawn(figures: &[Figure]) -> Result<Markup, PlotError> {
+    let class = if figures.len() > 1 { "figures several" } else { "figures" };
+    Ok(html! {
+        div class=(class) {
+            @for one in figures {
+                figure { (PreEscaped(draw(one)?)) figcaption { (one.caption) } }
+            }
+        }
+    })
+}
+
+fn table(table: &TextTable) -> Markup {
+    let class = |column: usize| table.is_number(column).then_some("n");
+    html! {
+        div.table { table {
+            thead { tr {
+                @for (column, cell) in table.header.iter().enumerate() {
+                    th scope="col" class=[class(column)] { (cell) }
+                }
+            } }
+            tbody { @for row in &table.rows { tr {
+                @for (column, cell) in row.iter().enumerate() {
+                    td class=[class(column)] { (cell) }
+                }
+            } } }
+        } }
+    }
+}
+
+fn attachment(file: &Attachment) -> Markup {
+    let link = format!("data:application/octet-stream;base64,{}", STANDARD.encode(&file.bytes));
+    html! { p { a download=(file.name) href=(link) { "Save " (file.name) } } }
+}
 
 /// A report as Markdown.
 #[derive(Clone, Debug)]
