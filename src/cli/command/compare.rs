@@ -8,8 +8,7 @@ use crate::experiment::{Joint, listed};
 use crate::fit::FitError;
 use crate::model::{JointModel, ModelFile};
 use crate::report::ComparedJoint;
-use crate::report::compare::compare_json;
-use crate::report::compare::compare_text;
+use crate::report::compare::{compare_json, compare_text};
 use crate::study::{Mode, compare_joints};
 use clap::Args as ClapArgs;
 

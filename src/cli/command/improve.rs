@@ -6,8 +6,7 @@ use crate::batch::Threads;
 use crate::experiment::Joint;
 use crate::explain::{Attribution, Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
 use crate::model::ModelFile;
-use crate::report::improve::improve_json;
-use crate::report::improve::improve_text;
+use crate::report::improve::{improve_json, improve_text};
 use crate::study::{Mode, improve_joints};
 use clap::Args as ClapArgs;
 
