@@ -2,7 +2,8 @@
 //! what its edges make of where it is.
 //!
 //! ```text
-//! seconds_per_input · x' = sign(in − x) until x = in,   x' = 0 from then on
+//! s · x' = sign(in − x) until x = in,   x' = 0 from then on
+//! s = seconds_per_input where x rises,   seconds_per_input · (1 + falling) where it falls
 //! ```
 //!
 //! The equation is that of [`RateLimit`], before the overlap and the limits of the valve instead of
@@ -15,8 +16,8 @@
 //! (velocity limit of the valve spool); Merritt, H. E., 1967, Hydraulic Control Systems (overlapped
 //! valves).
 
-use super::rate_limit::SLEWING;
-use super::{Dimension, Effect, Moment, Parameter, RateLimit, RecordRange, Spec, Stage, UNLIMITED};
+use super::rate_limit::{EQUATION, SLEW, SLEWING};
+use super::{Effect, Moment, RateLimit, RecordRange, Spec, Stage};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -27,14 +28,9 @@ static SPEC: Spec = Spec::new(
     Stage::Spool,
     "slew rate of the spool, before the valve's overlap and limits",
 )
-.equation("abs(d out/dt) <= 1 / seconds_per_input, toward in")
+.equation(EQUATION)
 .source("Jelali and Kroll, 2003, Hydraulic Servo-systems; Merritt, 1967, Hydraulic Control Systems")
-.parameters(&[Parameter::new(
-    "seconds_per_input",
-    "time for a change of one input unit",
-    Dimension::SecondsPerInput,
-)
-.between(0.0, UNLIMITED)])
+.parameters(&SLEW)
 .memory(1)
 .starting_at_signal()
 .confused_with(&["rate_limit", "spool_lag", "variable_delay"])
@@ -66,7 +62,7 @@ mod tests {
         // 4 V at 10 V/s across an overlap of 1 V: from 0.1 s on the opening grows by 10 V/s to 3 V;
         // back at 0 V it is closed 0.3 s behind the step.
         let overlap = Component::new(&super::super::DeadBand, vec![(-1.0).into(), 1.0.into()]);
-        let slew = Component::new(&SpoolRateLimit, vec![0.1.into()]);
+        let slew = Component::new(&SpoolRateLimit, vec![0.1.into(), 0.0.into()]);
         let model = JointModel::integrator(10.0, 0.0).with(overlap.unwrap()).with(slew.unwrap());
         let input: Vec<f64> =
             (0..3000).map(|k| if (500..1500).contains(&k) { 4.0 } else { 0.0 }).collect();

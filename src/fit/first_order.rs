@@ -73,7 +73,7 @@ impl Follower {
         let (id, model) = self.first_order.started_at(model)?;
         let Some(rate) = self.rate else { return Some((vec![id], model)) };
         let seconds_per_input = self.first_order.static_gain.abs() / rate;
-        let component = Component::new(&RateLimit, vec![seconds_per_input.into()])?;
+        let component = Component::new(&RateLimit, vec![seconds_per_input.into(), 0.0.into()])?;
         Some((vec![id, RateLimit.spec().id], model.with(component)))
     }
 }

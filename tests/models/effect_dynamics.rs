@@ -140,15 +140,18 @@ proptest! {
     }
 
     #[test]
-    fn rate_limit(holds in holds(), seconds_per_input in 0.05_f64..20.0) {
+    fn rate_limit(
+        holds in holds(), seconds_per_input in 0.05_f64..20.0, falling in -0.5_f64..2.0,
+    ) {
         let expected = integrated(&holds, |[x, _], input, h| {
             let most = h / seconds_per_input;
-            [x + (input - x).clamp(-most, most), 0.0]
+            [x + (input - x).clamp(-most / (1.0 + falling), most), 0.0]
         });
         // The small step in which a ramp ends is cut across, by half its height for its
         // time: 0.5 h² / (s dt), with h = dt / 2000.
-        let cut = 0.5 / (seconds_per_input * f64::from(STEPS).powi(2));
-        let found = means(&RateLimit, &[seconds_per_input], &holds);
+        let shorter = seconds_per_input * (1.0 + falling.min(0.0));
+        let cut = 0.5 / (shorter * f64::from(STEPS).powi(2));
+        let found = means(&RateLimit, &[seconds_per_input, falling], &holds);
         agree(&found, &expected, 1e-9 + cut)?;
     }
 

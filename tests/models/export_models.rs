@@ -26,7 +26,7 @@ const EFFECTS: [(&str, &str); 32] = [
     ("asymmetric_saturation", "limit = 1.2, softness = 0.4, negative_limit = 0.84"),
     ("flow_curve", "exponent = 1.4"),
     ("direction_gain", "negative_factor = 0.7"),
-    ("rate_limit", "seconds_per_input = 0.23"),
+    ("rate_limit", "seconds_per_input = 0.23, falling = 0.4"),
     (
         "variable_delay",
         "size = -0.03, falling = 0.021, dwell = 0.04, drift = 0.0007, size_scale = 2.0, \
@@ -66,7 +66,7 @@ const EFFECTS: [(&str, &str); 32] = [
          negative_share_1 = 0.6, negative_share_2 = 0.9, negative_share_3 = 0.5, \
          negative_share_4 = 0.7, negative_share_5 = 0.95, negative_factor = 0.8, reach = 2.0",
     ),
-    ("spool_rate_limit", "seconds_per_input = 0.23"),
+    ("spool_rate_limit", "seconds_per_input = 0.23, falling = -0.3"),
     ("creep", "share = 0.4, time_constant = 0.8"),
     ("position_ripple", "amplitude = 0.2, period = 3.0, phase = 0.5"),
     ("accumulator_droop", "droop = 0.05, recovery_time = 3.0"),
