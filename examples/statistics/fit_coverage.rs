@@ -38,7 +38,7 @@ fn truth(id: &str) -> &'static [f64] {
         "asymmetric_saturation" => &[3.0, 0.3, 2.4],
         "flow_curve" => &[1.3],
         "direction_gain" => &[0.75],
-        "rate_limit" => &[0.06],
+        "rate_limit" => &[0.06, 0.3],
         "variable_delay" => &[-0.03, 0.03, 0.03, 0.0005, 3.0, 2.0, 100.0, 0.0],
         "actuator_lag" | "spool_lag" => &[0.12],
         "resonance" => &[0.3, 0.2],

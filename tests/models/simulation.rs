@@ -201,7 +201,10 @@ impl<'a> Fine<'a> {
             let state = &mut self.states[place];
             let before = state[0];
             match *id {
-                "rate_limit" => state[0] += (signal - before).clamp(-h / p[0], h / p[0]),
+                "rate_limit" => {
+                    let falling = h / (p[0] * (1.0 + p[1]));
+                    state[0] += (signal - before).clamp(-falling, h / p[0]);
+                }
                 "actuator_lag" => {
                     let part = 0.5 * h / p[0];
                     state[0] = (before * (1.0 - part) + 2.0 * part * signal) / (1.0 + part);
@@ -356,7 +359,7 @@ fn effects_of_the_dynamics_are_exact() {
     assert_within(&[("spool_lag", &[0.12])], 1e-8);
     assert_within(&[("resonance", &[0.25, 0.15])], 1e-6);
     assert_within(&[("resonance", &[0.3, 1.7])], 1e-6);
-    assert_within(&[("rate_limit", &[0.031])], 1e-7);
+    assert_within(&[("rate_limit", &[0.031, 0.6])], 1e-7);
     assert_within(&[("coulomb_friction", &[0.6, 0.4, 0.15])], 1e-6);
     assert_within(&[("asymmetric_friction", &[0.6, 0.4, 0.15, 1.7])], 1e-6);
 }
@@ -387,7 +390,7 @@ fn effects_together() {
     ];
     assert_within(&valve, 1e-10);
     assert_within(&[("actuator_lag", &[0.1]), ("resonance", &[0.2, 0.2])], 1e-4);
-    assert_within(&[("rate_limit", &[0.04]), ("actuator_lag", &[0.1])], 1e-4);
+    assert_within(&[("rate_limit", &[0.04, -0.3]), ("actuator_lag", &[0.1])], 1e-4);
     assert_within(&[("dead_band", &[-0.5, 0.7]), ("actuator_lag", &[0.1])], 1e-8);
     assert_within(&[("spool_lag", &[0.1]), ("dead_band", &[-0.5, 0.7])], 5e-4);
     let load: [Part<'_>; 3] =
