@@ -31,7 +31,7 @@ static SPEC: Spec = Spec::new(
 .parameters(&[
     Parameter::new(
         "droop",
-        "part of the speed lost per way lately gone, from full on",
+        "part of the speed lost per way lately gone, near full charge",
         Dimension::PerOutput,
     )
     .between(0.0, UNLIMITED),

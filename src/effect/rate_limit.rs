@@ -35,10 +35,11 @@ static SPEC: Spec = Spec::new("rate_limit", Stage::Dynamics, "slew rate of the s
     .confused_with(&["actuator_lag", "variable_delay"])
     .equations(SLEWING);
 
+/// The limit of each direction.
 pub(super) const EQUATION: &str =
     "-1 / (seconds_per_input (1 + falling)) <= d out/dt <= 1 / seconds_per_input, toward in";
 
-/// The parameters, which the spool has, too.
+/// The parameters, as those of a spool that slews before the overlap.
 pub(super) const SLEW: [Parameter; 2] = [
     Parameter::new(
         "seconds_per_input",
@@ -46,11 +47,15 @@ pub(super) const SLEW: [Parameter; 2] = [
         Dimension::SecondsPerInput,
     )
     .between(0.0, UNLIMITED),
-    Parameter::new("falling", "part by which it is longer where the opening falls", Dimension::One)
-        .between(-0.9, 9.0),
+    Parameter::new(
+        "falling",
+        "relative change of that time where the opening falls",
+        Dimension::One,
+    )
+    .between(-0.9, 9.0),
 ];
 
-/// As the spool has it, too.
+/// One interval, likewise.
 pub(super) const SLEWING: Equations = Equations::new(&["way = signal - opening
              seconds = seconds_per_input * if(way < 0, 1 + falling, 1)
              ramp = abs(way) * seconds

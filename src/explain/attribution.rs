@@ -227,7 +227,7 @@ impl Grown<'_, '_> {
     /// to be alternatives. A curve of any form, or one that does not show the feature after which it is
     /// named, is resembled by the law that has most of its share.
     fn hardly(&self, one: &LeftOut, other: &FitOutcome) -> f64 {
-        /// The part of its share that such a law may miss: less than it has.
+        /// The part of its share that such a law may miss. Chosen: half, as of a credible effect.
         const RESEMBLES: f64 = 0.5;
         let least = self.misfit.least_share(other.errors);
         if self.is_any_form(one.effect) { least.max(RESEMBLES * one.share) } else { least }
