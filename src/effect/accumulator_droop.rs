@@ -1,20 +1,20 @@
 //! Droop of an accumulator: the gain falls with what the joint itself has lately consumed.
 //!
 //! ```text
-//! out = in · (1 + droop · w / h)^(−h),   w' = |in| − w / recovery_time,   h = 1.4 / 2
+//! out = in · √p,   p = (1 + droop · w / 0.7)^(−1.4),   w' = |out| − (1 − p) / (2 · droop · recovery_time)
 //! ```
 //!
-//! A pump that is smaller than the largest demand feeds an accumulator: its pressure falls with the
-//! oil that was drawn, here as the way `w` that the joint went, and recovers with the time constant
-//! of the pump. Its gas expands without heat, `p V^1.4` = const, since moves last seconds, and the flow
-//! through the valve goes with the root of the pressure: hence the power. At the start of a record the
-//! accumulator is full. One that recovers at once is a [curve of the flow](super::FlowCurve).
+//! A pump that is smaller than the largest demand feeds an accumulator: its pressure `p`, in parts of that of
+//! the full one, falls with the oil that was drawn, here as the way `w` that the joint went. Its gas expands
+//! without heat, `p V^1.4` = const, since moves last seconds, and the flow through the valve goes with the
+//! root of the pressure. The pump refills it as the pressure is short, near full charge by `w /
+//! recovery_time`. At the start of a record the accumulator is full. One that recovers at once is a
+//! [curve of the flow](super::FlowCurve).
 //!
 //! # References
-//! Merritt, H. E., 1967, Hydraulic Control Systems (hydraulic power supplies with accumulators; orifice
+//! Merritt, H. E., 1967, Hydraulic Control Systems (pumps that hold a pressure; accumulators; orifice
 //! equation).
 
-use super::decay::{DECAY, DECAY_MEMORY, Decay};
 use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
@@ -26,7 +26,9 @@ static SPEC: Spec = Spec::new(
     Stage::Load,
     "accumulator: the gain falls with what the joint has lately consumed",
 )
-.equation("out = in (1 + droop w / 0.7)^-0.7, dw/dt = abs(in) - w / recovery_time")
+.equation(
+    "out = in sqrt(p), p = (1 + droop w / 0.7)^-1.4, dw/dt = abs(out) - (1 - p) / (2 droop recovery_time)",
+)
 .source("Merritt, 1967, Hydraulic Control Systems")
 .parameters(&[
     Parameter::new(
@@ -35,28 +37,30 @@ static SPEC: Spec = Spec::new(
         Dimension::PerOutput,
     )
     .between(0.0, UNLIMITED),
-    Parameter::new("recovery_time", "time to recover 63 %", Dimension::Seconds)
+    Parameter::new("recovery_time", "time to recover 63 % near full charge", Dimension::Seconds)
         .between(0.0, UNLIMITED)
         .neutral(1.0),
 ])
-.memory(1 + DECAY_MEMORY)
+.memory(1)
 .confused_with(&["thermal_drift", "creep", "input_saturation"])
 .limiting_case("recovery_time", &["flow_curve"])
 .equations(
-    Equations::new(&[
-        "interval = dt\ntime_constant = recovery_time\n",
-        DECAY,
-        "steady = abs(signal) * recovery_time
-             deviation = way - steady
-             during = steady + deviation * mean
-             way = steady + deviation * left
-             out = signal * (1 + droop * during / 0.7)^-0.7",
-    ])
+    Equations::new(&["pressure = (1 + droop * way / 0.7)^-1.4
+             short = 2 * droop * way
+             part = if(short < 1e-9, 1, (1 - pressure) / short)
+             filled = way + dt * abs(signal) * sqrt(pressure)
+             next = if(recovery_time > 0, filled / (1 + dt * part / recovery_time), 0)
+             during = (way + next) / 2
+             way = next
+             out = signal * (1 + droop * during / 0.7)^-0.7"])
     .remembering(&["way"], ""),
 );
 
 /// Half the adiabatic exponent of nitrogen: pressure goes with the whole, flow with its root.
 const POWER: f64 = 0.7;
+
+/// The part of the pressure below which its fall is linear in the way, to rounding.
+const NOTHING: f64 = 1e-9;
 
 impl Effect for AccumulatorDroop {
     fn spec(&self) -> &'static Spec {
@@ -68,17 +72,20 @@ impl Effect for AccumulatorDroop {
         false
     }
 
-    /// The memory is the way `w`, and the decay that was computed last.
+    /// The memory is the way `w`; over an interval the joint takes what the charge at its start gives, and the
+    /// pump gives what the charge at its end is short of.
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
-        let (&[droop, recovery_time], [way, known @ ..]) = (parameters, memory) else {
-            return at.signal;
-        };
-        let decay = Decay::recall(known, at.dt_s, recovery_time);
-        let steady = at.signal.abs() * recovery_time;
-        let deviation = *way - steady;
-        let during = steady + deviation * decay.mean;
-        *way = steady + deviation * decay.left;
-        at.signal * (1.0 + droop * during / POWER).powf(-POWER)
+        let (&[droop, recovery_time], [way]) = (parameters, memory) else { return at.signal };
+        let passed = |way: f64| (1.0 + droop * way / POWER).powf(-POWER);
+        let root = passed(*way);
+        let short = 2.0 * droop * *way;
+        let part = if short < NOTHING { 1.0 } else { (1.0 - root * root) / short };
+        let filled = *way + at.dt_s * at.signal.abs() * root;
+        let next =
+            if recovery_time > 0.0 { filled / (1.0 + at.dt_s * part / recovery_time) } else { 0.0 };
+        let during = 0.5 * (*way + next);
+        *way = next;
+        at.signal * passed(during)
     }
 
     /// Up to where the longest move at the largest speed would use it up.
@@ -98,20 +105,39 @@ impl Effect for AccumulatorDroop {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{assert_close, moment};
+    use super::super::testing::moment;
     use super::*;
+
+    /// By steps of Euler's method, so short that their error is none.
+    fn expected(droop: f64, recovery_time: f64, signal: impl Fn(f64) -> f64, end: f64) -> f64 {
+        const STEP: f64 = 1e-5;
+        let (mut way, mut time, mut out) = (0.0_f64, 0.0, 0.0);
+        while time < end {
+            let pressure = (1.0 + droop * way / 0.7_f64).powf(-1.4);
+            out = signal(time) * pressure.sqrt();
+            way += STEP * (f64::abs(out) - (1.0 - pressure) / (2.0 * droop * recovery_time));
+            time += STEP;
+        }
+        out
+    }
 
     #[test]
     fn slows_down_as_it_goes_and_recovers_at_rest() {
-        let mut memory = [0.0; 5];
-        let mut pass = |signal: f64, dt_s: f64| {
-            AccumulatorDroop.step(&[0.01, 5.0], &mut memory, &Moment { dt_s, ..moment(signal) })
+        let signal = |time: f64| match time {
+            t if t < 5.0 => 10.0,
+            t if t < 8.0 => 0.0,
+            _ => -10.0,
         };
-        let e = (-1.0_f64).exp();
-        // 10 per second for 5 s: w = 50 (1 − e), on average 50 e.
-        assert_close(&[pass(10.0, 5.0)], &[10.0 * (1.0 + 0.5 * e / 0.7).powf(-0.7)]);
-        pass(0.0, 5.0);
-        let before = 50.0 * (1.0 - e) * e;
-        assert_close(&[pass(-10.0, 0.0)], &[-10.0 * (1.0 + 0.01 * before / 0.7).powf(-0.7)]);
+        let mut memory = [0.0; 1];
+        let mut pass = |k: i32| {
+            let at = Moment { dt_s: 0.01, ..moment(signal(0.01 * (f64::from(k) + 0.5))) };
+            AccumulatorDroop.step(&[0.02, 5.0], &mut memory, &at)
+        };
+        let outs: Vec<f64> = (0..820).map(&mut pass).collect();
+        for (k, end) in [(499, 5.0), (800, 8.01), (819, 8.2)] {
+            let expected = expected(0.02, 5.0, signal, end);
+            assert!((outs[k] / expected - 1.0).abs() < 2e-3, "{} is not {expected}", outs[k]);
+        }
+        assert!(outs[499] < 6.0 && outs[800].abs() > 7.0, "{} {}", outs[499], outs[800]);
     }
 }
