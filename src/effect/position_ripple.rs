@@ -54,11 +54,10 @@ impl Effect for PositionRipple {
         at.signal * (1.0 + ripple).max(SMALLEST_FACTOR)
     }
 
-    /// Periods that the record shows four times or more: fewer waves are a linkage, or a sensor that
-    /// runs out of true.
+    /// Periods that the record shows twice or more: what does not repeat is a linkage.
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
         let span = record.output_span();
-        vec![(0.0, 0.95), (1e-3 * span, 0.25 * span), (-TAU, TAU)]
+        vec![(0.0, 0.95), (1e-3 * span, 0.5 * span), (-TAU, TAU)]
     }
 
     /// At the period at which the record ripples most.

@@ -60,7 +60,7 @@ fn holds(trial: &Trial) -> Vec<Hold> {
 fn best_period(holds: &[Hold]) -> Option<f64> {
     /// Cycles over all angles, from the fewest that are a ripple on, and their distance: half of what
     /// turns a cosine by a cycle over the range.
-    const FEWEST: f64 = 4.0;
+    const FEWEST: f64 = 2.0;
     const MOST: f64 = 200.0;
     const STEP: f64 = 0.5;
     let angles = || holds.iter().flat_map(|hold| hold.angles.iter().copied());
