@@ -4,14 +4,21 @@ use nalgebra::DMatrix;
 
 /// The products of all columns with each other, `AᵀA`.
 pub(crate) fn column_products(columns: &DMatrix<f64>) -> DMatrix<f64> {
-    let size = columns.ncols();
+    /// Rows at a time: those of 30 columns fill half of a first-level cache.
+    const ROWS: usize = 128;
+    let (rows, size) = columns.shape();
     let mut products = DMatrix::zeros(size, size);
-    for (i, column) in columns.column_iter().enumerate() {
-        for j in 0..=i {
-            let product = columns.column(j).dot(&column);
-            (products[(i, j)], products[(j, i)]) = (product, product);
+    let values = columns.as_slice();
+    for first in (0..rows).step_by(ROWS) {
+        let part = first..(first + ROWS).min(rows);
+        let column = |index: usize| &values[index * rows..(index + 1) * rows][part.clone()];
+        for i in 0..size {
+            for j in 0..=i {
+                products[(i, j)] += dot(column(i), column(j));
+            }
         }
     }
+    products.fill_upper_triangle_with_lower_triangle();
     products
 }
 
