@@ -48,6 +48,7 @@ static SPEC: Spec = Spec::new(
 .confused_with(&["input_saturation", "direction_gain"])
 .absorbing(&["input_saturation"])
 .refining("input_saturation")
+.looking_like_both(&[["input_saturation", "direction_gain"]])
 .steady()
 .equations(Equations::new(&[
     "here = if(signal < 0, negative_limit, limit)

@@ -42,7 +42,8 @@ static SPEC: Spec = Spec::new(
     Parameter::new("creep", "speed at which the weight lowers it", Dimension::OutputPerSecond)
         .plausible(-MOST_CREEP, MOST_CREEP),
 ])
-.confused_with(&["leakage", "direction_gain", "position_gain"])
+.confused_with(&["leakage", "direction_gain", "position_gain", "input_offset"])
+.looking_like_both(&[["direction_gain", "input_offset"]])
 .equations(Equations::new(&["gravity = cos((position - y0) * radians)
              load = kappa * gravity * sign(signal)
              out = signal * sqrt(1 - load) - creep * gravity"]));

@@ -91,6 +91,9 @@ static SPEC: Spec = Spec::new(
     ["flow_curve", "input_saturation"],
     ["flow_curve", "direction_gain"],
     ["input_saturation", "direction_gain"],
+    ["input_offset", "flow_curve"],
+    ["input_offset", "input_saturation"],
+    ["input_offset", "direction_gain"],
 ])
 .free_form()
 .steady()
