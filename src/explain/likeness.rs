@@ -15,7 +15,8 @@ pub(super) fn looks_like(one: &str, other: &str) -> bool {
 }
 
 /// Whether each of the effects `new` of a fitted model is distinguished from what looks like it beside
-/// it: it is known to do something, and both show the feature after which they are named.
+/// it: it is known to do something, and shows the feature after which it is named. Of two steady curves
+/// both must show it: of one that does not, the other is a correction.
 ///
 /// What was there before may no longer be: that is for a removal to judge.
 pub(super) fn are_distinguished(
@@ -31,7 +32,10 @@ pub(super) fn are_distinguished(
     added.all(|one| {
         let mut alike = fitted.iter().filter(|other| looks_like(id(one), id(other)));
         alike.all(|other| {
-            is_distinct(fit, one, BESIDE_ITS_LIKE) && shows_its_form(one) && shows_its_form(other)
+            let are_curves = one.effect().is_steady() && other.effect().is_steady();
+            is_distinct(fit, one, BESIDE_ITS_LIKE)
+                && shows_its_form(one)
+                && (!are_curves || shows_its_form(other))
         })
     })
 }
