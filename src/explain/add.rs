@@ -43,7 +43,7 @@ pub fn add(
     let p_value = evidence(&with).p_value_against(&evidence(&base));
     let options = Options::default();
     let first = FitOutcome::of(record, base.clone());
-    let misfit = Misfit::of(record, first.errors);
+    let misfit = Misfit::of(record, &first.errors);
     let grown = Grown { record, first: &first, whole: &with, misfit, options: &options };
     let attribution = grown.attribution(workers);
     Ok(Addition {

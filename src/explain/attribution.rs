@@ -111,8 +111,8 @@ impl Grown<'_, '_> {
     /// Whether what was left out has a practical consequence.
     fn has_consequence(&self, one: &LeftOut) -> bool {
         let own = Errors::of(self.record, self.whole);
-        one.share >= self.misfit.least_share(one.fit.errors)
-            || self.misfit.has_consequence(one.fit.errors, own)
+        one.share >= self.misfit.least_share(&one.fit.errors)
+            || self.misfit.has_consequence(&one.fit.errors, &own)
     }
 
     /// What is attributed to which effect.
@@ -163,7 +163,7 @@ impl Grown<'_, '_> {
         let as_little = fewer.filter(|(change, fit)| {
             self.leaves_as_little(fit)
                 && is_founded(self.record, fit, change.new_effect().as_slice(), self.options)
-                && generalizes(own, fit.errors)
+                && generalizes(&own, &fit.errors)
                 && (is_as_likely(fit)
                     || self.is_to_limiting_case(*change)
                     || matches!(change, Change::Replaced { old, .. } if self.is_any_form(old)))
@@ -209,7 +209,7 @@ impl Grown<'_, '_> {
         };
         refinements.extend(small.iter().map(|one| one.effect));
         let own = Errors::of(self.record, self.whole);
-        let is_credible = |one: &&LeftOut| self.misfit.is_credible(one.fit.errors, own);
+        let is_credible = |one: &&LeftOut| self.misfit.is_credible(&one.fit.errors, &own);
         let (credible, doubtful): (Vec<_>, Vec<_>) = found.into_iter().partition(is_credible);
         Attribution {
             found: credible.into_iter().map(contribution).collect(),
@@ -220,7 +220,7 @@ impl Grown<'_, '_> {
 
     /// Whether what the error of `fit` is larger by has no consequence.
     fn leaves_as_little(&self, fit: &FitOutcome) -> bool {
-        self.share(fit) < self.misfit.least_share(fit.errors)
+        self.share(fit) < self.misfit.least_share(&fit.errors)
     }
 
     /// The share by which the error may be larger with another effect in the place of one, for the two
@@ -229,7 +229,7 @@ impl Grown<'_, '_> {
     fn hardly(&self, one: &LeftOut, other: &FitOutcome) -> f64 {
         /// The part of its share that such a law may miss. Chosen: half, as of a credible effect.
         const RESEMBLES: f64 = 0.5;
-        let least = self.misfit.least_share(other.errors);
+        let least = self.misfit.least_share(&other.errors);
         if self.is_any_form(one.effect) { least.max(RESEMBLES * one.share) } else { least }
     }
 
@@ -259,6 +259,6 @@ impl Grown<'_, '_> {
     /// first.
     fn share(&self, fit: &FitOutcome) -> f64 {
         let own = Errors::of(self.record, self.whole);
-        self.misfit.share_of_either(fit.errors, own).min(1.0)
+        self.misfit.share_of_either(&fit.errors, &own).min(1.0)
     }
 }

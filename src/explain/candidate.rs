@@ -30,10 +30,6 @@ const SINGLE_PERCENT: f64 = 2.0;
 /// Percent of the error that a pair of effects must explain to be worth its names.
 const PAIR_PERCENT: f64 = 10.0;
 
-/// Percent of the error on the validation part by which it may grow through an effect that does
-/// not act there.
-const UNCHANGED_PERCENT: f64 = 1.0;
-
 /// Twice the difference in log-likelihood below which two models are as likely: a likelihood
 /// ratio of one in 150.
 pub(crate) const ALIKE: f64 = 10.0;
@@ -134,8 +130,7 @@ impl Candidate {
     /// does not show there, on those that were.
     fn explains(&self, percent: f64) -> bool {
         self.error_reduction_percent > percent
-            || self.error_reduction_percent > -UNCHANGED_PERCENT
-                && self.training_reduction_percent > percent
+            || self.judgement.generalises && self.training_reduction_percent > percent
     }
 
     /// The error by which it is judged: on the validation part where there is one.

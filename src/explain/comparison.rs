@@ -5,6 +5,7 @@ use super::candidate::{ALIKE, Candidate};
 use super::evidence::{Evidence, NoiseMemory};
 use super::extension::Extension;
 use super::judgement::Judgement;
+use super::misfit::{Errors, generalizes};
 use crate::diagnosis::ErrorFigures;
 use crate::fit::{Fit, FitRecord, Part};
 
@@ -24,8 +25,13 @@ pub(super) fn compared(
         return Vec::new();
     };
     let noise = NoiseMemory::of(record, &best.fit.on(record));
-    let of_base = Judged::of(record, base, &noise);
-    let candidate = |extension| of_base.candidate(record, &noise, noise_floor, extension);
+    let (of_base, errors) = (Judged::of(record, base, &noise), Errors::of(record, base));
+    let candidate = |extension: Extension| {
+        let generalises = generalizes(&errors, &extension.fit.errors);
+        let mut candidate = of_base.candidate(record, &noise, noise_floor, extension);
+        candidate.judgement.generalises = generalises;
+        candidate
+    };
     let mut candidates: Vec<Candidate> = extensions.into_iter().map(candidate).collect();
     candidates.sort_by(|a, b| a.behind.total_cmp(&b.behind));
     keep_one_form(&mut candidates);

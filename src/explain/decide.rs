@@ -10,7 +10,7 @@ use super::determined::{are_determined, implausible};
 use super::judgement::{Judgement, Refusal};
 use super::likeness::are_distinguished;
 use super::limiting_case::limiting_case_of;
-use super::misfit::{Errors, Misfit, generalizes};
+use super::misfit::{AS_MUCH, Errors, Misfit};
 use super::options::Options;
 use crate::fit::{AssessedModel, Fit, FitRecord};
 
@@ -38,17 +38,16 @@ impl<'a, 'r> Judge<'a, 'r> {
 
     /// Judges one candidate by itself.
     pub(super) fn judge(&self, candidate: &Candidate) -> Judgement {
-        let share = self.misfit.share(self.own, candidate.fit.errors);
+        let share = self.misfit.share(&self.own, &candidate.fit.errors);
         let determined = are_determined(&candidate.fit, &candidate.effects)
             && (!self.are_levels_few
                 || candidate.determines_as_much_as(self.base) && candidate.is_distinct());
         let implausible = implausible(self.record, &candidate.fit, &candidate.effects);
-        let generalises = generalizes(self.own, candidate.fit.errors);
         let mut judgement = Judgement {
             evidence: candidate.evidence,
             determined,
             plausible: implausible.is_none(),
-            generalises,
+            generalises: candidate.judgement.generalises,
             consequence_percent: 100.0 * share,
             refusal: None,
         };
@@ -79,7 +78,7 @@ impl<'a, 'r> Judge<'a, 'r> {
         if !judged.generalises {
             return Some(Refusal::DoesNotGeneralise);
         }
-        let matters = self.misfit.has_consequence(self.own, candidate.fit.errors);
+        let matters = self.misfit.has_consequence(&self.own, &candidate.fit.errors);
         (!matters && !self.options.keeps_refinements).then_some(Refusal::NoConsequence)
     }
 
@@ -129,8 +128,6 @@ pub(super) fn is_founded(
 /// A ranking as it is shown: by what each effect leaves on the part that was not fitted; of those that
 /// leave as much, the one that is added comes first.
 pub(super) fn in_order(mut ranking: Vec<Candidate>) -> Vec<Candidate> {
-    /// What an error may be larger by and still be as much: a digit that is hardly printed.
-    const AS_MUCH: f64 = 1.001;
     ranking.sort_by(|a, b| a.rmse().total_cmp(&b.rmse()));
     if let Some(added) = ranking.iter().position(|one| one.judgement.is_added()) {
         let least = ranking[added].rmse() / AS_MUCH;
@@ -181,7 +178,7 @@ mod tests {
         let base = fit(&record, &base, &record.range_for(&base)).unwrap();
         let options = Options { effects: vec![&DirectionGain], ..Options::default() };
         let ranking = rank(&record, &base, 0.01, &options, Scope::SingleEffects, &Sequential);
-        let misfit = Misfit::of(&record, Errors::of(&record, &base));
+        let misfit = Misfit::of(&record, &Errors::of(&record, &base));
         let judge = Judge::new(&record, &base, misfit, &options);
         let candidate = &ranking[0];
         let sound = judge.judge(candidate);
@@ -194,7 +191,7 @@ mod tests {
         assert_eq!(with(|one| one.determined = false, None), Some(Refusal::Undetermined));
         assert_eq!(with(|one| one.generalises = false, None), Some(Refusal::DoesNotGeneralise));
         let mut small = candidate.clone();
-        small.fit.errors = judge.own;
+        small.fit.errors = judge.own.clone();
         assert_eq!(judge.refusal(&small, &sound, None), Some(Refusal::NoConsequence));
         let implausible = Refusal::Implausible("factor".to_owned());
         assert_eq!(with(|_| (), Some("factor")), Some(implausible));

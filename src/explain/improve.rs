@@ -4,14 +4,13 @@ use super::attribution::{Grown, LeftOut};
 use super::contribution::Attribution;
 use super::decide::in_order;
 use super::extension::ids;
-use super::ladder::climbed;
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
 use super::revision::{Change, Improvement, Revision};
 use super::separate::separate;
 use super::stepwise::{Ended, Step, add_stepwise};
-use super::structures::{is_more_likely, structured};
+use super::structures::{is_more_likely, most_promising, of_strokes};
 use super::verdict::Verdict;
 use super::workers::Workers;
 use crate::delay::are_strokes;
@@ -54,24 +53,25 @@ pub fn improve(
         revisions.push(revision);
         goes_on
     };
-    let misfit = Misfit::of(record, start.errors);
+    let misfit = Misfit::of(record, &start.errors);
     let makes_strokes = are_strokes(&record.joint().trials);
-    let first = if makes_strokes {
-        climbed(record, first, options, misfit, &mut visit)
-    } else {
-        Some(first)
-    };
-    let Some(first) = first else {
-        let attribution = Attribution::default();
-        return Improvement { revisions, verdict: Verdict::MissingEffect, attribution };
-    };
     let begin = first.clone();
-    let mut ended = add_stepwise(record, first, &given, options, workers, misfit, &mut visit);
-    let is_far = misfit.is_far_from_noise(Errors::of(record, &ended.fit));
+    let usual =
+        if makes_strokes { of_strokes(record, &first, options, misfit) } else { Vec::new() };
+    let mut last = first;
+    for next in usual {
+        if !visit(&last) {
+            let attribution = Attribution::default();
+            return Improvement { revisions, verdict: Verdict::MissingEffect, attribution };
+        }
+        last = next;
+    }
+    let mut ended = add_stepwise(record, last, &given, options, workers, misfit, &mut visit);
+    let is_far = misfit.is_far_from_noise(&Errors::of(record, &ended.fit));
     if !makes_strokes && is_far && !ended.was_stopped {
         /// Effects that are added to a structure, at most: what it has is most of what there is.
         const MORE: usize = 3;
-        let mut steps = structured(record, &begin, options, misfit, workers);
+        let mut steps = most_promising(record, &begin, options, misfit, workers);
         if let Some(start) = steps.pop() {
             let mut later = Vec::new();
             let mut keep = |step: &Step| {

@@ -6,13 +6,13 @@ use super::contribution::Attribution;
 use super::decide::{Judge, in_order};
 use super::extension::ids;
 use super::judgement::Refusal;
-use super::ladder::{climbed, is_usual};
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
 use super::revision::Change;
 use super::separate::separate;
 use super::stepwise::{Step, add_stepwise};
+use super::structures::{is_usual_of_strokes, of_strokes};
 use super::verdict::{Explanation, Verdict};
 use super::workers::Workers;
 use crate::delay::are_strokes;
@@ -29,9 +29,9 @@ const LOOK_AHEAD: usize = 3;
 
 /// Says what is missing from the model of `fit`.
 ///
-/// The first of the ranking is named when the model with it is adequate, or would be with
-/// up to three more effects, or when it explains most of the misfit. Of a joint that is driven in
-/// strokes, the best of the usual effects is named when these explain most of it together.
+/// The first of the ranking that nothing speaks against is named when the model with it is adequate, or
+/// would be with up to three more effects, or when it explains most of the misfit. Of a joint that is
+/// driven in strokes, the best of the usual effects is named when these explain most of it together.
 pub fn explain(
     record: &FitRecord<'_>,
     fit: Fit,
@@ -50,7 +50,7 @@ pub fn explain(
     }
     let named = is_named(record, &fit, &mut ranking, options, workers);
     let verdict = if named { Verdict::MissingEffect } else { Verdict::Unexplained };
-    judged(record, &fit, &mut ranking, verdict, options);
+    decided(&mut ranking, verdict);
     separate(record, &mut ranking, workers);
     if let Some(best) = ranking.first_mut().filter(|_| named) {
         best.fit.keep_series(record);
@@ -58,37 +58,21 @@ pub fn explain(
     let best = ranking.first().filter(|_| named);
     let attribution = best.map_or(attribution, |best| {
         let first = FitOutcome::of(record, fit);
-        let misfit = Misfit::of(record, first.errors);
+        let misfit = Misfit::of(record, &first.errors);
         Grown { record, first: &first, whole: &best.fit.on(record), misfit, options }
             .attribution(workers)
     });
     Explanation { base, verdict, ranking: in_order(ranking), attribution }
 }
 
-/// Judges each candidate by itself; of those that nothing speaks against the first is added where the
-/// verdict is that one is missing, and none else.
-fn judged(
-    record: &FitRecord<'_>,
-    fit: &Fit,
-    ranking: &mut [Candidate],
-    verdict: Verdict,
-    options: &Options,
-) {
-    let misfit = Misfit::of(record, Errors::of(record, fit));
-    let judge = Judge::new(record, fit, misfit, options);
-    for candidate in &mut *ranking {
-        candidate.judgement = judge.judge(candidate);
-    }
-    let Some((first, others)) = ranking.split_first_mut() else { return };
-    let named = verdict == Verdict::MissingEffect;
-    let why_not = if named {
-        first.judgement.refusal = None;
-        Refusal::Behind(first.name())
-    } else {
-        Refusal::NotTheWhole
+/// Refuses those that nothing speaks against but the first of a ranking where that is named, and all where
+/// none is.
+fn decided(ranking: &mut [Candidate], verdict: Verdict) {
+    let (why_not, named) = match ranking.first() {
+        Some(first) if verdict == Verdict::MissingEffect => (Refusal::Behind(first.name()), 1),
+        _ => (Refusal::NotTheWhole, 0),
     };
-    let refused = others.iter_mut().chain(Some(first).filter(|_| !named));
-    for other in refused.filter(|other| other.judgement.is_added()) {
+    for other in ranking.iter_mut().skip(named).filter(|other| other.judgement.is_added()) {
         other.judgement.refusal = Some(why_not.clone());
     }
 }
@@ -107,7 +91,8 @@ pub(crate) fn named(
     if is_named { step.ranking } else { Vec::new() }
 }
 
-/// Whether the best candidate is to be named; of strokes, the best of the usual ones.
+/// Judges each candidate; whether the best that nothing speaks against is to be named, which comes first
+/// then; of strokes, the best of the usual ones.
 fn is_named(
     record: &FitRecord<'_>,
     fit: &Fit,
@@ -115,10 +100,17 @@ fn is_named(
     options: &Options,
     workers: &impl Workers,
 ) -> bool {
+    let misfit = Misfit::of(record, &Errors::of(record, fit));
+    let judge = Judge::new(record, fit, misfit, options);
+    for candidate in &mut *ranking {
+        candidate.judgement = judge.judge(candidate);
+    }
+    let is_usual = |one: &Candidate| one.effects.iter().all(is_usual_of_strokes);
     let usual = are_strokes(&record.joint().trials)
         && usual_account_for_most(record, fit, options)
-        && brought_forward(ranking, |one| one.is_significant() && one.effects.iter().all(is_usual));
-    usual || accounts_for_it(record, ranking, options, workers)
+        && brought_forward(ranking, is_usual);
+    usual
+        || brought_forward(ranking, |_| true) && accounts_for_it(record, ranking, options, workers)
 }
 
 /// Whether the usual effects together explain most of what the model of `fit` lacks.
@@ -127,14 +119,14 @@ fn usual_account_for_most(record: &FitRecord<'_>, fit: &Fit, options: &Options) 
     const MOST: f64 = 0.5;
     let first = Step::new(record, Change::Start, fit.clone());
     let own = Errors::of(record, fit);
-    let misfit = Misfit::of(record, own);
-    let with_all = climbed(record, first, options, misfit, &mut |_| true);
-    with_all.is_some_and(|all| misfit.share(own, Errors::of(record, &all.fit)) >= MOST)
+    let misfit = Misfit::of(record, &own);
+    let with_all = of_strokes(record, &first, options, misfit).pop();
+    with_all.is_some_and(|all| misfit.share(&own, &Errors::of(record, &all.fit)) >= MOST)
 }
 
-/// Puts the first candidate that `is_it` in front; whether there is one.
+/// Puts the first candidate that nothing speaks against and that `is_it` in front; whether there is one.
 fn brought_forward(ranking: &mut [Candidate], is_it: impl Fn(&Candidate) -> bool) -> bool {
-    let found = ranking.iter().position(is_it);
+    let found = ranking.iter().position(|one| one.judgement.is_added() && is_it(one));
     if let Some(index) = found {
         ranking[..=index].rotate_right(1);
     }
@@ -149,7 +141,7 @@ fn accounts_for_it(
     options: &Options,
     workers: &impl Workers,
 ) -> bool {
-    let Some(best) = ranking.first().filter(|best| best.is_significant()) else { return false };
+    let Some(best) = ranking.first() else { return false };
     // What is to be added to an effect that explains nearly all by itself, as no other does, would
     // not change its name.
     let explains_most = |one: &&Candidate| one.share_of_misfit >= MOST_OF_IT;
@@ -160,7 +152,7 @@ fn accounts_for_it(
     let first = Step::new(record, Change::Added(id), best.fit.on(record));
     let given: Vec<_> = ids(&best.fit.model).into_iter().filter(|given| *given != id).collect();
     let ahead = Options { max_effects: 1 + LOOK_AHEAD, keeps_refinements: true, ..options.clone() };
-    let misfit = Misfit::of(record, best.fit.errors);
+    let misfit = Misfit::of(record, &best.fit.errors);
     let mut last = Vec::new();
     let ended = add_stepwise(record, first, &given, &ahead, workers, misfit, |step| {
         last = ids(&step.fit.model);

@@ -35,7 +35,6 @@ mod extension;
 mod improve;
 mod judge;
 mod judgement;
-mod ladder;
 mod likeness;
 mod limiting_case;
 mod measured_signals;

@@ -107,11 +107,11 @@ impl Removal<'_> {
             let exchange = &exchanges[index];
             let evidence = noise.evidence(record, &fit.on(record));
             let does_harm =
-                of_whole.is_nearer_over_windows(&evidence, HARM) || !generalizes(own, fit.errors);
+                of_whole.is_nearer_over_windows(&evidence, HARM) || !generalizes(&own, &fit.errors);
             // More parameters in the place of an effect are worth as much as a further effect.
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
-                || self.misfit.has_consequence(own, fit.errors);
+                || self.misfit.has_consequence(&own, &fit.errors);
             let leaves_less = if exchange.has_free_form() {
                 fit.cost < MUCH_LESS * MUCH_LESS * whole.cost
             } else {
@@ -126,7 +126,7 @@ impl Removal<'_> {
             // Laws need not be as likely as a curve of any form.
             let is_law = exchange.is_for_free_form()
                 && fit.parameters.len() < whole.parameters.len()
-                && !self.misfit.has_consequence(fit.errors, own);
+                && !self.misfit.has_consequence(&fit.errors, &own);
             ((is_better || is_law) && is_founded).then_some((behind, (exchange, fit)))
         });
         let (_, (exchange, fit)) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;

@@ -149,7 +149,7 @@ pub(super) fn add_stepwise(
         if found.is_none() && step.ranking.iter().any(Candidate::is_significant) {
             let refused = step.ranking.iter().find(|candidate| candidate.judgement.is_sound());
             let refinements = refused.map(|refused| refused.effects.clone()).unwrap_or_default();
-            let is_explained = misfit.is_explained(Errors::of(record, &step.fit));
+            let is_explained = misfit.is_explained(&Errors::of(record, &step.fit));
             let verdict = if is_explained { Verdict::Adequate } else { Verdict::Unexplained };
             let was_stopped = !visit(&step);
             return Ended { refinements, ..ended(verdict, step.fit, was_stopped) };
@@ -217,8 +217,8 @@ fn found_beside(
     judge: &Judge<'_, '_>,
     workers: &impl Workers,
 ) -> Option<(usize, Vec<Candidate>)> {
-    let is_far = |errors| judge.misfit.is_far_from_noise(errors);
-    let is_due = what == Beside::FreeForms || is_far(Errors::of(record, judge.base));
+    let is_far = |errors: &Errors| judge.misfit.is_far_from_noise(errors);
+    let is_due = what == Beside::FreeForms || is_far(&Errors::of(record, judge.base));
     if !is_due || !singles.iter().any(Candidate::is_significant) {
         return None;
     }
@@ -227,7 +227,7 @@ fn found_beside(
     let found = &ranking[index];
     let change = Change::between(&judge.base.model, &found.fit.model, found.newest());
     let takes_a_place = what == Beside::FreeForms && matches!(change, Change::Replaced { .. });
-    (takes_a_place || !is_far(found.fit.errors)).then_some((index, ranking))
+    (takes_a_place || !is_far(&found.fit.errors)).then_some((index, ranking))
 }
 
 /// `step` with effects removed or exchanged for as long as that is better; how the search ended
