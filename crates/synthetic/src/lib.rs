@@ -32,14 +32,14 @@
 //!
 //! # Examples
 //! ```
-//! use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
+//! use tauscope_synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
 //!
 //! let input = InputSpec::Levels { levels: vec![-1.0, 1.0], hold_s: [1.0, 2.0] };
 //! let delay = DelayLaw::Uniform { min: 0.05, max: 0.3 };
 //! let elbow = JointSpec { noise: 0.05, ..JointSpec::new("elbow", input, delay) };
 //! let made = simulate(&PlantSpec::new(1, 60.0, vec![elbow]))?;
 //! assert!(made.truth.iter().all(|step| (0.05..0.3).contains(&step.delay_s)));
-//! # Ok::<(), tauscope::synthetic::PlantError>(())
+//! # Ok::<(), tauscope_synthetic::PlantError>(())
 //! ```
 
 mod arrivals;
@@ -69,7 +69,7 @@ pub use delay_law::DelayLaw;
 pub use error::{Place, PlantError};
 pub use input::InputSpec;
 pub use schema::SCHEMA;
-pub use simulate::{Synthetic, simulate};
+pub use simulate::{Recorded, Simulated, TRIAL, simulate};
 pub use spec::{JointSpec, PlantSpec, Ringing, Spikes};
 pub use truth::StepTruth;
 pub use write::{write_log, write_truth};

@@ -219,7 +219,7 @@ impl Predictor for Motion<'_> {
         let mut drive = drive.clone();
         drive.push(intent);
         let mut ahead = self.clone();
-        let period_s = self.clock.period().seconds();
+        let period_s = self.clock.period_s();
         let (mut allowed, mut excess) = (f64::INFINITY, 0.0_f64);
         let mut sample = self.clock.sample_at(self.now_s);
         while ahead.now_s < end_s {
@@ -248,14 +248,13 @@ mod tests {
     use super::super::spec::Ringing;
     use super::super::{DelayLaw, InputSpec};
     use super::*;
-    use crate::units::SamplePeriod;
 
     /// Angles at 1 kHz for 4 s with the input stepping from 0 to 1 at 0.5 s, at a gain of 10.
     fn step_response(lag_s: Option<f64>, ringing: Option<Ringing>) -> (Clock, Vec<f64>) {
         let input = InputSpec::Steps { steps: vec![(501, 1.0)], initial: 0.0 };
         let law = DelayLaw::Constant { seconds: 0.0 };
         let joint = JointSpec { lag_s, ringing, ..JointSpec::new("a", input, law) };
-        let clock = Clock::new(SamplePeriod::from_seconds(1e-3).unwrap(), 4000, 20);
+        let clock = Clock::new(1e-3, 4000, 20);
         (clock, angles(&joint, clock))
     }
 
@@ -316,7 +315,7 @@ mod tests {
         let input = InputSpec::Steps { steps: Vec::new(), initial: 0.5 };
         let law = DelayLaw::Constant { seconds: 0.0 };
         let joint = JointSpec { lag_s: Some(0.1), start: 3.0, ..JointSpec::new("a", input, law) };
-        let clock = Clock::new(SamplePeriod::from_seconds(0.01).unwrap(), 11, 20);
+        let clock = Clock::new(0.01, 11, 20);
         assert!((angles(&joint, clock)[10] - 3.5).abs() < 1e-12);
     }
 }

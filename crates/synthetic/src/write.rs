@@ -2,8 +2,7 @@
 
 use std::io::Write;
 
-use super::{StepTruth, Synthetic};
-use crate::experiment::{Joint, Trial};
+use super::{Recorded, StepTruth};
 
 /// Decimals of the time in seconds: a nanosecond keeps any sample rate uniform.
 const TIME_DECIMALS: usize = 9;
@@ -32,7 +31,7 @@ const TRUTH_COLUMNS: [(&str, Cell); 11] = [
     ("overtaken", |step| step.overtaken.to_string()),
 ];
 
-/// Writes the first trial of each joint as one CSV table, as long as the first joint's.
+/// Writes the records of joints as one CSV table, as long as the first one.
 ///
 /// The columns are `time_s`, then `<joint>.input [unit]` and `<joint>.output [unit]`
 /// for each joint. The time is rounded to 1e-9 s, the output to 1e-6 of its unit;
@@ -40,16 +39,15 @@ const TRUTH_COLUMNS: [(&str, Cell); 11] = [
 ///
 /// # Errors
 /// What writing to `out` gives.
-pub fn write_log(made: &Synthetic, out: impl Write) -> Result<(), csv::Error> {
+pub fn write_log(joints: &[Recorded], out: impl Write) -> Result<(), csv::Error> {
     let mut table = csv::Writer::from_writer(out);
     let mut header = vec!["time_s".to_owned()];
-    header.extend(made.joints.iter().flat_map(column_names));
+    header.extend(joints.iter().flat_map(column_names));
     table.write_record(header)?;
-    let trials: Vec<&Trial> = made.joints.iter().filter_map(|joint| joint.trials.first()).collect();
-    if let Some(first) = trials.first() {
-        for index in 0..first.len() {
-            let mut row = vec![decimal(first.time_s(index + 1), TIME_DECIMALS)];
-            row.extend(trials.iter().flat_map(|trial| cells(trial, index)));
+    if let Some(first) = joints.first() {
+        for index in 0..first.output.len() {
+            let mut row = vec![decimal(index as f64 * first.period_s, TIME_DECIMALS)];
+            row.extend(joints.iter().flat_map(|joint| cells(joint, index)));
             table.write_record(row)?;
         }
     }
@@ -76,19 +74,15 @@ pub fn write_truth(truth: &[StepTruth], out: impl Write) -> Result<(), csv::Erro
     Ok(())
 }
 
-fn column_names(joint: &Joint) -> [String; 2] {
-    let name = |signal: &str, unit: Option<&str>| {
-        let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
-        format!("{}.{signal}{unit}", joint.name)
-    };
-    let (input, output) = (joint.input_unit.as_deref(), joint.output_unit.as_deref());
-    [name("input", input), name("output", output)]
+fn column_names(joint: &Recorded) -> [String; 2] {
+    let Recorded { name, input_unit, output_unit, .. } = joint;
+    [format!("{name}.input [{input_unit}]"), format!("{name}.output [{output_unit}]")]
 }
 
-/// Input and output of one row; empty beyond the end of the trial.
-fn cells(trial: &Trial, index: usize) -> [String; 2] {
-    let input = trial.input().get(index).map(f64::to_string);
-    let output = trial.output().get(index).map(|value| decimal(*value, OUTPUT_DECIMALS));
+/// Input and output of one row; empty beyond the end of the record.
+fn cells(joint: &Recorded, index: usize) -> [String; 2] {
+    let input = joint.input.get(index).map(f64::to_string);
+    let output = joint.output.get(index).map(|value| decimal(*value, OUTPUT_DECIMALS));
     [input.unwrap_or_default(), output.unwrap_or_default()]
 }
 
@@ -101,10 +95,10 @@ fn decimal(value: f64, decimals: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
+    use super::super::{DelayLaw, InputSpec, JointSpec, PlantSpec, Simulated, simulate};
     use super::*;
 
-    fn made() -> Synthetic {
+    fn made() -> Simulated {
         let input = InputSpec::Steps { steps: vec![(2, 0.5)], initial: 0.0 };
         let delay = DelayLaw::Constant { seconds: 0.29 };
         let joint = JointSpec { start: 1.0 / 3.0, ..JointSpec::new("arm", input, delay) };
@@ -121,7 +115,7 @@ mod tests {
     fn a_log_has_native_columns_and_short_numbers() {
         let expected = "time_s,arm.input [V],arm.output [deg]\n\
              0,0,0.333333\n0.01,0.5,0.333333\n0.02,0.5,0.333333\n";
-        assert_eq!(text(|out| write_log(&made(), out)), expected);
+        assert_eq!(text(|out| write_log(&made().joints, out)), expected);
     }
 
     #[test]

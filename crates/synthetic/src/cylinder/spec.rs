@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Examples
 /// ```
-/// # use tauscope::synthetic::CylinderSpec;
+/// # use tauscope_synthetic::CylinderSpec;
 /// let spec: CylinderSpec = toml::from_str("bore_mm = 80\nonly = ['gravity', 'friction']")?;
 /// assert_eq!(spec.rod_mm, CylinderSpec::default().rod_mm);
 /// # Ok::<(), toml::de::Error>(())
@@ -176,7 +176,7 @@ impl CylinderSpec {
     /// ```text
     /// pilot_small_s × exp(-|after - before| / pilot_small_input), and pilot_falling_s
     /// ```
-    pub(in super::super) fn pilot_s(&self, before: f64, after: f64) -> f64 {
+    pub(crate) fn pilot_s(&self, before: f64, after: f64) -> f64 {
         if !self.has(Part::Pilot) {
             return 0.0;
         }
@@ -186,7 +186,7 @@ impl CylinderSpec {
     }
 
     /// Seconds that it adds at most.
-    pub(in super::super) fn longest_pilot_s(&self) -> f64 {
+    pub(crate) fn longest_pilot_s(&self) -> f64 {
         if self.has(Part::Pilot) { self.pilot_small_s + self.pilot_falling_s } else { 0.0 }
     }
 }

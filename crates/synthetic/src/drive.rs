@@ -285,7 +285,7 @@ impl<'a> Driver<'a> {
         let progress = self.clock.progress(sample);
         let time_s = self.clock.time_s(sample);
         let held = sample - self.drive.steps.last().map_or(1, |step| step.sample);
-        let held_s = held as f64 * self.clock.period().seconds();
+        let held_s = held as f64 * self.clock.period_s();
         let at = Occasion { index, before, after: level, progress, chance, held_s, time_s };
         let delay_s = self.joint.delay_s(&at).ok_or_else(|| PlantError::ListedDelays {
             place: Place::joint(&self.joint.name),
@@ -302,17 +302,13 @@ pub(super) mod tests {
     use super::super::DelayLaw;
     use super::super::motion::Motion;
     use super::*;
-    use crate::units::SamplePeriod;
 
     fn clock(samples: usize) -> Clock {
-        Clock::new(SamplePeriod::from_seconds(0.01).unwrap(), samples, 20)
+        Clock::new(0.01, samples, 20)
     }
 
     /// All steps of a plain `joint`.
-    pub(in crate::synthetic) fn driven(
-        joint: &JointSpec,
-        clock: Clock,
-    ) -> Result<Drive, PlantError> {
+    pub(crate) fn driven(joint: &JointSpec, clock: Clock) -> Result<Drive, PlantError> {
         let mut driver = Driver::new(joint, 0, 3, clock);
         let motion = Motion::new(joint, clock);
         while let Some(sample) = driver.due() {

@@ -38,7 +38,7 @@ pub(super) static VARIABLE_DELAY: Twin = Twin {
 const NONE: [f64; 7] = [0.0, 4.0, 0.0, 0.0, 4.0, 0.0, 120.0];
 
 /// Seconds that the numbers of [`VARIABLE_DELAY`] add to the delay of a step.
-pub(in super::super) fn extra_s(numbers: &[f64], at: &Occasion) -> f64 {
+pub(crate) fn extra_s(numbers: &[f64], at: &Occasion) -> f64 {
     let &[small_s, scale, falling_s, rested_s, rest_s, cold_s, warming_s] = numbers else {
         return 0.0;
     };
@@ -50,7 +50,7 @@ pub(in super::super) fn extra_s(numbers: &[f64], at: &Occasion) -> f64 {
 }
 
 /// Seconds that they add at most.
-pub(in super::super) fn longest_s(numbers: &[f64]) -> f64 {
+pub(crate) fn longest_s(numbers: &[f64]) -> f64 {
     let &[small_s, _, falling_s, rested_s, _, cold_s, _] = numbers else { return 0.0 };
     small_s + falling_s + rested_s + cold_s
 }

@@ -5,7 +5,7 @@ use super::super::error::Allowed;
 
 /// Where an effect acts; the signal passes the stages in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) enum Stage {
+pub(crate) enum Stage {
     /// On the delay of each step.
     Delay,
     /// On the command of the valve, in input units, with time.
@@ -24,30 +24,30 @@ pub(in super::super) enum Stage {
 
 /// What an effect sees of its joint beside the signal.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in super::super) struct At {
+pub(crate) struct At {
     /// Seconds since the first sample.
-    pub(in super::super) time_s: f64,
+    pub(crate) time_s: f64,
     /// Angle of the joint, in output units.
-    pub(in super::super) angle: f64,
+    pub(crate) angle: f64,
     /// Length of a time step in seconds.
-    pub(in super::super) substep_s: f64,
+    pub(crate) substep_s: f64,
     /// Radians in an angle of one output unit.
-    pub(in super::super) radians: f64,
+    pub(crate) radians: f64,
     /// Width of the rounded corners, in input units.
-    pub(in super::super) edge: f64,
+    pub(crate) edge: f64,
     /// Their width in output units per second.
-    pub(in super::super) speed_edge: f64,
+    pub(crate) speed_edge: f64,
     /// 1 where the valve is far enough open to move the joint, 0 where it sticks.
-    pub(in super::super) moves: f64,
+    pub(crate) moves: f64,
     /// Demand of the other joints, 0 to 1.
-    pub(in super::super) others: f64,
+    pub(crate) others: f64,
 }
 
 /// The numbers of an effect in the order of its keys, then zeros.
-pub(in super::super) type Numbers = [f64; 7];
+pub(crate) type Numbers = [f64; 7];
 
 /// What moves or remembers in an effect; those that it does not need stay zero.
-pub(in super::super) type States = [f64; 4];
+pub(crate) type States = [f64; 4];
 
 /// The signal behind an effect with these numbers, for the signal before it and the states of the
 /// effect; the last is where the derivatives of the states go.
@@ -61,11 +61,11 @@ type Related = fn(&Numbers, &Clock) -> Option<(usize, &'static str)>;
 
 /// An effect that a plant can hide.
 #[derive(Debug)]
-pub(in super::super) struct Twin {
-    pub(in super::super) name: &'static str,
-    pub(in super::super) stage: Stage,
+pub(crate) struct Twin {
+    pub(crate) name: &'static str,
+    pub(crate) stage: Stage,
     /// Keys of its numbers in a plant file.
-    pub(in super::super) keys: &'static [&'static str],
+    pub(crate) keys: &'static [&'static str],
     /// What each number may be.
     pub(super) allowed: &'static [Allowed],
     /// The last numbers, where a file leaves them out.
@@ -76,7 +76,7 @@ pub(in super::super) struct Twin {
     pub(super) settle: Settle,
     pub(super) act: Act,
     /// Its numbers in a scenario.
-    pub(in super::super) drawn: fn(&Draw) -> Vec<f64>,
+    pub(crate) drawn: fn(&Draw) -> Vec<f64>,
 }
 
 impl Twin {
@@ -114,19 +114,19 @@ pub(super) fn rises(&[from, to, ..]: &Numbers, _: &Clock) -> Option<(usize, &'st
 }
 
 /// Largest level of the input that numbers are drawn for, in input units.
-pub(in super::super) const LARGEST_LEVEL: f64 = 2.5;
+pub(crate) const LARGEST_LEVEL: f64 = 2.5;
 
 /// How the numbers of an effect are drawn.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Draw {
+pub(crate) struct Draw {
     /// From 0, no effect, to 1, all that is plausible.
-    pub(in super::super) strength: f64,
+    pub(crate) strength: f64,
     /// What makes one instance of an effect differ from the next: drawn from 0 to 1.
-    pub(in super::super) chances: [f64; 3],
+    pub(crate) chances: [f64; 3],
     /// The [`valve_edge`](super::super::JointSpec::valve_edge) of the joint.
-    pub(in super::super) valve_edge: f64,
+    pub(crate) valve_edge: f64,
     /// Angle of the joint at the first sample.
-    pub(in super::super) start: f64,
+    pub(crate) start: f64,
 }
 
 impl Draw {

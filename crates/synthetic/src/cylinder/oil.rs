@@ -15,12 +15,12 @@ const RELIEF_FLOW: f64 = 100.0 * LITRE_PER_MINUTE;
 
 /// Pressures above that of the air, in pascal.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::synthetic) struct Pressures {
-    pub(in crate::synthetic) supply: f64,
+pub(crate) struct Pressures {
+    pub(crate) supply: f64,
     /// On the side of the piston.
-    pub(in crate::synthetic) piston: f64,
+    pub(crate) piston: f64,
     /// On the side of the rod.
-    pub(in crate::synthetic) rod: f64,
+    pub(crate) rod: f64,
 }
 
 /// Flows in cubic metres per second.

@@ -15,8 +15,8 @@ use super::effects::{self, CATALOGUE, Draw, FINER, LARGEST_LEVEL, OUTSIDE, Twin}
 use super::error::PlantError;
 use super::input::InputSpec;
 use super::random::{Purpose, stream};
+use super::simulate::{Simulated, simulate};
 use super::spec::{JointSpec, PlantSpec};
-use super::{Synthetic, simulate};
 
 /// Length of a record in seconds.
 const DURATION_S: f64 = 120.0;
@@ -209,14 +209,14 @@ impl Scenario {
     ///
     /// # Examples
     /// ```
-    /// use tauscope::synthetic::scenario::{Noise, Scenario, Strength};
-    /// use tauscope::synthetic::simulate;
+    /// use tauscope_synthetic::scenario::{Noise, Scenario, Strength};
+    /// use tauscope_synthetic::simulate;
     ///
     /// let hidden = Scenario::new(&["dead_band"], Strength::Clear, Noise::white(0.05), 1)?;
     /// assert!(hidden.plant.joints[0].effect.get("dead_band").is_some());
     /// assert!(hidden.error_over_noise > 8.0);
     /// let log = simulate(&hidden.plant)?;
-    /// assert_eq!(log.joints[0].trials[0].len(), 12_000);
+    /// assert_eq!(log.joints[0].output.len(), 12_000);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn new(
@@ -237,7 +237,7 @@ impl Scenario {
     /// # Examples
     /// A valve with softly rounded corners:
     /// ```
-    /// use tauscope::synthetic::scenario::{Noise, Scenario, Strength, ideal};
+    /// use tauscope_synthetic::scenario::{Noise, Scenario, Strength, ideal};
     ///
     /// let mut bare = ideal(1);
     /// bare.joints[0].valve_edge = 0.03;
@@ -408,15 +408,13 @@ fn calibrated(
 }
 
 /// Error of the nearest integrator, in output units.
-fn error(made: &Synthetic) -> f64 {
-    let trial = made.joints.first().and_then(|joint| joint.trials.first());
-    trial.map_or(0.0, integrator::error)
+fn error(made: &Simulated) -> f64 {
+    made.joints.first().map_or(0.0, integrator::error)
 }
 
 /// The farthest that the first joint comes from angle 0, in output units.
-fn reach(made: &Synthetic) -> f64 {
-    let trial = made.joints.first().and_then(|joint| joint.trials.first());
-    let output = trial.map_or(&[][..], |trial| trial.output());
+fn reach(made: &Simulated) -> f64 {
+    let output = made.joints.first().map_or(&[][..], |joint| &joint.output);
     output.iter().fold(0.0, |farthest, angle| angle.abs().max(farthest))
 }
 

@@ -14,7 +14,7 @@ const MAX_STEP_TIMES_RATE: f64 = 1.5;
 
 impl CylinderSpec {
     /// Refuses numbers that no cylinder has, and a time step that is too long for them.
-    pub(in super::super) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
+    pub(crate) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         self.check_numbers(clock, place)?;
         self.check_valve(place)?;
         self.check_piston(place)?;

@@ -1,6 +1,6 @@
 //! How far a record is from that of an integrator with a delay.
 
-use crate::experiment::Trial;
+use crate::simulate::Recorded;
 
 /// Longest delay that is tried, in seconds.
 const LONGEST_S: f64 = 2.0;
@@ -12,17 +12,17 @@ const COARSE_S: f64 = 0.05;
 /// Halvings of that distance afterwards.
 const REFINEMENTS: usize = 10;
 
-/// Root mean square of `trial` less the nearest integrator, in output units.
+/// Root mean square of `record` less the nearest integrator, in output units.
 ///
 /// ```text
 /// y(t) = y_i + gain ∫ u(t - delay) dt      from one step of the input to the next
 /// ```
 ///
 /// with a free start `y_i` for each level, and the best gain and delay.
-pub(super) fn error(trial: &Trial) -> f64 {
-    let way = Way::of(trial.input(), trial.period().seconds());
-    let holds = holds(trial.input());
-    let error = |delay_s: f64| squared(&way, trial.output(), &holds, delay_s);
+pub(super) fn error(record: &Recorded) -> f64 {
+    let way = Way::of(&record.input, record.period_s);
+    let holds = holds(&record.input);
+    let error = |delay_s: f64| squared(&way, &record.output, &holds, delay_s);
     let mut best = (error(0.0), 0.0);
     let mut k = 1.0;
     while k * COARSE_S <= LONGEST_S {
@@ -37,7 +37,7 @@ pub(super) fn error(trial: &Trial) -> f64 {
             best = lower(best, (error(delay_s.max(0.0)), delay_s.max(0.0)));
         }
     }
-    (best.0 / trial.len() as f64).sqrt()
+    (best.0 / record.output.len() as f64).sqrt()
 }
 
 fn lower(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
@@ -110,15 +110,14 @@ fn squared(way: &Way, output: &[f64], holds: &[std::ops::Range<usize>], delay_s:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::units::SamplePeriod;
 
-    fn trial(output: impl Fn(f64) -> f64) -> Trial {
+    fn record(output: impl Fn(f64) -> f64) -> Recorded {
         let input: Vec<f64> = (0..600).map(|k| f64::from((k / 100) % 3 - 1)).collect();
         let output = (0..600).map(|k| output(f64::from(k) * 0.01)).collect();
-        Trial::new("1", 0.0, SamplePeriod::from_seconds(0.01).unwrap(), input, output).unwrap()
+        Recorded { input, output, period_s: 0.01, ..Recorded::default() }
     }
 
-    /// Integral of the input of [`trial`], whose first level is -1.
+    /// Integral of the input of [`record`], whose first level is -1.
     fn way(t: f64) -> f64 {
         let (turns, rest) = ((t / 3.0).floor(), t.rem_euclid(3.0));
         let _ = turns;
@@ -127,7 +126,7 @@ mod tests {
 
     #[test]
     fn an_integrator_with_a_delay_has_no_error() {
-        let error = error(&trial(|t| {
+        let error = error(&record(|t| {
             let late = t - 0.2137;
             7.0 + 3.0 * if late < 0.0 { -late } else { way(late) }
         }));
@@ -137,7 +136,7 @@ mod tests {
     #[test]
     fn an_error_is_that_about_the_start_of_each_hold() {
         // One degree up and down within each second.
-        let error = error(&trial(|t| 2.0 * way(t) + (std::f64::consts::TAU * t).sin()));
+        let error = error(&record(|t| 2.0 * way(t) + (std::f64::consts::TAU * t).sin()));
         // What of the sine looks like a slope or a delay is gone.
         assert!((0.5..=0.71).contains(&error), "{error}");
     }

@@ -7,16 +7,33 @@ use super::random::{Purpose, stream};
 use super::spec::{JointSpec, PlantSpec};
 use super::truth::{self, StepTruth};
 use super::{sensor, together};
-use crate::experiment::{Joint, Trial};
 
-/// Label of the only trial.
-const TRIAL: &str = "1";
+/// Label of the only trial, in the truth.
+pub const TRIAL: &str = "1";
+
+/// What was recorded of one joint, from time 0 on: values that are finite, one of the input and
+/// one of the output for each sample.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recorded {
+    /// Name of the joint.
+    pub name: String,
+    /// Unit of the input.
+    pub input_unit: String,
+    /// Unit of the output.
+    pub output_unit: String,
+    /// Seconds between samples, above zero.
+    pub period_s: f64,
+    /// What drove the joint, in `input_unit`.
+    pub input: Vec<f64>,
+    /// What its sensor showed, in `output_unit`.
+    pub output: Vec<f64>,
+}
 
 /// Simulated joints and the truth about them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Synthetic {
-    /// The joints in the order of the plant, each with one trial labelled `1`.
-    pub joints: Vec<Joint>,
+pub struct Simulated {
+    /// The joints in the order of the plant.
+    pub joints: Vec<Recorded>,
     /// The steps of the first joint in the order of time, those of the second, …
     pub truth: Vec<StepTruth>,
 }
@@ -30,8 +47,8 @@ pub struct Synthetic {
 /// Those of [`PlantSpec::check`]; [`PlantError::Range`] when no level keeps a joint in
 /// its range; [`PlantError::ListedDelays`] when a drawn input has more steps than
 /// delays are listed; [`PlantError::Runaway`] when the equations of a cylinder do not
-/// hold together; [`PlantError::Trial`] when an angle grows beyond all numbers.
-pub fn simulate(spec: &PlantSpec) -> Result<Synthetic, PlantError> {
+/// hold together; [`PlantError::NotFinite`] when an angle grows beyond all numbers.
+pub fn simulate(spec: &PlantSpec) -> Result<Simulated, PlantError> {
     spec.check()?;
     let clock = spec.clock()?;
     let (mut joints, mut truth) = (Vec::new(), Vec::new());
@@ -45,7 +62,7 @@ pub fn simulate(spec: &PlantSpec) -> Result<Synthetic, PlantError> {
         sensor::spike(joint, &mut output, &mut stream(spec.seed, index, Purpose::Spikes));
         joints.push(recorded(joint, &clock, drive.input(clock.samples()), output)?);
     }
-    Ok(Synthetic { joints, truth })
+    Ok(Simulated { joints, truth })
 }
 
 /// The log of one joint.
@@ -54,11 +71,19 @@ fn recorded(
     clock: &Clock,
     input: Vec<f64>,
     output: Vec<f64>,
-) -> Result<Joint, PlantError> {
-    let trial = Trial::new(TRIAL, 0.0, clock.period(), input, output)
-        .map_err(|source| PlantError::Trial { place: Place::joint(&spec.name), source })?;
-    let joint = Joint::new(spec.name.clone(), vec![trial]);
-    Ok(joint.with_units(spec.input_unit.clone(), spec.output_unit.clone()))
+) -> Result<Recorded, PlantError> {
+    let finite = |(u, y): (&f64, &f64)| u.is_finite() && y.is_finite();
+    if let Some(index) = input.iter().zip(&output).position(|pair| !finite(pair)) {
+        return Err(PlantError::NotFinite { place: Place::joint(&spec.name), sample: index + 1 });
+    }
+    Ok(Recorded {
+        name: spec.name.clone(),
+        input_unit: spec.input_unit.clone(),
+        output_unit: spec.output_unit.clone(),
+        period_s: clock.period_s(),
+        input,
+        output,
+    })
 }
 
 #[cfg(test)]
@@ -81,21 +106,21 @@ mod tests {
     }
 
     /// What 2 s of `joint` look like.
-    fn short(joint: JointSpec) -> Synthetic {
+    fn short(joint: JointSpec) -> Simulated {
         simulate(&PlantSpec::new(1, 2.0, vec![joint])).unwrap()
     }
 
     /// What 60 s of `joints` look like.
-    fn long(seed: u64, joints: &[JointSpec]) -> Synthetic {
+    fn long(seed: u64, joints: &[JointSpec]) -> Simulated {
         simulate(&PlantSpec::new(seed, 60.0, joints.to_vec())).unwrap()
     }
 
-    fn output(made: &Synthetic) -> &[f64] {
-        made.joints[0].trials[0].output()
+    fn output(made: &Simulated) -> &[f64] {
+        &made.joints[0].output
     }
 
-    fn inputs(made: &Synthetic) -> Vec<&[f64]> {
-        made.joints.iter().map(|joint| joint.trials[0].input()).collect()
+    fn inputs(made: &Simulated) -> Vec<&[f64]> {
+        made.joints.iter().map(|joint| &joint.input[..]).collect()
     }
 
     /// Time at which the lines through two pairs of samples around a kink cross.
@@ -207,7 +232,7 @@ mod tests {
     fn an_angle_beyond_all_numbers_is_an_error() {
         let joint = JointSpec { gain: f64::MAX, ..stepped(&[(2, 100.0)], 0.0) };
         let found = simulate(&PlantSpec::new(1, 2.0, vec![joint]));
-        assert!(matches!(found, Err(PlantError::Trial { .. })));
+        assert!(matches!(found, Err(PlantError::NotFinite { .. })));
     }
 
     #[test]
@@ -237,7 +262,7 @@ mod tests {
         for (change, odd) in changes.iter().flat_map(|change| ODD.map(|odd| (change, odd))) {
             let mut spec = PlantSpec::new(1, 2.0, vec![wandering("a")]);
             change(&mut spec, odd);
-            let finite = |made: Synthetic| output(&made).iter().all(|y| y.is_finite());
+            let finite = |made: Simulated| output(&made).iter().all(|y| y.is_finite());
             assert!(simulate(&spec).map_or(true, finite));
         }
     }

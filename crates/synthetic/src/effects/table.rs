@@ -66,7 +66,7 @@ pub const OUTSIDE: [&str; 5] =
     ["input_notch", "creep_memory", "sticky_spot", "disturbance", "sensor_nonlinearity"];
 
 /// All effects, in the order in which the signal passes them.
-pub(in super::super) fn in_order() -> impl Iterator<Item = &'static Twin> {
+pub(crate) fn in_order() -> impl Iterator<Item = &'static Twin> {
     TWINS.iter().copied()
 }
 
@@ -74,7 +74,7 @@ pub(in super::super) fn in_order() -> impl Iterator<Item = &'static Twin> {
 ///
 /// # Errors
 /// [`PlantError::Unknown`].
-pub(in super::super) fn find(text: &str) -> Result<&'static Twin, PlantError> {
+pub(crate) fn find(text: &str) -> Result<&'static Twin, PlantError> {
     /// Likeness, from 0 to 1, above which a name is proposed.
     const ALIKE: f64 = 0.8;
     let known = || CATALOGUE.into_iter().chain(OUTSIDE).chain(FINER);

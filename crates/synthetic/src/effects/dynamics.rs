@@ -231,11 +231,11 @@ pub(super) static CREEP_MEMORY: Twin = Twin {
 };
 
 /// The plain lag of a joint, on its speed.
-pub(in super::super) static LAG: Twin =
+pub(crate) static LAG: Twin =
     Twin { settle: followed, act: lagging, ..Twin::new("lag_s", Stage::Speed, &[], &[]) };
 
 /// The plain ringing of a joint, with its period and damping: `s'' = ω² (in - s) - 2 damping ω s'`.
-pub(in super::super) static RINGING: Twin = Twin {
+pub(crate) static RINGING: Twin = Twin {
     settle: |_, speed, _, states| {
         states[0] = speed;
         speed

@@ -11,9 +11,9 @@ use super::twin::{At, Numbers, Stage, States, Twin};
 
 /// An effect with its numbers.
 #[derive(Clone, Debug)]
-pub(in super::super) struct Instance {
-    pub(in super::super) twin: &'static Twin,
-    pub(in super::super) numbers: Numbers,
+pub(crate) struct Instance {
+    pub(crate) twin: &'static Twin,
+    pub(crate) numbers: Numbers,
 }
 
 /// Effects that a joint hides: `[joint.effect.<name>]` or `[joint.outside.<name>]` in a plant file.
@@ -23,25 +23,19 @@ pub(in super::super) struct Instance {
 pub struct Hidden(Vec<Instance>);
 
 impl Instance {
-    pub(in super::super) fn new(twin: &'static Twin, given: &[f64]) -> Self {
+    pub(crate) fn new(twin: &'static Twin, given: &[f64]) -> Self {
         let mut numbers = Numbers::default();
         numbers.iter_mut().zip(given).for_each(|(number, given)| *number = *given);
         Self { twin, numbers }
     }
 
     /// The signal behind it.
-    pub(in super::super) fn act(
-        &self,
-        signal: f64,
-        at: &At,
-        states: &States,
-        rates: &mut States,
-    ) -> f64 {
+    pub(crate) fn act(&self, signal: f64, at: &At, states: &States, rates: &mut States) -> f64 {
         (self.twin.act)(&self.numbers, signal, at, states, rates)
     }
 
     /// The signal behind it after `signal` has long been held, and the states then.
-    pub(in super::super) fn settle(&self, signal: f64, at: &At, states: &mut States) -> f64 {
+    pub(crate) fn settle(&self, signal: f64, at: &At, states: &mut States) -> f64 {
         (self.twin.settle)(&self.numbers, signal, at, states)
     }
 
@@ -91,7 +85,7 @@ impl Hidden {
     }
 
     /// Puts an effect in the place of what there is of it.
-    pub(in super::super) fn put(&mut self, twin: &'static Twin, numbers: &[f64]) {
+    pub(crate) fn put(&mut self, twin: &'static Twin, numbers: &[f64]) {
         self.0.retain(|instance| instance.twin.name != twin.name);
         self.0.push(Instance::new(twin, numbers));
         let place = |one: &Instance| in_order().position(|twin| twin.name == one.twin.name);
@@ -99,7 +93,7 @@ impl Hidden {
     }
 
     /// Those that act, in the order in which the signal passes them.
-    pub(in super::super) fn acting(&self) -> impl Iterator<Item = &Instance> {
+    pub(crate) fn acting(&self) -> impl Iterator<Item = &Instance> {
         let is_replaced = |one: &&Instance| {
             self.0.iter().any(|other| other.twin.instead_of == Some(one.twin.name))
         };
@@ -107,13 +101,13 @@ impl Hidden {
     }
 
     /// Names of those that change the motion, which those of the sensor do not.
-    pub(in super::super) fn hindering(&self) -> Vec<&'static str> {
+    pub(crate) fn hindering(&self) -> Vec<&'static str> {
         let motion = self.0.iter().filter(|instance| instance.twin.stage != Stage::Sensor);
         motion.map(|instance| instance.twin.name).collect()
     }
 
     /// What the sensor shows of `angle`.
-    pub(in super::super) fn shown(&self, angle: f64) -> f64 {
+    pub(crate) fn shown(&self, angle: f64) -> f64 {
         let of_sensor = self.0.iter().filter(|instance| instance.twin.stage == Stage::Sensor);
         of_sensor.fold(angle, |angle, one| {
             one.act(angle, &At::default(), &States::default(), &mut States::default())
@@ -121,7 +115,7 @@ impl Hidden {
     }
 
     /// Refuses numbers that mean nothing; `group` is the key of the table.
-    pub(in super::super) fn check(
+    pub(crate) fn check(
         &self,
         group: &str,
         place: &Place,
@@ -141,7 +135,7 @@ impl Serialize for Hidden {
 ///
 /// # Errors
 /// For a key that is unknown, or missing.
-pub(in super::super) fn numbers<E: de::Error>(
+pub(crate) fn numbers<E: de::Error>(
     twin: &'static Twin,
     given: &BTreeMap<String, f64>,
 ) -> Result<Vec<f64>, E> {
@@ -157,16 +151,12 @@ pub(in super::super) fn numbers<E: de::Error>(
 }
 
 /// Effects of the catalogue.
-pub(in super::super) fn catalogue<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Hidden, D::Error> {
+pub(crate) fn catalogue<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Hidden, D::Error> {
     read(deserializer, |name| !OUTSIDE.contains(&name))
 }
 
 /// Effects outside it.
-pub(in super::super) fn outside<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Hidden, D::Error> {
+pub(crate) fn outside<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Hidden, D::Error> {
     read(deserializer, |name| OUTSIDE.contains(&name))
 }
 

@@ -3,7 +3,6 @@
 use std::fmt;
 
 use super::clock::{Clock, MIN_STEPS_PER_LAG, MIN_STEPS_PER_PERIOD};
-use crate::experiment::{TrialError, did_you_mean};
 
 /// Which part of a plant file is meant.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,7 +49,7 @@ pub enum PlantError {
         allowed: &'static str,
     },
     /// No effect has this name.
-    #[error("no effect `{name}`{}; known: {known}", did_you_mean(*nearest))]
+    #[error("no effect `{name}`{}; known: {known}", suggestion(*nearest))]
     Unknown {
         /// The name.
         name: String,
@@ -106,14 +105,23 @@ pub enum PlantError {
         /// When it was found, in seconds.
         time_s: f64,
     },
-    /// The simulated samples do not make a trial: the angle grew without bound.
-    #[error("{place}: the simulated samples do not make a trial")]
-    Trial {
+    /// The angle grew without bound.
+    #[error(
+        "{place}: the simulated samples do not make a trial: trial `{trial}` has a sample that is \
+         not finite: number {sample}",
+        trial = super::simulate::TRIAL
+    )]
+    NotFinite {
         /// The joint.
         place: Place,
-        /// What is wrong with them.
-        source: TrialError,
+        /// 1-based number of the first such sample.
+        sample: usize,
     },
+}
+
+/// What is said of the name that is most like an unknown one.
+fn suggestion(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
 }
 
 /// What a number may be.
@@ -158,11 +166,10 @@ pub(super) const LASTS_A_PERIOD: Allowed =
 const LASTS: &str = "finite seconds, long enough for the time steps (sample_period_s / substeps): \
                      4 or more in a time constant, 40 in a period";
 pub(super) const LASTS_A_SAMPLE: Allowed =
-    allowed("finite, a sample or more", |x, clock| x.is_finite() && x >= clock.period().seconds());
+    allowed("finite, a sample or more", |x, clock| x.is_finite() && x >= clock.period_s());
 /// The part of a distance that is lost per second.
-pub(super) const DRAINS: Allowed = allowed("0 or more, below one in a sample", |x, clock| {
-    x >= 0.0 && x * clock.period().seconds() < 1.0
-});
+pub(super) const DRAINS: Allowed =
+    allowed("0 or more, below one in a sample", |x, clock| x >= 0.0 && x * clock.period_s() < 1.0);
 
 impl Place {
     /// The joint `name`.

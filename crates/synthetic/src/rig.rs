@@ -141,7 +141,7 @@ impl Predictor for Rig<'_> {
         let range = [range[0].min(ahead.angle()), range[1].max(ahead.angle())];
         let end_s = end_s + SETTLING_S;
         while now_s < end_s {
-            now_s = (now_s + self.clock.period().seconds()).min(end_s);
+            now_s = (now_s + self.clock.period_s()).min(end_s);
             ahead.run(now_s, &drive)?;
             let excess = beyond(ahead.angle(), range);
             if excess > 0.0 {

@@ -142,7 +142,7 @@ pub(super) mod default {
         SUBSTEPS
     }
 
-    pub(in crate::synthetic) fn gain() -> f64 {
+    pub(crate) fn gain() -> f64 {
         10.0
     }
 
@@ -177,7 +177,7 @@ impl PlantSpec {
     ///
     /// # Examples
     /// ```
-    /// # use tauscope::synthetic::{PlantSpec, simulate};
+    /// # use tauscope_synthetic::{PlantSpec, simulate};
     /// let spec = PlantSpec::from_toml(
     ///     r#"
     ///     schema = "tauscope/plant/1"
@@ -190,9 +190,9 @@ impl PlantSpec {
     ///     "#,
     /// )?;
     /// let made = simulate(&spec)?;
-    /// assert_eq!(made.joints[0].trials[0].len(), 160);
+    /// assert_eq!(made.joints[0].output.len(), 160);
     /// assert_eq!(made.truth[1].p, 89);
-    /// # Ok::<(), tauscope::synthetic::PlantError>(())
+    /// # Ok::<(), tauscope_synthetic::PlantError>(())
     /// ```
     pub fn from_toml(text: &str) -> Result<Self, PlantError> {
         let parsed = toml::from_str::<Self>(text);
@@ -246,11 +246,11 @@ impl JointSpec {
     ///
     /// # Examples
     /// ```
-    /// # use tauscope::synthetic::scenario::ideal;
+    /// # use tauscope_synthetic::scenario::ideal;
     /// let mut plant = ideal(1);
     /// plant.joints[0].hide("backlash", &[("width".to_owned(), 1.5)])?;
     /// assert_eq!(plant.joints[0].effect.get("backlash"), Some(&[1.5][..]));
-    /// # Ok::<(), tauscope::synthetic::PlantError>(())
+    /// # Ok::<(), tauscope_synthetic::PlantError>(())
     /// ```
     pub fn hide(&mut self, name: &str, numbers: &[(String, f64)]) -> Result<(), PlantError> {
         let twin = effects::find(name)?;
@@ -317,11 +317,11 @@ pub(super) mod tests {
     use super::*;
 
     const HEAD: &str = "schema = 'tauscope/plant/1'\nseed = 1\nduration_s = 10\n";
-    pub(in crate::synthetic) const INPUT: &str = "input = { levels = [-1, 1], hold_s = [1, 2] }\n";
-    pub(in crate::synthetic) const DELAY: &str = "delay = { law = 'constant', seconds = 0.1 }\n";
+    pub(crate) const INPUT: &str = "input = { levels = [-1, 1], hold_s = [1, 2] }\n";
+    pub(crate) const DELAY: &str = "delay = { law = 'constant', seconds = 0.1 }\n";
 
     /// A plant of one joint with the lines `parts`.
-    pub(in crate::synthetic) fn joint(parts: &[&str]) -> Result<PlantSpec, PlantError> {
+    pub(crate) fn joint(parts: &[&str]) -> Result<PlantSpec, PlantError> {
         PlantSpec::from_toml(&format!("{HEAD}[[joint]]\nname = 'a'\n{}", parts.concat()))
     }
 

@@ -1,7 +1,5 @@
 //! Samples and the finer time steps between them.
 
-use crate::units::SamplePeriod;
-
 /// Fewest time steps in a lag: the error of one step is then below 1e-5.
 pub(super) const MIN_STEPS_PER_LAG: f64 = 4.0;
 
@@ -11,20 +9,20 @@ pub(super) const MIN_STEPS_PER_PERIOD: f64 = 40.0;
 /// The times of a record.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock {
-    period: SamplePeriod,
+    period_s: f64,
     samples: usize,
     substeps: u32,
 }
 
 impl Clock {
     /// `samples` samples, `substeps` time steps from one to the next.
-    pub(super) fn new(period: SamplePeriod, samples: usize, substeps: u32) -> Self {
-        Self { period, samples, substeps }
+    pub(super) fn new(period_s: f64, samples: usize, substeps: u32) -> Self {
+        Self { period_s, samples, substeps }
     }
 
     /// Seconds between samples.
-    pub(super) fn period(&self) -> SamplePeriod {
-        self.period
+    pub(super) fn period_s(&self) -> f64 {
+        self.period_s
     }
 
     /// Samples in the record.
@@ -34,18 +32,18 @@ impl Clock {
 
     /// Length of one time step in seconds.
     pub(super) fn substep_s(&self) -> f64 {
-        self.period.seconds() / f64::from(self.substeps)
+        self.period_s / f64::from(self.substeps)
     }
 
     /// Time of the sample with the 1-based number `sample`, in seconds.
     pub(super) fn time_s(&self, sample: usize) -> f64 {
-        (sample as f64 - 1.0) * self.period.seconds()
+        (sample as f64 - 1.0) * self.period_s
     }
 
     /// Ends of the time steps between `sample` and the next one, in seconds.
     pub(super) fn substep_ends(&self, sample: usize) -> impl Iterator<Item = f64> + use<> {
-        let (start, parts, period) = (sample as f64 - 1.0, self.substeps, self.period);
-        (1..=parts).map(move |j| (start + f64::from(j) / f64::from(parts)) * period.seconds())
+        let (start, parts, period_s) = (sample as f64 - 1.0, self.substeps, self.period_s);
+        (1..=parts).map(move |j| (start + f64::from(j) / f64::from(parts)) * period_s)
     }
 
     /// 1-based number of the sample nearest to `time_s`.
@@ -60,7 +58,7 @@ impl Clock {
 
     /// Whole samples nearest to `seconds`.
     pub(super) fn samples_in(&self, seconds: f64) -> usize {
-        whole(seconds / self.period.seconds())
+        whole(seconds / self.period_s)
     }
 }
 
@@ -80,7 +78,7 @@ mod tests {
 
     #[test]
     fn the_last_time_step_ends_at_the_next_sample() {
-        let clock = Clock::new(SamplePeriod::from_seconds(0.01).unwrap(), 100, 20);
+        let clock = Clock::new(0.01, 100, 20);
         let ends: Vec<f64> = clock.substep_ends(7).collect();
         assert_eq!(ends.len(), 20);
         assert!((ends[0] - 0.0605).abs() < 1e-12);

@@ -8,22 +8,22 @@ use super::valve::Valve;
 
 /// What changes by itself, in SI units.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::synthetic) struct State {
+pub(crate) struct State {
     /// Place of the spool as a fraction of its stroke.
-    pub(in crate::synthetic) spool: f64,
+    pub(crate) spool: f64,
     /// Its speed.
-    pub(in crate::synthetic) spool_speed: f64,
+    pub(crate) spool_speed: f64,
     /// Pressures of the oil.
-    pub(in crate::synthetic) pressures: Pressures,
+    pub(crate) pressures: Pressures,
     /// Angle of the joint, in radians.
-    pub(in crate::synthetic) angle: f64,
+    pub(crate) angle: f64,
     /// Its speed.
-    pub(in crate::synthetic) speed: f64,
+    pub(crate) speed: f64,
 }
 
 /// The parts of one cylinder.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::synthetic) struct Machine {
+pub(crate) struct Machine {
     pub(super) valve: Valve,
     pub(super) oil: Oil,
     pub(super) load: Load,
@@ -32,7 +32,7 @@ pub(in crate::synthetic) struct Machine {
 }
 
 impl Machine {
-    pub(in crate::synthetic) fn of(spec: &CylinderSpec) -> Self {
+    pub(crate) fn of(spec: &CylinderSpec) -> Self {
         let linkage = Linkage::of(spec);
         Self {
             valve: Valve::of(spec),
@@ -44,7 +44,7 @@ impl Machine {
     }
 
     /// At rest at `angle`, held by the oil, with the spool where `input` sends it.
-    pub(in crate::synthetic) fn rest(&self, angle: f64, input: f64) -> State {
+    pub(crate) fn rest(&self, angle: f64, input: f64) -> State {
         let force = self.load.weight(angle) / self.linkage.lever(angle);
         State {
             spool: self.valve.target(input),
@@ -56,7 +56,7 @@ impl Machine {
     }
 
     /// `state` after `dt` seconds with `input` held: Runge and Kutta's method of order four.
-    pub(in crate::synthetic) fn step(&self, state: &State, input: f64, dt: f64) -> State {
+    pub(crate) fn step(&self, state: &State, input: f64, dt: f64) -> State {
         let k1 = self.rates(state, input);
         let k2 = self.rates(&state.moved(&k1, dt / 2.0), input);
         let k3 = self.rates(&state.moved(&k2, dt / 2.0), input);
@@ -126,7 +126,7 @@ impl State {
     }
 
     /// Whether all numbers are finite.
-    pub(in crate::synthetic) fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         let Pressures { supply, piston, rod } = self.pressures;
         let numbers = [self.spool, self.spool_speed, supply, piston, rod, self.angle, self.speed];
         numbers.iter().all(|number| number.is_finite())

@@ -12,8 +12,6 @@ use super::error::{
 use super::input::InputSpec;
 use super::schema::SCHEMA;
 use super::spec::{JointSpec, PlantSpec, default};
-use crate::units::SamplePeriod;
-
 /// Samples of all joints together: 14 hours of a joint at 100 Hz. Keeps a slip of
 /// the pen from filling the memory.
 const MAX_SAMPLES: f64 = 5e7;
@@ -64,12 +62,9 @@ impl PlantSpec {
         let count = self.joints.len();
         plant.require("joint", count, "one table [[joint]] or more", |count| *count > 0)?;
         let period_s = self.sample_period_s;
-        let period = SamplePeriod::from_seconds(period_s)
-            .filter(|period| period.seconds() >= MIN_SAMPLE_PERIOD_S);
-        let Some(period) = period else {
-            let allowed = "finite seconds, 1e-6 or more";
-            return Err(plant.refuse("sample_period_s", period_s, allowed));
-        };
+        plant.require("sample_period_s", period_s, "finite seconds, 1e-6 or more", |period_s| {
+            period_s.is_finite() && *period_s >= MIN_SAMPLE_PERIOD_S
+        })?;
         let samples = (self.duration_s / period_s).round();
         let allowed = "two sample periods or more; fifty million samples of all joints or fewer";
         plant.require("duration_s", self.duration_s, allowed, |_| {
@@ -80,7 +75,7 @@ impl PlantSpec {
             let steps = samples * count as f64 * f64::from(*substeps);
             (1..=MAX_SUBSTEPS).contains(substeps) && steps <= MAX_TIME_STEPS
         })?;
-        Ok(Clock::new(period, whole(samples), self.substeps))
+        Ok(Clock::new(period_s, whole(samples), self.substeps))
     }
 }
 
