@@ -3,15 +3,15 @@
 use std::collections::HashSet;
 use std::fmt::Debug;
 
-use super::clock::{Clock, whole};
-use super::delay_law::DelayLaw;
-use super::error::{
+use crate::clock::{Clock, whole};
+use crate::delay_law::DelayLaw;
+use crate::error::{
     BELOW_ONE, BETWEEN_ONES, EDGE, FINITE, LASTS_A_LAG, LASTS_A_PERIOD, NOT_NEGATIVE, NOT_ZERO,
     POSITIVE, Place, PlantError, SHARE,
 };
-use super::input::InputSpec;
-use super::schema::SCHEMA;
-use super::spec::{JointSpec, PlantSpec, default};
+use crate::input::InputSpec;
+use crate::spec::{JointSpec, PlantSpec, SCHEMA, default};
+
 /// Samples of all joints together: 14 hours of a joint at 100 Hz. Keeps a slip of
 /// the pen from filling the memory.
 const MAX_SAMPLES: f64 = 5e7;
@@ -45,37 +45,36 @@ impl PlantSpec {
         let mut input_steps = 0.0;
         for joint in &self.joints {
             let place = Place::joint(&joint.name);
-            let allowed = "a name that no other joint has";
-            place.require("name", joint.name.as_str(), allowed, |name| names.insert(*name))?;
+            let is_new = names.insert(joint.name.as_str());
+            place.require(&[("name", &joint.name, is_new, "a name that no other joint has")])?;
             joint.check(&clock, &place)?;
             input_steps += joint.input.steps_in(&clock);
+            let (hold_s, few) = (joint.input.mean_hold_s(&clock), input_steps <= MAX_INPUT_STEPS);
             let allowed = "so long that there are five million steps of all joints or fewer";
-            let holds = joint.input.mean_hold_s(&clock);
-            place.require("input.hold_s", holds, allowed, |_| input_steps <= MAX_INPUT_STEPS)?;
+            place.require(&[("input.hold_s", &hold_s, few, allowed)])?;
         }
         Ok(())
     }
 
     /// The times of the record.
-    pub(super) fn clock(&self) -> Result<Clock, PlantError> {
-        let plant = Place::Plant;
+    pub(crate) fn clock(&self) -> Result<Clock, PlantError> {
+        let Self { sample_period_s: period_s, duration_s, substeps, .. } = *self;
         let count = self.joints.len();
-        plant.require("joint", count, "one table [[joint]] or more", |count| *count > 0)?;
-        let period_s = self.sample_period_s;
-        plant.require("sample_period_s", period_s, "finite seconds, 1e-6 or more", |period_s| {
-            period_s.is_finite() && *period_s >= MIN_SAMPLE_PERIOD_S
-        })?;
-        let samples = (self.duration_s / period_s).round();
-        let allowed = "two sample periods or more; fifty million samples of all joints or fewer";
-        plant.require("duration_s", self.duration_s, allowed, |_| {
-            samples >= 2.0 && samples * count as f64 <= MAX_SAMPLES
-        })?;
-        let allowed = "1 to 1000; two thousand million time steps of all joints or fewer";
-        plant.require("substeps", self.substeps, allowed, |substeps| {
-            let steps = samples * count as f64 * f64::from(*substeps);
-            (1..=MAX_SUBSTEPS).contains(substeps) && steps <= MAX_TIME_STEPS
-        })?;
-        Ok(Clock::new(period_s, whole(samples), self.substeps))
+        let samples = (duration_s / period_s).round();
+        let (of_all, steps) =
+            (samples * count as f64, samples * count as f64 * f64::from(substeps));
+        let apart = period_s.is_finite() && period_s >= MIN_SAMPLE_PERIOD_S;
+        let short = samples >= 2.0 && of_all <= MAX_SAMPLES;
+        let few = (1..=MAX_SUBSTEPS).contains(&substeps) && steps <= MAX_TIME_STEPS;
+        let lengths = "two sample periods or more; fifty million samples of all joints or fewer";
+        let parts = "1 to 1000; two thousand million time steps of all joints or fewer";
+        Place::Plant.require(&[
+            ("joint", &count, count > 0, "one table [[joint]] or more"),
+            ("sample_period_s", &period_s, apart, "finite seconds, 1e-6 or more"),
+            ("duration_s", &duration_s, short, lengths),
+            ("substeps", &substeps, few, parts),
+        ])?;
+        Ok(Clock::new(period_s, whole(samples), substeps))
     }
 }
 
@@ -94,16 +93,15 @@ impl JointSpec {
 
     fn check_words(&self, place: &Place) -> Result<(), PlantError> {
         let fits = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
-        place.require("name", &self.name, "letters, digits, `_` and `-`", |name| {
-            !name.is_empty() && name.chars().all(fits)
-        })?;
-        for (key, unit) in [("input_unit", &self.input_unit), ("output_unit", &self.output_unit)] {
-            let bad = |c: char| c == '[' || c == ']' || c.is_control();
-            place.require(key, unit, "a unit without brackets", |unit| {
-                !unit.trim().is_empty() && !unit.contains(bad)
-            })?;
-        }
-        Ok(())
+        let is_name = !self.name.is_empty() && self.name.chars().all(fits);
+        let bad = |c: char| c == '[' || c == ']' || c.is_control();
+        let is_unit = |unit: &str| !unit.trim().is_empty() && !unit.contains(bad);
+        let (input, output) = (&self.input_unit, &self.output_unit);
+        place.require(&[
+            ("name", &self.name, is_name, "letters, digits, `_` and `-`"),
+            ("input_unit", input, is_unit(input), "a unit without brackets"),
+            ("output_unit", output, is_unit(output), "a unit without brackets"),
+        ])
     }
 
     fn check_list(&self, place: &Place) -> Result<(), PlantError> {
@@ -119,61 +117,58 @@ impl JointSpec {
     }
 
     fn check_range(&self, place: &Place) -> Result<(), PlantError> {
-        let Some(range) = self.range else {
-            return Ok(());
-        };
+        let Some(range) = self.range else { return Ok(()) };
         let [lowest, highest] = range;
-        place.require("range", range, "[lowest, highest], finite", |_| {
-            lowest < highest && lowest.is_finite() && highest.is_finite()
-        })?;
-        place.require("start", self.start, "an angle within `range`", |start| {
-            (lowest..=highest).contains(start)
-        })?;
-        place.require("range", range, "none, as `input.steps` are given, not drawn", |_| {
-            matches!(self.input, InputSpec::Levels { .. })
-        })
+        let rises = lowest < highest && lowest.is_finite() && highest.is_finite();
+        let inside = (lowest..=highest).contains(&self.start);
+        let drawn = matches!(self.input, InputSpec::Levels { .. });
+        place.require(&[
+            ("range", &range, rises, "[lowest, highest], finite"),
+            ("start", &self.start, inside, "an angle within `range`"),
+            ("range", &range, drawn, "none, as `input.steps` are given, not drawn"),
+        ])
     }
 
     fn check_numbers(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         let (ringing, spikes) = (self.ringing, self.spikes);
         let numbers = [
-            ("start", Some(self.start), &FINITE),
-            ("gain", Some(self.gain), &NOT_ZERO),
-            ("valve_edge", Some(self.valve_edge), &EDGE),
-            ("saturation", self.saturation, &POSITIVE),
-            ("lag_s", self.lag_s, &LASTS_A_LAG),
-            ("ringing.period_s", ringing.map(|ringing| ringing.period_s), &LASTS_A_PERIOD),
-            ("ringing.damping", ringing.map(|ringing| ringing.damping), &BELOW_ONE),
-            ("noise", Some(self.noise), &NOT_NEGATIVE),
-            ("noise_correlation", Some(self.noise_correlation), &BETWEEN_ONES),
-            ("resolution", self.resolution, &POSITIVE),
-            ("spikes.share", spikes.map(|spikes| spikes.share), &SHARE),
-            ("spikes.size", spikes.map(|spikes| spikes.size), &NOT_NEGATIVE),
+            ("start", Some(self.start), FINITE),
+            ("gain", Some(self.gain), NOT_ZERO),
+            ("valve_edge", Some(self.valve_edge), EDGE),
+            ("saturation", self.saturation, POSITIVE),
+            ("lag_s", self.lag_s, LASTS_A_LAG),
+            ("ringing.period_s", ringing.map(|ringing| ringing.period_s), LASTS_A_PERIOD),
+            ("ringing.damping", ringing.map(|ringing| ringing.damping), BELOW_ONE),
+            ("noise", Some(self.noise), NOT_NEGATIVE),
+            ("noise_correlation", Some(self.noise_correlation), BETWEEN_ONES),
+            ("resolution", self.resolution, POSITIVE),
+            ("spikes.share", spikes.map(|spikes| spikes.share), SHARE),
+            ("spikes.size", spikes.map(|spikes| spikes.size), NOT_NEGATIVE),
         ];
-        for (key, number, allowed) in numbers {
-            number.map_or(Ok(()), |number| place.number(key, number, allowed, clock))?;
+        for (key, number, rule) in numbers {
+            number.map_or(Ok(()), |number| place.number(key, number, rule, clock))?;
         }
-        let Some(band) = self.dead_band else { return Ok(()) };
-        place.require("dead_band", band, "[lower, upper], finite", |[lower, upper]| {
-            lower <= upper && lower.is_finite() && upper.is_finite()
-        })
+        let Some([lower, upper]) = self.dead_band else { return Ok(()) };
+        let rises = lower <= upper && lower.is_finite() && upper.is_finite();
+        place.require(&[("dead_band", &[lower, upper], rises, "[lower, upper], finite")])
     }
 
     fn check_cylinder(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         let Some(cylinder) = &self.cylinder else { return Ok(()) };
         self.check_replaced(place)?;
         let unit = self.output_unit.as_str();
+        let is_angle = matches!(unit, "deg" | "rad");
         let allowed = "`deg` or `rad`, as `cylinder` moves the joint";
-        place.require("output_unit", unit, allowed, |unit| matches!(*unit, "deg" | "rad"))?;
+        place.require(&[("output_unit", &unit, is_angle, allowed)])?;
         cylinder.check(clock, place)?;
         let turn = if unit == "rad" { 1.0_f64.to_degrees() } else { 1.0 };
         let [lowest, highest] = cylinder.angle_limits_deg;
-        let reached = |angle: f64| (lowest..=highest).contains(&(angle * turn));
+        let reached = |angle: &f64| (lowest..=highest).contains(&(angle * turn));
         let allowed = "an angle within `cylinder.angle_limits_deg`";
-        place.require("start", self.start, allowed, |start| reached(*start))?;
+        place.require(&[("start", &self.start, reached(&self.start), allowed)])?;
         let Some(range) = self.range else { return Ok(()) };
         let allowed = "angles within `cylinder.angle_limits_deg`";
-        place.require("range", range, allowed, |range| range.iter().all(|angle| reached(*angle)))
+        place.require(&[("range", &range, range.iter().all(reached), allowed)])
     }
 
     /// Refuses what does not act beside a cylinder.
@@ -182,7 +177,7 @@ impl JointSpec {
         let gain = ((self.gain - default::gain()).abs() > 0.0).then_some(self.gain);
         let named = |names: Vec<&'static str>| (!names.is_empty()).then_some(names);
         let (effect, outside) = (named(self.effect.names()), named(self.outside.hindering()));
-        let replaced: [(_, Option<&dyn Debug>); 7] = [
+        let given: [(_, Option<&dyn Debug>); 7] = [
             ("gain", gain.as_ref().map(|gain| gain as _)),
             ("dead_band", self.dead_band.as_ref().map(|band| band as _)),
             ("saturation", self.saturation.as_ref().map(|limit| limit as _)),
@@ -191,19 +186,15 @@ impl JointSpec {
             ("effect", effect.as_ref().map(|names| names as _)),
             ("outside", outside.as_ref().map(|names| names as _)),
         ];
-        for (key, given) in replaced {
-            if let Some(value) = given {
-                return Err(place.refuse(key, value, allowed));
-            }
-        }
-        Ok(())
+        let first = given.into_iter().find_map(|(key, value)| Some((key, value?)));
+        first.map_or(Ok(()), |(key, value)| Err(place.refuse(key, value, allowed)))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::spec::tests::{DELAY, INPUT, joint};
     use super::*;
+    use crate::spec::tests::{DELAY, INPUT, joint};
 
     const STEPS: &str = "input = { steps = [[40, 1], [89, -1]] }\n";
 

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::clock::Clock;
-use super::error::{NOT_NEGATIVE, POSITIVE, Place, PlantError};
+use crate::clock::Clock;
+use crate::error::{NOT_NEGATIVE, POSITIVE, Place, PlantError};
 
 /// What sets the delay of each step. All times are in seconds.
 ///
@@ -65,26 +65,26 @@ pub enum DelayLaw {
 
 /// A step, as a law of delay sees it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Occasion {
+pub(crate) struct Occasion {
     /// Number of the step, from 0.
-    pub(super) index: usize,
+    pub(crate) index: usize,
     /// Input level before it.
-    pub(super) before: f64,
+    pub(crate) before: f64,
     /// Input level after it.
-    pub(super) after: f64,
+    pub(crate) after: f64,
     /// Its time as a fraction of the record: 0 at the first sample, 1 at the last.
-    pub(super) progress: f64,
+    pub(crate) progress: f64,
     /// A number drawn for it, uniform in [0, 1).
-    pub(super) chance: f64,
+    pub(crate) chance: f64,
     /// Seconds that the level before was held.
-    pub(super) held_s: f64,
+    pub(crate) held_s: f64,
     /// Seconds since the first sample.
-    pub(super) time_s: f64,
+    pub(crate) time_s: f64,
 }
 
 impl DelayLaw {
     /// Delay of one step in seconds; `None` where the list is too short.
-    pub(super) fn delay_s(&self, at: &Occasion) -> Option<f64> {
+    pub(crate) fn delay_s(&self, at: &Occasion) -> Option<f64> {
         Some(match self {
             Self::Constant { seconds } => *seconds,
             Self::Uniform { min, max } => between(*min, *max, at.chance),
@@ -99,20 +99,20 @@ impl DelayLaw {
     }
 
     /// A delay in seconds that no step exceeds.
-    pub(super) fn longest_s(&self) -> f64 {
+    pub(crate) fn longest_s(&self) -> f64 {
         self.bounds().into_iter().map(|(_, seconds)| seconds).fold(0.0, f64::max)
     }
 
     /// Refuses a negative delay, one that is not finite, and bounds in wrong order.
-    pub(super) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
+    pub(crate) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         for (key, seconds) in self.bounds() {
-            place.number(key, seconds, &NOT_NEGATIVE, clock)?;
+            place.number(key, seconds, NOT_NEGATIVE, clock)?;
         }
         if let Self::Uniform { min, max } | Self::StepSize { min, max, .. } = self {
-            place.require("delay.min", *min, "not above `delay.max`", |min| min <= max)?;
+            place.require(&[("delay.min", min, min <= max, "not above `delay.max`")])?;
         }
         if let Self::StepSize { scale, .. } = self {
-            place.number("delay.scale", *scale, &POSITIVE, clock)?;
+            place.number("delay.scale", *scale, POSITIVE, clock)?;
         }
         Ok(())
     }

@@ -1,8 +1,8 @@
-//! Why a plant cannot be simulated.
+//! Why a plant cannot be simulated, and what its numbers may be.
 
 use std::fmt;
 
-use super::clock::{Clock, MIN_STEPS_PER_LAG, MIN_STEPS_PER_PERIOD};
+use crate::clock::{Clock, MIN_STEPS_PER_LAG, MIN_STEPS_PER_PERIOD};
 
 /// Which part of a plant file is meant.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ pub enum PlantError {
         source: Box<toml::ser::Error>,
     },
     /// The file follows another schema.
-    #[error("the schema is `{found}`, not `{expected}`", expected = super::schema::SCHEMA)]
+    #[error("the schema is `{found}`, not `{expected}`", expected = crate::SCHEMA)]
     Schema {
         /// The schema it names.
         found: String,
@@ -109,7 +109,7 @@ pub enum PlantError {
     #[error(
         "{place}: the simulated samples do not make a trial: trial `{trial}` has a sample that is \
          not finite: number {sample}",
-        trial = super::simulate::TRIAL
+        trial = crate::TRIAL
     )]
     NotFinite {
         /// The joint.
@@ -124,83 +124,71 @@ fn suggestion(nearest: Option<&str>) -> String {
     nearest.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
 }
 
-/// What a number may be.
+/// What a number may be: in words, and whether it is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Allowed {
-    pub(super) words: &'static str,
-    fits: fn(f64, &Clock) -> bool,
-}
+pub(crate) struct Rule(pub(crate) &'static str, fn(f64, &Clock) -> bool);
 
-const fn allowed(words: &'static str, fits: fn(f64, &Clock) -> bool) -> Allowed {
-    Allowed { words, fits }
-}
-
-pub(super) const FINITE: Allowed = allowed("finite", |x, _| x.is_finite());
+pub(crate) const FINITE: Rule = Rule("finite", |x, _| x.is_finite());
 /// An end that may be left out: infinite where it is.
-pub(super) const BOUND: Allowed = allowed("finite", |x, _| !x.is_nan());
-pub(super) const POSITIVE: Allowed = allowed("finite, above zero", |x, _| x.is_finite() && x > 0.0);
-pub(super) const NOT_NEGATIVE: Allowed =
-    allowed("finite, not negative", |x, _| x.is_finite() && x >= 0.0);
-pub(super) const NOT_POSITIVE: Allowed =
-    allowed("finite, zero or below", |x, _| x.is_finite() && x <= 0.0);
-pub(super) const NOT_ZERO: Allowed =
-    allowed("finite, not zero", |x, _| x.is_finite() && x.abs() > 0.0);
+pub(crate) const BOUND: Rule = Rule("finite", |x, _| !x.is_nan());
+pub(crate) const POSITIVE: Rule = Rule("finite, above zero", |x, _| x.is_finite() && x > 0.0);
+pub(crate) const NOT_NEGATIVE: Rule =
+    Rule("finite, not negative", |x, _| x.is_finite() && x >= 0.0);
+pub(crate) const NOT_POSITIVE: Rule =
+    Rule("finite, zero or below", |x, _| x.is_finite() && x <= 0.0);
+pub(crate) const NOT_ZERO: Rule = Rule("finite, not zero", |x, _| x.is_finite() && x.abs() > 0.0);
 /// The width of a rounded corner as a part of the largest level.
-pub(super) const EDGE: Allowed = allowed("above 0, 1 or less", |x, _| x > 0.0 && x <= 1.0);
-pub(super) const SHARE: Allowed = allowed("0 to 1", |x, _| (0.0..=1.0).contains(&x));
-pub(super) const BELOW_ONE: Allowed = allowed("0 or more, below 1", |x, _| (0.0..1.0).contains(&x));
-pub(super) const OPEN_SHARE: Allowed = allowed("above 0, below 1", |x, _| x > 0.0 && x < 1.0);
-pub(super) const BETWEEN_ONES: Allowed = allowed("above -1, below 1", |x, _| x.abs() < 1.0);
-pub(super) const ABOVE_MINUS_ONE: Allowed =
-    allowed("finite, above -1", |x, _| x.is_finite() && x > -1.0);
-pub(super) const TWO_OR_MORE: Allowed =
-    allowed("finite, 2 or more", |x, _| x.is_finite() && x >= 2.0);
+pub(crate) const EDGE: Rule = Rule("above 0, 1 or less", |x, _| x > 0.0 && x <= 1.0);
+pub(crate) const SHARE: Rule = Rule("0 to 1", |x, _| (0.0..=1.0).contains(&x));
+pub(crate) const BELOW_ONE: Rule = Rule("0 or more, below 1", |x, _| (0.0..1.0).contains(&x));
+pub(crate) const OPEN_SHARE: Rule = Rule("above 0, below 1", |x, _| x > 0.0 && x < 1.0);
+pub(crate) const BETWEEN_ONES: Rule = Rule("above -1, below 1", |x, _| x.abs() < 1.0);
+pub(crate) const ABOVE_MINUS_ONE: Rule = Rule("finite, above -1", |x, _| x.is_finite() && x > -1.0);
+pub(crate) const TWO_OR_MORE: Rule = Rule("finite, 2 or more", |x, _| x.is_finite() && x >= 2.0);
 /// An angle that is not near a dead point.
-pub(super) const MOUNT: Allowed = allowed("10 to 170 degrees", |x, _| (10.0..=170.0).contains(&x));
+pub(crate) const MOUNT: Rule = Rule("10 to 170 degrees", |x, _| (10.0..=170.0).contains(&x));
 /// Seconds of a time constant that the time steps can follow.
-pub(super) const LASTS_A_LAG: Allowed =
-    allowed(LASTS, |x, clock| x.is_finite() && x >= MIN_STEPS_PER_LAG * clock.substep_s());
+pub(crate) const LASTS_A_LAG: Rule =
+    Rule(LASTS, |x, clock| x.is_finite() && x >= MIN_STEPS_PER_LAG * clock.substep_s());
 /// Seconds of a period that they can follow.
-pub(super) const LASTS_A_PERIOD: Allowed =
-    allowed(LASTS, |x, clock| x.is_finite() && x >= MIN_STEPS_PER_PERIOD * clock.substep_s());
+pub(crate) const LASTS_A_PERIOD: Rule =
+    Rule(LASTS, |x, clock| x.is_finite() && x >= MIN_STEPS_PER_PERIOD * clock.substep_s());
 const LASTS: &str = "finite seconds, long enough for the time steps (sample_period_s / substeps): \
                      4 or more in a time constant, 40 in a period";
-pub(super) const LASTS_A_SAMPLE: Allowed =
-    allowed("finite, a sample or more", |x, clock| x.is_finite() && x >= clock.period_s());
+pub(crate) const LASTS_A_SAMPLE: Rule =
+    Rule("finite, a sample or more", |x, clock| x.is_finite() && x >= clock.period_s());
 /// The part of a distance that is lost per second.
-pub(super) const DRAINS: Allowed =
-    allowed("0 or more, below one in a sample", |x, clock| x >= 0.0 && x * clock.period_s() < 1.0);
+pub(crate) const DRAINS: Rule =
+    Rule("0 or more, below one in a sample", |x, clock| x >= 0.0 && x * clock.period_s() < 1.0);
+
+/// A key, its value, whether that is allowed, and what is.
+pub(crate) type Condition<'a> = (&'a str, &'a dyn fmt::Debug, bool, &'static str);
 
 impl Place {
     /// The joint `name`.
-    pub(super) fn joint(name: &str) -> Self {
+    pub(crate) fn joint(name: &str) -> Self {
         Self::Joint(name.to_owned())
     }
 
-    /// An error about `key` unless its `value` fits.
-    pub(super) fn require<T: fmt::Debug>(
-        &self,
-        key: &str,
-        value: T,
-        allowed: &'static str,
-        fits: impl FnOnce(&T) -> bool,
-    ) -> Result<(), PlantError> {
-        if fits(&value) { Ok(()) } else { Err(self.refuse(key, value, allowed)) }
+    /// An error about the first of `conditions` that does not hold.
+    pub(crate) fn require(&self, conditions: &[Condition<'_>]) -> Result<(), PlantError> {
+        let wrong = conditions.iter().find(|(_, _, holds, _)| !holds);
+        wrong.map_or(Ok(()), |(key, value, _, allowed)| Err(self.refuse(key, value, allowed)))
     }
 
-    /// An error about the number `key` unless its `value` is allowed.
-    pub(super) fn number(
+    /// An error about the number `key` unless its `value` follows the rule.
+    pub(crate) fn number(
         &self,
         key: &str,
         value: f64,
-        allowed: &Allowed,
+        Rule(allowed, fits): Rule,
         clock: &Clock,
     ) -> Result<(), PlantError> {
-        self.require(key, value, allowed.words, |value| (allowed.fits)(*value, clock))
+        self.require(&[(key, &value, fits(value, clock), allowed)])
     }
 
     /// The error that `key` has a value other than `allowed`.
-    pub(super) fn refuse(
+    pub(crate) fn refuse(
         &self,
         key: &str,
         value: impl fmt::Debug,
@@ -226,7 +214,7 @@ mod tests {
 
     #[test]
     fn a_bad_value_is_told_with_joint_key_value_and_what_is_allowed() {
-        let refused = Place::joint("elbow").require("gain", 0.0, "finite, not zero", |_| false);
+        let refused = Place::joint("elbow").require(&[("gain", &0.0, false, "finite, not zero")]);
         let text = refused.unwrap_err().to_string();
         assert_eq!(text, "joint `elbow`: `gain` is 0.0; allowed: finite, not zero");
     }

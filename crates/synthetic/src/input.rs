@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::clock::Clock;
-use super::error::{FINITE, Place, PlantError};
+use crate::clock::Clock;
+use crate::error::{FINITE, Place, PlantError};
 
 /// The input of a joint: voltage steps, drawn or given.
 ///
@@ -12,7 +12,7 @@ use super::error::{FINITE, Place, PlantError};
 /// input = { steps = [[40, 1], [89, -1]], initial = 0 }
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "RawInput", into = "RawInput")]
+#[serde(try_from = "RawInput", untagged)]
 #[non_exhaustive]
 pub enum InputSpec {
     /// Random levels, held for random times. The record starts at level 0.
@@ -33,7 +33,7 @@ pub enum InputSpec {
     },
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawInput {
     levels: Option<Vec<f64>>,
@@ -56,23 +56,9 @@ impl TryFrom<RawInput> for InputSpec {
     }
 }
 
-impl From<InputSpec> for RawInput {
-    fn from(input: InputSpec) -> Self {
-        let empty = Self { levels: None, hold_s: None, steps: None, initial: None };
-        match input {
-            InputSpec::Levels { levels, hold_s } => {
-                Self { levels: Some(levels), hold_s: Some(hold_s), ..empty }
-            }
-            InputSpec::Steps { steps, initial } => {
-                Self { steps: Some(steps), initial: Some(initial), ..empty }
-            }
-        }
-    }
-}
-
 impl InputSpec {
     /// The level that the record starts at, in input units.
-    pub(super) fn initial(&self) -> f64 {
+    pub(crate) fn initial(&self) -> f64 {
         match self {
             Self::Levels { .. } => 0.0,
             Self::Steps { initial, .. } => *initial,
@@ -80,7 +66,7 @@ impl InputSpec {
     }
 
     /// The largest magnitude of a level, in input units.
-    pub(super) fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         let larger = |largest: f64, level: f64| largest.max(level.abs());
         match self {
             Self::Levels { levels, .. } => levels.iter().copied().fold(0.0, larger),
@@ -91,7 +77,7 @@ impl InputSpec {
     }
 
     /// Seconds from one step to the next, on average.
-    pub(super) fn mean_hold_s(&self, clock: &Clock) -> f64 {
+    pub(crate) fn mean_hold_s(&self, clock: &Clock) -> f64 {
         match self {
             Self::Levels { hold_s: [shortest, longest], .. } => f64::midpoint(*shortest, *longest),
             Self::Steps { steps, .. } => clock.time_s(clock.samples()) / steps.len() as f64,
@@ -99,24 +85,31 @@ impl InputSpec {
     }
 
     /// Steps in the record, on average.
-    pub(super) fn steps_in(&self, clock: &Clock) -> f64 {
+    pub(crate) fn steps_in(&self, clock: &Clock) -> f64 {
         // A hold is a sample at least.
         let samples = clock.samples_in(self.mean_hold_s(clock)).max(1);
         clock.samples() as f64 / samples as f64
     }
 
     /// Refuses what cannot be drawn or does not fit the record.
-    pub(super) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
+    pub(crate) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         match self {
             Self::Levels { levels, hold_s } => {
-                check_levels(levels, clock, place)?;
+                for level in levels {
+                    place.number("input.levels", *level, FINITE, clock)?;
+                }
+                let mut pairs = levels.windows(2);
+                let several = pairs.any(|pair| matches!(pair, &[a, b] if differ(a, b)));
+                let [shortest, longest] = *hold_s;
+                let holds = shortest > 0.0 && shortest <= longest && longest.is_finite();
                 let allowed = "[shortest, longest] in seconds, finite and above zero";
-                place.require("input.hold_s", *hold_s, allowed, |[shortest, longest]| {
-                    *shortest > 0.0 && shortest <= longest && longest.is_finite()
-                })
+                place.require(&[
+                    ("input.levels", levels, several, "two levels or more that differ"),
+                    ("input.hold_s", hold_s, holds, allowed),
+                ])
             }
             Self::Steps { steps, initial } => {
-                place.number("input.initial", *initial, &FINITE, clock)?;
+                place.number("input.initial", *initial, FINITE, clock)?;
                 check_steps(steps, *initial, clock, place)
             }
         }
@@ -124,17 +117,8 @@ impl InputSpec {
 }
 
 /// Whether two levels differ. A negative zero is zero.
-pub(super) fn differ(a: f64, b: f64) -> bool {
+pub(crate) fn differ(a: f64, b: f64) -> bool {
     (a - b).abs() > 0.0
-}
-
-fn check_levels(levels: &[f64], clock: &Clock, place: &Place) -> Result<(), PlantError> {
-    for level in levels {
-        place.number("input.levels", *level, &FINITE, clock)?;
-    }
-    place.require("input.levels", levels, "two levels or more that differ", |levels| {
-        levels.windows(2).any(|pair| matches!(pair, &[a, b] if differ(a, b)))
-    })
 }
 
 fn check_steps(
@@ -145,15 +129,14 @@ fn check_steps(
 ) -> Result<(), PlantError> {
     let (mut sample_before, mut level_before) = (1, initial);
     for step in steps {
-        let allowed = "samples that rise, the first from 2, the last within the record";
-        place.require("input.steps", step, allowed, |(sample, _)| {
-            *sample > sample_before && *sample <= clock.samples()
-        })?;
-        let allowed = "finite levels, each other than the one before";
-        place.require("input.steps", step, allowed, |(_, level)| {
-            level.is_finite() && differ(*level, level_before)
-        })?;
-        (sample_before, level_before) = *step;
+        let (sample, level) = *step;
+        let rises = sample > sample_before && sample <= clock.samples();
+        let samples = "samples that rise, the first from 2, the last within the record";
+        let changes = level.is_finite() && differ(level, level_before);
+        let levels = "finite levels, each other than the one before";
+        let key = "input.steps";
+        place.require(&[(key, step, rises, samples), (key, step, changes, levels)])?;
+        (sample_before, level_before) = (sample, level);
     }
     Ok(())
 }

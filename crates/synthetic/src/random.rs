@@ -3,9 +3,9 @@
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
-/// What random numbers are drawn for.
+/// What random numbers are drawn for: the number of their stream.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Purpose {
+pub(crate) enum Purpose {
     /// Levels and holds.
     Input,
     /// Delays.
@@ -21,20 +21,12 @@ pub(super) enum Purpose {
 /// The random numbers of joint number `joint`, from 0, for one purpose.
 ///
 /// Key and stream are set bit by bit, so that they mean the same on every platform.
-pub(super) fn stream(seed: u64, joint: usize, purpose: Purpose) -> ChaCha8Rng {
+pub(crate) fn stream(seed: u64, joint: usize, purpose: Purpose) -> ChaCha8Rng {
     let mut key = [0; 32];
-    let words = [seed, joint as u64];
-    for (byte, part) in key.iter_mut().zip(words.iter().flat_map(|word| word.to_le_bytes())) {
-        *byte = part;
-    }
+    key[..8].copy_from_slice(&seed.to_le_bytes());
+    key[8..16].copy_from_slice(&(joint as u64).to_le_bytes());
     let mut rng = ChaCha8Rng::from_seed(key);
-    rng.set_stream(match purpose {
-        Purpose::Input => 0,
-        Purpose::Delay => 1,
-        Purpose::Noise => 2,
-        Purpose::Spikes => 3,
-        Purpose::Scenario => 4,
-    });
+    rng.set_stream(purpose as u64);
     rng
 }
 

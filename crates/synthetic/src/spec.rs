@@ -9,7 +9,9 @@ use super::delay_law::{DelayLaw, Occasion};
 use super::effects::{self, Hidden, Instance, LAG, OUTSIDE, RINGING, Stage, Twin};
 use super::error::PlantError;
 use super::input::InputSpec;
-use super::schema::SCHEMA;
+
+/// The schema of a plant file.
+pub const SCHEMA: &str = "tauscope/plant/1";
 
 /// Joints to simulate, as a plant file holds them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

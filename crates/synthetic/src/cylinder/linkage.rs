@@ -1,6 +1,6 @@
 //! The triangle of joint, foot and rod eye.
 
-use super::{CylinderSpec, Part};
+use super::spec::{CylinderSpec, Part};
 
 /// From the joint's angle θ (radians) to the length c of the cylinder.
 ///

@@ -1,6 +1,6 @@
 //! What the piston works against: friction, its ends, and the mass on the joint.
 
-use super::{CylinderSpec, Part};
+use super::spec::{CylinderSpec, Part};
 
 /// Fall of gravity in metres per second squared.
 const GRAVITY: f64 = 9.80665;

@@ -1,9 +1,9 @@
 //! All parts together: the differential equations, and their integration.
 
-use super::CylinderSpec;
 use super::linkage::Linkage;
 use super::load::Load;
 use super::oil::{Flows, Oil, Pressures};
+use super::spec::CylinderSpec;
 use super::valve::Valve;
 
 /// What changes by itself, in SI units.
@@ -139,8 +139,8 @@ mod tests {
 
     use std::f64::consts::PI;
 
-    use super::super::Part;
     use super::*;
+    use crate::Part;
 
     const STEP_S: f64 = 5e-5;
 
@@ -174,7 +174,7 @@ mod tests {
 
     /// Time steps in `seconds`.
     fn steps(seconds: f64) -> usize {
-        super::super::super::clock::whole(seconds / STEP_S)
+        crate::clock::whole(seconds / STEP_S)
     }
 
     /// The state after `seconds` at rest at `degrees`, then at `input`.

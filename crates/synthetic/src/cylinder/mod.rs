@@ -14,7 +14,6 @@ mod linkage;
 mod load;
 mod machine;
 mod oil;
-mod si;
 mod spec;
 mod valve;
 

@@ -2,9 +2,8 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use super::si::{LITRE, LITRE_PER_MINUTE, PASCAL_PER_BAR};
+use super::spec::{CylinderSpec, LITRE, LITRE_PER_MINUTE, PASCAL_PER_BAR, Part};
 use super::valve::{Ports, Valve, root};
-use super::{CylinderSpec, Part};
 
 /// Size of the make-up valves, in fully open ports.
 const MAKE_UP: f64 = 4.0;

@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::si::{LITRE_PER_MINUTE, PASCAL_PER_BAR};
-use super::{CylinderSpec, Part};
+use super::spec::{CylinderSpec, LITRE_PER_MINUTE, PASCAL_PER_BAR, Part};
 
 /// Drop at which the flow of a port is rated.
 const RATED_DROP: f64 = 5.0 * PASCAL_PER_BAR;

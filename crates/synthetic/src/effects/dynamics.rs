@@ -160,7 +160,7 @@ pub(super) static ASYMMETRIC_FRICTION: Twin = Twin {
     // Of the direction that is braked more.
     related: |&[_, _, time_constant, viscous, ..], clock| {
         let shortest_s = MIN_STEPS_PER_LAG * clock.substep_s() * viscous.max(1.0);
-        (time_constant < shortest_s).then_some((2, LASTS_A_LAG.words))
+        (time_constant < shortest_s).then_some((2, LASTS_A_LAG.0))
     },
     settle: |&[positive, negative, _, viscous, ..], input, _, states| {
         slid([positive, negative, viscous], input, states)

@@ -44,7 +44,7 @@ impl Instance {
         let Self { twin, numbers } = self;
         let key = |index: usize| format!("{group}.{}.{}", twin.name, twin.keys[index]);
         for (index, (number, allowed)) in numbers.iter().zip(twin.allowed).enumerate() {
-            place.number(&key(index), *number, allowed, clock)?;
+            place.number(&key(index), *number, *allowed, clock)?;
         }
         match (twin.related)(numbers, clock) {
             Some((index, allowed)) => Err(place.refuse(&key(index), numbers[index], allowed)),

@@ -1,7 +1,7 @@
 //! What is stated of an effect that a plant can hide.
 
 use super::super::clock::Clock;
-use super::super::error::Allowed;
+use super::super::error::Rule;
 
 /// Where an effect acts; the signal passes the stages in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +67,7 @@ pub(crate) struct Twin {
     /// Keys of its numbers in a plant file.
     pub(crate) keys: &'static [&'static str],
     /// What each number may be.
-    pub(super) allowed: &'static [Allowed],
+    pub(super) allowed: &'static [Rule],
     /// The last numbers, where a file leaves them out.
     pub(super) optional: &'static [f64],
     pub(super) related: Related,
@@ -85,7 +85,7 @@ impl Twin {
         name: &'static str,
         stage: Stage,
         keys: &'static [&'static str],
-        allowed: &'static [Allowed],
+        allowed: &'static [Rule],
     ) -> Self {
         Self {
             name,
