@@ -45,8 +45,6 @@ pub(super) struct Motion<'a> {
     command: f64,
     /// Opening of the valve, in input units.
     opening: f64,
-    /// Direction of motion, 0 where it sticks.
-    direction: f64,
     state: State,
 }
 
@@ -67,7 +65,6 @@ impl<'a> Motion<'a> {
             now_s: 0.0,
             command: joint.input.initial(),
             opening: 0.0,
-            direction: 0.0,
             state: State { angle: joint.start, ..State::default() },
         };
         motion.settle();
@@ -114,7 +111,7 @@ impl<'a> Motion<'a> {
         let at = self.at_angle(&self.state, self.now_s);
         let level =
             self.behind(Stage::Spool, self.command, &at, &self.state, &mut State::default());
-        self.direction = self.valve.direction(level, self.direction);
+        self.at.direction = self.valve.direction(level, self.at.direction);
         self.opening = self.valve.opening(level);
     }
 
@@ -198,8 +195,7 @@ impl<'a> Motion<'a> {
 
     /// What the effects see of the joint in this state.
     fn at_angle(&self, state: &State, time_s: f64) -> At {
-        let sticks = self.direction.abs() <= 0.0;
-        At { time_s, angle: state.angle, moves: if sticks { 0.0 } else { 1.0 }, ..self.at }
+        At { time_s, angle: state.angle, ..self.at }
     }
 }
 
@@ -271,8 +267,9 @@ mod tests {
 
     #[test]
     fn all_effects_together_find_their_place() {
-        let moving = super::super::effects::in_order()
-            .filter(|twin| !matches!(twin.stage, Stage::Delay | Stage::Valve));
+        let moving = crate::effects::REGISTRY
+            .iter()
+            .filter(|row| !matches!(row.twin.stage, Stage::Delay | Stage::Valve));
         // With a plain lag and ringing, and one of two frictions.
         assert!(moving.count() + 2 - 1 <= MOST_EFFECTS);
     }

@@ -3,7 +3,7 @@
 use rand::{Rng, RngExt as _};
 use rand_distr::{Distribution as _, StandardNormal};
 
-use super::spec::{JointSpec, Spikes};
+use crate::spec::{JointSpec, Spikes};
 
 /// The measured output of `joint` for each of its `angles`.
 ///
@@ -14,7 +14,7 @@ use super::spec::{JointSpec, Spikes};
 ///
 /// with σ the `noise` and φ the `noise_correlation`: σ is the standard deviation of
 /// the noise, whatever φ is.
-pub(super) fn measure(joint: &JointSpec, angles: Vec<f64>, rng: &mut impl Rng) -> Vec<f64> {
+pub(crate) fn measure(joint: &JointSpec, angles: Vec<f64>, rng: &mut impl Rng) -> Vec<f64> {
     let phi = joint.noise_correlation;
     let (mut keep, mut fresh) = (0.0, 1.0);
     let mut noise = 0.0;
@@ -28,7 +28,7 @@ pub(super) fn measure(joint: &JointSpec, angles: Vec<f64>, rng: &mut impl Rng) -
 }
 
 /// Puts the spikes of `joint` on its measured `output`.
-pub(super) fn spike(joint: &JointSpec, output: &mut [f64], rng: &mut impl Rng) {
+pub(crate) fn spike(joint: &JointSpec, output: &mut [f64], rng: &mut impl Rng) {
     let Some(Spikes { share, size }) = joint.spikes else { return };
     for value in output {
         let [chance, side]: [f64; 2] = rng.random();
@@ -44,9 +44,9 @@ fn quantised(value: f64, resolution: Option<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::{Purpose, stream};
-    use super::super::{DelayLaw, InputSpec};
     use super::*;
+    use crate::random::{Purpose, stream};
+    use crate::{DelayLaw, InputSpec};
 
     const SAMPLES: usize = 40_000;
 

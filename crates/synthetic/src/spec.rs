@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::cylinder::CylinderSpec;
-use super::delay_law::{DelayLaw, Occasion};
-use super::effects::{self, Hidden, Instance, LAG, OUTSIDE, RINGING, Stage, Twin};
-use super::error::PlantError;
-use super::input::InputSpec;
+use crate::cylinder::CylinderSpec;
+use crate::delay_law::{DelayLaw, Occasion};
+use crate::effects::{self, Hidden, Instance, LAG, RINGING, Stage, Twin};
+use crate::error::PlantError;
+use crate::input::InputSpec;
 
 /// The schema of a plant file.
 pub const SCHEMA: &str = "tauscope/plant/1";
@@ -126,33 +126,31 @@ pub struct Ringing {
 }
 
 /// What a file may leave out.
-pub(super) mod default {
-    /// Time steps per sample: enough for a lag of a fifth of a sample, and for ringing
-    /// with a period of two samples, the shortest that sampling can show.
-    const SUBSTEPS: u32 = 20;
-
-    pub(super) fn sample_period_s() -> f64 {
+pub(crate) mod default {
+    pub(crate) fn sample_period_s() -> f64 {
         0.01
     }
 
     /// Corners as sharp as a machined land has them.
-    pub(super) fn valve_edge() -> f64 {
+    pub(crate) fn valve_edge() -> f64 {
         0.004
     }
 
-    pub(super) fn substeps() -> u32 {
-        SUBSTEPS
+    /// Enough for a lag of a fifth of a sample, and for ringing with a period of two samples,
+    /// the shortest that sampling can show.
+    pub(crate) fn substeps() -> u32 {
+        20
     }
 
     pub(crate) fn gain() -> f64 {
         10.0
     }
 
-    pub(super) fn input_unit() -> String {
+    pub(crate) fn input_unit() -> String {
         "V".to_owned()
     }
 
-    pub(super) fn output_unit() -> String {
+    pub(crate) fn output_unit() -> String {
         "deg".to_owned()
     }
 }
@@ -255,7 +253,7 @@ impl JointSpec {
     /// # Ok::<(), tauscope_synthetic::PlantError>(())
     /// ```
     pub fn hide(&mut self, name: &str, numbers: &[(String, f64)]) -> Result<(), PlantError> {
-        let twin = effects::find(name)?;
+        let twin = effects::find(name)?.twin;
         let numbers = effects::numbers(twin, &numbers.iter().cloned().collect());
         let numbers = numbers
             .map_err(|cause| PlantError::Numbers { name: twin.name, cause: Box::new(cause) })?;
@@ -264,17 +262,17 @@ impl JointSpec {
     }
 
     /// Hides an effect with these numbers.
-    pub(super) fn put(&mut self, twin: &'static Twin, numbers: &[f64]) {
-        let is_outside = OUTSIDE.contains(&twin.name);
-        let group = if is_outside { &mut self.outside } else { &mut self.effect };
-        group.put(twin, numbers);
+    pub(crate) fn put(&mut self, twin: &'static Twin, numbers: &[f64]) {
+        let is_outside = effects::OUTSIDE.contains(&twin.name);
+        let hidden = if is_outside { &mut self.outside } else { &mut self.effect };
+        hidden.put(twin, numbers);
     }
 
     /// Its effects that act, in the order in which the signal passes them; plain lag and ringing
     /// are two of them.
-    pub(super) fn effects(&self) -> impl Iterator<Item = Instance> {
+    pub(crate) fn effects(&self) -> impl Iterator<Item = Instance> {
         let mut all: Vec<_> = self.effect.acting().chain(self.outside.acting()).cloned().collect();
-        all.sort_by_key(|one| effects::in_order().position(|twin| twin.name == one.twin.name));
+        all.sort_by_key(Instance::place);
         let lag = self.lag_s.map(|lag_s| Instance::new(&LAG, &[lag_s]));
         let ringing = self
             .ringing
@@ -283,7 +281,7 @@ impl JointSpec {
     }
 
     /// Radians in an angle of one output unit; degrees where the unit is no angle.
-    pub(super) fn radians(&self) -> f64 {
+    pub(crate) fn radians(&self) -> f64 {
         match self.output_unit.as_str() {
             "rad" => 1.0,
             "mrad" => 1e-3,
@@ -293,29 +291,28 @@ impl JointSpec {
     }
 
     /// Whether its motion is that of dead band, saturation, lag and ringing alone.
-    pub(super) fn is_plain(&self) -> bool {
+    pub(crate) fn is_plain(&self) -> bool {
         self.effects().all(|one| matches!(one.twin.stage, Stage::Delay | Stage::Speed))
     }
 
     /// Delay of one step in seconds; `None` where the list of delays is too short.
-    pub(super) fn delay_s(&self, at: &Occasion) -> Option<f64> {
+    pub(crate) fn delay_s(&self, at: &Occasion) -> Option<f64> {
         let law_s = self.delay.delay_s(at)?;
-        let variable = self.effect.get("variable_delay");
-        let variable_s = variable.map_or(0.0, |numbers| effects::extra_s(numbers, at));
+        let effects_s: f64 = self.effect.acting().map(|one| one.delay_s(at)).sum();
         let pilot_s = self.cylinder.as_ref().map_or(0.0, |spec| spec.pilot_s(at.before, at.after));
-        Some(law_s + variable_s + pilot_s)
+        Some(law_s + effects_s + pilot_s)
     }
 
     /// A delay in seconds that no step exceeds.
-    pub(super) fn longest_delay_s(&self) -> f64 {
-        let variable_s = self.effect.get("variable_delay").map_or(0.0, effects::longest_s);
+    pub(crate) fn longest_delay_s(&self) -> f64 {
+        let effects_s: f64 = self.effect.acting().map(Instance::longest_delay_s).sum();
         let pilot_s = self.cylinder.as_ref().map_or(0.0, CylinderSpec::longest_pilot_s);
-        self.delay.longest_s() + variable_s + pilot_s
+        self.delay.longest_s() + effects_s + pilot_s
     }
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
 
     const HEAD: &str = "schema = 'tauscope/plant/1'\nseed = 1\nduration_s = 10\n";

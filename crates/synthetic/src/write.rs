@@ -2,7 +2,8 @@
 
 use std::io::Write;
 
-use super::{Recorded, StepTruth};
+use crate::simulate::Recorded;
+use crate::truth::StepTruth;
 
 /// Decimals of the time in seconds: a nanosecond keeps any sample rate uniform.
 const TIME_DECIMALS: usize = 9;
@@ -95,8 +96,8 @@ fn decimal(value: f64, decimals: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{DelayLaw, InputSpec, JointSpec, PlantSpec, Simulated, simulate};
     use super::*;
+    use crate::{DelayLaw, InputSpec, JointSpec, PlantSpec, Simulated, simulate};
 
     fn made() -> Simulated {
         let input = InputSpec::Steps { steps: vec![(2, 0.5)], initial: 0.0 };

@@ -1,8 +1,8 @@
 //! The effect on the time at which a step of the input acts.
 
-use super::super::delay_law::Occasion;
-use super::super::error::{NOT_NEGATIVE, POSITIVE};
-use super::twin::{Stage, Twin};
+use super::twin::Stage::Delay;
+use super::twin::Twin;
+use crate::error::{NOT_NEGATIVE, POSITIVE};
 
 /// What is added to the delay of each step. What is left out is zero.
 ///
@@ -14,6 +14,16 @@ use super::twin::{Stage, Twin};
 /// ```
 pub(super) static VARIABLE_DELAY: Twin = Twin {
     optional: &NONE,
+    delay_s: |&[small_s, scale, falling_s, rested_s, rest_s, cold_s, warming_s], at| {
+        let rise = at.after - at.before;
+        let small = small_s * (-rise.abs() / scale).exp();
+        let falling = if rise < 0.0 { falling_s } else { 0.0 };
+        let rested = -rested_s * (-at.held_s / rest_s).exp_m1();
+        small + falling + rested + cold_s * (-at.time_s / warming_s).exp()
+    },
+    longest_delay_s: |&[small_s, _, falling_s, rested_s, _, cold_s, _]| {
+        small_s + falling_s + rested_s + cold_s
+    },
     // Two of the four terms: nearby steps differ, and so do those far apart.
     drawn: |draw| {
         let (first, second) = (draw.strength * draw.between(0, 0.6, 1.0), draw.strength);
@@ -28,7 +38,7 @@ pub(super) static VARIABLE_DELAY: Twin = Twin {
     },
     ..Twin::new(
         "variable_delay",
-        Stage::Delay,
+        Delay,
         &["small_s", "scale", "falling_s", "rested_s", "rest_s", "cold_s", "warming_s"],
         &[NOT_NEGATIVE, POSITIVE, NOT_NEGATIVE, NOT_NEGATIVE, POSITIVE, NOT_NEGATIVE, POSITIVE],
     )
@@ -37,27 +47,10 @@ pub(super) static VARIABLE_DELAY: Twin = Twin {
 /// No extra delay: scales in input units and seconds, and terms of zero.
 const NONE: [f64; 7] = [0.0, 4.0, 0.0, 0.0, 4.0, 0.0, 120.0];
 
-/// Seconds that the numbers of [`VARIABLE_DELAY`] add to the delay of a step.
-pub(crate) fn extra_s(numbers: &[f64], at: &Occasion) -> f64 {
-    let &[small_s, scale, falling_s, rested_s, rest_s, cold_s, warming_s] = numbers else {
-        return 0.0;
-    };
-    let rise = at.after - at.before;
-    let small = small_s * (-rise.abs() / scale).exp();
-    let falling = if rise < 0.0 { falling_s } else { 0.0 };
-    let rested = -rested_s * (-at.held_s / rest_s).exp_m1();
-    small + falling + rested + cold_s * (-at.time_s / warming_s).exp()
-}
-
-/// Seconds that they add at most.
-pub(crate) fn longest_s(numbers: &[f64]) -> f64 {
-    let &[small_s, _, falling_s, rested_s, _, cold_s, _] = numbers else { return 0.0 };
-    small_s + falling_s + rested_s + cold_s
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::delay_law::Occasion;
 
     #[test]
     fn each_term_is_there_when_it_should_be() {
@@ -73,8 +66,9 @@ mod tests {
         };
         let left = (-1.0_f64).exp();
         let expected = 0.1 * left + 0.2 + 0.4 * (1.0 - left) + 0.8 * left;
-        assert!((extra_s(&numbers, &at) - expected).abs() < 1e-12);
-        assert!(extra_s(&numbers, &Occasion { after: 8.0, ..at }) < expected - 0.19);
-        assert!(longest_s(&numbers) >= expected);
+        let delay_s = |at: &Occasion| (VARIABLE_DELAY.delay_s)(&numbers, at);
+        assert!((delay_s(&at) - expected).abs() < 1e-12);
+        assert!(delay_s(&Occasion { after: 8.0, ..at }) < expected - 0.19);
+        assert!((VARIABLE_DELAY.longest_delay_s)(&numbers) >= expected);
     }
 }

@@ -2,11 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use super::super::clock::MIN_STEPS_PER_LAG;
-use super::super::error::{
-    BELOW_ONE, FINITE, LASTS_A_LAG, LASTS_A_PERIOD, NOT_NEGATIVE, POSITIVE, SHARE,
-};
-use super::twin::{At, LARGEST_LEVEL, Numbers, Stage, States, Twin, followed};
+use super::twin::Stage::{Dynamics, Speed, Spool};
+use super::twin::{At, LARGEST_LEVEL, Numbers, States, Twin, followed};
+use crate::clock::MIN_STEPS_PER_LAG;
+use crate::error::{BELOW_ONE, FINITE, LASTS_A_LAG, LASTS_A_PERIOD, NOT_NEGATIVE, POSITIVE, SHARE};
 
 /// The spool approaches what is commanded, before the overlap and all that the valve does to its
 /// opening: `time_constant x' = command - x`.
@@ -14,7 +13,7 @@ pub(super) static SPOOL_LAG: Twin = Twin {
     settle: followed,
     act: lagging,
     drawn: |draw| vec![SHORTEST_LAG_S + draw.strength],
-    ..Twin::new("spool_lag", Stage::Spool, &["time_constant"], &[LASTS_A_LAG])
+    ..Twin::new("spool_lag", Spool, &["time_constant"], &[LASTS_A_LAG])
 };
 
 /// The joint starts above one level of the input and stops below a lower one, each within two time
@@ -23,20 +22,24 @@ pub(super) static STICTION: Twin = Twin {
     related: |&[start, stop, ..], _| {
         (stop > start).then_some((1, "not above `effect.stiction.start`"))
     },
+    direction: Some(|&[start, stop, ..], level, before| {
+        let needed = if level * before > 0.0 { stop } else { start };
+        if level.abs() > needed { level.signum() } else { 0.0 }
+    }),
     settle: |_, opening, at, states| {
-        states[0] = at.moves;
-        at.moves * opening
+        states[0] = at.direction.abs();
+        states[0] * opening
     },
     // The state is how far the joint has come loose, from 0 at rest to 1.
     act: |_, opening, at, &[loose, ..], rates| {
-        rates[0] = (at.moves - loose) / (STEPS_TO_LOOSEN * at.substep_s);
+        rates[0] = (at.direction.abs() - loose) / (STEPS_TO_LOOSEN * at.substep_s);
         loose * opening
     },
     drawn: |draw| {
         let start = LARGEST_LEVEL * draw.strength;
         vec![start, start * draw.between(0, 0.3, 0.6)]
     },
-    ..Twin::new("stiction", Stage::Dynamics, &["start", "stop"], &[NOT_NEGATIVE, NOT_NEGATIVE])
+    ..Twin::new("stiction", Dynamics, &["start", "stop"], &[NOT_NEGATIVE, NOT_NEGATIVE])
 };
 
 /// The spool has a largest speed.
@@ -52,7 +55,7 @@ pub(super) static RATE_LIMIT: Twin = Twin {
         spool
     },
     drawn: |draw| vec![draw.strength],
-    ..Twin::new("rate_limit", Stage::Dynamics, &["seconds_per_input"], &[POSITIVE])
+    ..Twin::new("rate_limit", Dynamics, &["seconds_per_input"], &[POSITIVE])
 };
 
 /// The speed approaches what is commanded: `time_constant x' = in - x`.
@@ -60,7 +63,7 @@ pub(super) static ACTUATOR_LAG: Twin = Twin {
     settle: followed,
     act: lagging,
     drawn: |draw| vec![SHORTEST_LAG_S + draw.strength],
-    ..Twin::new("actuator_lag", Stage::Dynamics, &["time_constant"], &[LASTS_A_LAG])
+    ..Twin::new("actuator_lag", Dynamics, &["time_constant"], &[LASTS_A_LAG])
 };
 
 /// Oil as a spring, with the pressure as a state of its own.
@@ -79,7 +82,7 @@ pub(super) static RESONANCE: Twin = Twin {
         flow
     },
     drawn: |draw| vec![0.08 + 1.5 * draw.strength, draw.between(0, 0.08, 0.25)],
-    ..Twin::new("resonance", Stage::Dynamics, &["period", "damping"], &[LASTS_A_PERIOD, BELOW_ONE])
+    ..Twin::new("resonance", Dynamics, &["period", "damping"], &[LASTS_A_PERIOD, BELOW_ONE])
 };
 
 /// Oil as a spring that is stiffer at other angles, and that the open valve lets escape.
@@ -113,7 +116,7 @@ pub(super) static OIL_COLUMN: Twin = Twin {
     },
     ..Twin::new(
         "oil_column",
-        Stage::Dynamics,
+        Dynamics,
         &["period", "damping", "valve_damping", "slope", "reference"],
         &[LASTS_A_PERIOD, BELOW_ONE, NOT_NEGATIVE, FINITE, FINITE],
     )
@@ -132,19 +135,15 @@ const CLOSED: f64 = 0.1;
 /// with the level of the direction of motion, in input units: at rest any force up to it is met, in
 /// motion it is reached after some lengths of a bristle. `time_constant` is the inertia.
 pub(super) static COULOMB_FRICTION: Twin = Twin {
-    settle: |&[positive, negative, ..], input, _, states| {
-        slid([positive, negative, 1.0], input, states)
-    },
-    act: |&[positive, negative, time_constant, ..], input, at, states, rates| {
-        sliding([positive, negative, time_constant, 1.0], input, at, states, rates)
-    },
+    settle: |numbers, input, _, states| slid(numbers, 1.0, input, states),
+    act: |numbers, input, at, states, rates| sliding(numbers, 1.0, input, at, states, rates),
     drawn: |draw| {
         let level = |index| 1.5 * draw.strength * draw.between(index, 0.6, 1.0);
         vec![level(0), level(1), 0.02 + 0.3 * draw.strength * draw.between(2, 0.5, 1.0)]
     },
     ..Twin::new(
         "coulomb_friction",
-        Stage::Dynamics,
+        Dynamics,
         &["positive", "negative", "time_constant"],
         &[NOT_NEGATIVE, NOT_NEGATIVE, LASTS_A_LAG],
     )
@@ -162,12 +161,8 @@ pub(super) static ASYMMETRIC_FRICTION: Twin = Twin {
         let shortest_s = MIN_STEPS_PER_LAG * clock.substep_s() * viscous.max(1.0);
         (time_constant < shortest_s).then_some((2, LASTS_A_LAG.0))
     },
-    settle: |&[positive, negative, _, viscous, ..], input, _, states| {
-        slid([positive, negative, viscous], input, states)
-    },
-    act: |&[positive, negative, time_constant, viscous, ..], input, at, states, rates| {
-        sliding([positive, negative, time_constant, viscous], input, at, states, rates)
-    },
+    settle: |numbers, input, _, states| slid(numbers, numbers[3], input, states),
+    act: |numbers, input, at, states, rates| sliding(numbers, numbers[3], input, at, states, rates),
     // Some part more or less both of the constant and of the viscous friction.
     drawn: |draw| {
         let positive = 1.2 * draw.strength * draw.between(0, 0.6, 1.0);
@@ -177,7 +172,7 @@ pub(super) static ASYMMETRIC_FRICTION: Twin = Twin {
     },
     ..Twin::new(
         "asymmetric_friction",
-        Stage::Dynamics,
+        Dynamics,
         &["positive", "negative", "time_constant", "negative_viscous"],
         &[NOT_NEGATIVE, NOT_NEGATIVE, LASTS_A_LAG, POSITIVE],
     )
@@ -185,7 +180,8 @@ pub(super) static ASYMMETRIC_FRICTION: Twin = Twin {
 
 /// The states are speed and friction.
 fn sliding(
-    [positive, negative, time_constant, negative_viscous]: [f64; 4],
+    &[positive, negative, time_constant, ..]: &Numbers,
+    negative_viscous: f64,
     input: f64,
     at: &At,
     &[speed, friction, ..]: &States,
@@ -203,10 +199,16 @@ fn sliding(
     speed
 }
 
-fn slid([positive, negative, viscous]: [f64; 3], input: f64, states: &mut States) -> f64 {
+/// Both after `input` has long been held.
+fn slid(
+    &[positive, negative, ..]: &Numbers,
+    negative_viscous: f64,
+    input: f64,
+    states: &mut States,
+) -> f64 {
     let friction = input.max(-negative).min(positive);
     let force = input - friction;
-    states[0] = if force < 0.0 { force / viscous } else { force };
+    states[0] = if force < 0.0 { force / negative_viscous } else { force };
     states[1] = friction;
     states[0]
 }
@@ -227,12 +229,12 @@ pub(super) static CREEP_MEMORY: Twin = Twin {
         input + share * (mean - input)
     },
     drawn: |draw| vec![draw.strength],
-    ..Twin::new("creep_memory", Stage::Dynamics, &["share"], &[SHARE])
+    ..Twin::new("creep_memory", Dynamics, &["share"], &[SHARE])
 };
 
 /// The plain lag of a joint, on its speed.
 pub(crate) static LAG: Twin =
-    Twin { settle: followed, act: lagging, ..Twin::new("lag_s", Stage::Speed, &[], &[]) };
+    Twin { settle: followed, act: lagging, ..Twin::new("lag_s", Speed, &[], &[]) };
 
 /// The plain ringing of a joint, with its period and damping: `s'' = ω² (in - s) - 2 damping ω s'`.
 pub(crate) static RINGING: Twin = Twin {
@@ -246,7 +248,7 @@ pub(crate) static RINGING: Twin = Twin {
         rates[1] = omega * (omega * (speed - ringing) - 2.0 * damping * surge);
         ringing
     },
-    ..Twin::new("ringing", Stage::Speed, &[], &[])
+    ..Twin::new("ringing", Speed, &[], &[])
 };
 
 /// The shortest lag that is drawn, in seconds: one that the time steps can follow, and more.

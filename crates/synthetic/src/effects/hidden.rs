@@ -4,16 +4,17 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize as _, Deserializer, Serialize, Serializer, de};
 
-use super::super::clock::Clock;
-use super::super::error::{Place, PlantError};
-use super::table::{OUTSIDE, in_order};
+use super::registry::{OUTSIDE, REGISTRY};
 use super::twin::{At, Numbers, Stage, States, Twin};
+use crate::clock::Clock;
+use crate::delay_law::Occasion;
+use crate::error::{Place, PlantError};
 
 /// An effect with its numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct Instance {
     pub(crate) twin: &'static Twin,
-    pub(crate) numbers: Numbers,
+    numbers: Numbers,
 }
 
 /// Effects that a joint hides: `[joint.effect.<name>]` or `[joint.outside.<name>]` in a plant file.
@@ -29,9 +30,19 @@ impl Instance {
         Self { twin, numbers }
     }
 
+    /// Its place in the order in which the signal passes all effects.
+    pub(crate) fn place(&self) -> Option<usize> {
+        REGISTRY.iter().position(|row| row.twin.name == self.twin.name)
+    }
+
     /// The signal behind it.
     pub(crate) fn act(&self, signal: f64, at: &At, states: &States, rates: &mut States) -> f64 {
         (self.twin.act)(&self.numbers, signal, at, states, rates)
+    }
+
+    /// The signal behind it, where it has neither states nor sees the joint.
+    pub(crate) fn pass(&self, signal: f64, at: &At) -> f64 {
+        self.act(signal, at, &States::default(), &mut States::default())
     }
 
     /// The signal behind it after `signal` has long been held, and the states then.
@@ -39,17 +50,33 @@ impl Instance {
         (self.twin.settle)(&self.numbers, signal, at, states)
     }
 
+    /// Direction of motion at a `level` of the valve, where it was `before`; none where this
+    /// does not set it.
+    pub(crate) fn direction(&self, level: f64, before: f64) -> Option<f64> {
+        self.twin.direction.map(|direction| direction(&self.numbers, level, before))
+    }
+
+    /// Seconds that it adds to the delay of a step.
+    pub(crate) fn delay_s(&self, at: &Occasion) -> f64 {
+        (self.twin.delay_s)(&self.numbers, at)
+    }
+
+    /// Seconds that it adds at most.
+    pub(crate) fn longest_delay_s(&self) -> f64 {
+        (self.twin.longest_delay_s)(&self.numbers)
+    }
+
     /// Refuses numbers that mean nothing.
     fn check(&self, group: &str, place: &Place, clock: &Clock) -> Result<(), PlantError> {
         let Self { twin, numbers } = self;
         let key = |index: usize| format!("{group}.{}.{}", twin.name, twin.keys[index]);
-        for (index, (number, allowed)) in numbers.iter().zip(twin.allowed).enumerate() {
-            place.number(&key(index), *number, *allowed, clock)?;
+        for (index, (number, rule)) in numbers.iter().zip(twin.allowed).enumerate() {
+            place.number(&key(index), *number, *rule, clock)?;
         }
-        match (twin.related)(numbers, clock) {
-            Some((index, allowed)) => Err(place.refuse(&key(index), numbers[index], allowed)),
-            None => Ok(()),
-        }
+        let wrong = (twin.related)(numbers, clock);
+        wrong.map_or(Ok(()), |(index, allowed)| {
+            Err(place.refuse(&key(index), numbers[index], allowed))
+        })
     }
 }
 
@@ -88,8 +115,7 @@ impl Hidden {
     pub(crate) fn put(&mut self, twin: &'static Twin, numbers: &[f64]) {
         self.0.retain(|instance| instance.twin.name != twin.name);
         self.0.push(Instance::new(twin, numbers));
-        let place = |one: &Instance| in_order().position(|twin| twin.name == one.twin.name);
-        self.0.sort_by_key(place);
+        self.0.sort_by_key(Instance::place);
     }
 
     /// Those that act, in the order in which the signal passes them.
@@ -109,9 +135,7 @@ impl Hidden {
     /// What the sensor shows of `angle`.
     pub(crate) fn shown(&self, angle: f64) -> f64 {
         let of_sensor = self.0.iter().filter(|instance| instance.twin.stage == Stage::Sensor);
-        of_sensor.fold(angle, |angle, one| {
-            one.act(angle, &At::default(), &States::default(), &mut States::default())
-        })
+        of_sensor.fold(angle, |angle, one| one.pass(angle, &At::default()))
     }
 
     /// Refuses numbers that mean nothing; `group` is the key of the table.
@@ -144,29 +168,26 @@ pub(crate) fn numbers<E: de::Error>(
     }
     let required = twin.keys.len() - twin.optional.len();
     let number = |(index, key): (usize, &&'static str)| {
-        let default = index.checked_sub(required).and_then(|index| twin.optional.get(index));
+        let default = index.checked_sub(required).map(|index| &twin.optional[index]);
         given.get(*key).or(default).copied().ok_or_else(|| E::missing_field(key))
     };
     twin.keys.iter().enumerate().map(number).collect()
 }
 
 /// Effects of the catalogue.
-pub(crate) fn catalogue<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Hidden, D::Error> {
-    read(deserializer, |name| !OUTSIDE.contains(&name))
+pub(crate) fn catalogue<'de, D: Deserializer<'de>>(from: D) -> Result<Hidden, D::Error> {
+    read(from, |name| !OUTSIDE.contains(&name))
 }
 
 /// Effects outside it.
-pub(crate) fn outside<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Hidden, D::Error> {
-    read(deserializer, |name| OUTSIDE.contains(&name))
+pub(crate) fn outside<'de, D: Deserializer<'de>>(from: D) -> Result<Hidden, D::Error> {
+    read(from, |name| OUTSIDE.contains(&name))
 }
 
-fn read<'de, D: Deserializer<'de>>(
-    deserializer: D,
-    belongs: fn(&str) -> bool,
-) -> Result<Hidden, D::Error> {
+fn read<'de, D: Deserializer<'de>>(from: D, belongs: fn(&str) -> bool) -> Result<Hidden, D::Error> {
     let mut hidden = Hidden::default();
-    for (name, given) in BTreeMap::<String, BTreeMap<String, f64>>::deserialize(deserializer)? {
-        let known = || in_order().filter(|twin| belongs(twin.name));
+    for (name, given) in BTreeMap::<String, BTreeMap<String, f64>>::deserialize(from)? {
+        let known = || REGISTRY.iter().map(|row| row.twin).filter(|twin| belongs(twin.name));
         let twin = known().find(|twin| twin.name == name).ok_or_else(|| {
             let names: Vec<_> = known().map(|twin| format!("`{}`", twin.name)).collect();
             let names = names.join(", ");

@@ -1,11 +1,12 @@
 //! Effects on the speed of the joint: where it is, how warm, what pulls at it.
 
-use super::super::error::{
+use super::shapes::window;
+use super::twin::Stage::Load;
+use super::twin::{Twin, rises};
+use crate::error::{
     ABOVE_MINUS_ONE, BELOW_ONE, BETWEEN_ONES, BOUND, DRAINS, FINITE, LASTS_A_SAMPLE, MOUNT,
     OPEN_SHARE, SHARE,
 };
-use super::shapes::window;
-use super::twin::{Stage, Twin, rises};
 
 /// A cylinder that turns the joint by a lever.
 ///
@@ -34,7 +35,7 @@ pub(super) static POSITION_GAIN: Twin = Twin {
     },
     ..Twin::new(
         "position_gain",
-        Stage::Load,
+        Load,
         &["ratio", "mount", "leverage", "reference"],
         &[OPEN_SHARE, MOUNT, FINITE, FINITE],
     )
@@ -61,7 +62,7 @@ pub(super) static THERMAL_DRIFT: Twin = Twin {
     },
     ..Twin::new(
         "thermal_drift",
-        Stage::Load,
+        Load,
         &["change", "time_constant"],
         &[ABOVE_MINUS_ONE, LASTS_A_SAMPLE],
     )
@@ -75,7 +76,7 @@ pub(super) static SUPPLY_DROOP: Twin = Twin {
         speed * (1.0 - droop * demand)
     },
     drawn: |draw| vec![0.95 * draw.strength],
-    ..Twin::new("supply_droop", Stage::Load, &["droop"], &[BELOW_ONE])
+    ..Twin::new("supply_droop", Load, &["droop"], &[BELOW_ONE])
 };
 
 /// Time constant of the pump's pressure, in seconds.
@@ -99,12 +100,7 @@ pub(super) static GRAVITY_LOAD: Twin = Twin {
         let creep = 3.0 * draw.strength * draw.between(1, 0.0, 1.0);
         vec![0.9 * draw.strength, draw.between(0, -40.0, 40.0), creep]
     },
-    ..Twin::new(
-        "gravity_load",
-        Stage::Load,
-        &["kappa", "y0", "creep"],
-        &[BETWEEN_ONES, FINITE, FINITE],
-    )
+    ..Twin::new("gravity_load", Load, &["kappa", "y0", "creep"], &[BETWEEN_ONES, FINITE, FINITE])
 };
 
 /// Oil that passes the piston: the joint drifts toward an angle, `rate` per second of the distance.
@@ -112,7 +108,7 @@ pub(super) static LEAKAGE: Twin = Twin {
     optional: &[0.0],
     act: |&[rate, y0, ..], speed, at, _, _| speed + rate * (y0 - at.angle),
     drawn: |draw| vec![0.6 * draw.strength, draw.between(0, -20.0, 20.0)],
-    ..Twin::new("leakage", Stage::Load, &["rate", "y0"], &[DRAINS, FINITE])
+    ..Twin::new("leakage", Load, &["rate", "y0"], &[DRAINS, FINITE])
 };
 
 /// Not in the catalogue: a bearing that binds in a range of angles, whose ends are rounded over a
@@ -127,7 +123,7 @@ pub(super) static STICKY_SPOT: Twin = Twin {
         let (middle, half) = (draw.between(0, -20.0, 20.0), draw.between(1, 6.0, 9.0));
         vec![middle - half, middle + half, 1.0 - 0.95 * draw.strength]
     },
-    ..Twin::new("sticky_spot", Stage::Load, &["from", "to", "share"], &[FINITE, FINITE, SHARE])
+    ..Twin::new("sticky_spot", Load, &["from", "to", "share"], &[FINITE, FINITE, SHARE])
 };
 
 /// Width of the ends of a sticky spot, as a part of it.
@@ -145,7 +141,7 @@ pub(super) static DISTURBANCE: Twin = Twin {
         let to_s = from_s + draw.between(1, 5.0, 12.0);
         vec![from_s, to_s, 20.0 * draw.strength * draw.sign(2)]
     },
-    ..Twin::new("disturbance", Stage::Load, &["from_s", "to_s", "speed"], &[FINITE, FINITE, FINITE])
+    ..Twin::new("disturbance", Load, &["from_s", "to_s", "speed"], &[FINITE, FINITE, FINITE])
 };
 
 /// Width of the rise of a disturbance, in seconds.
@@ -161,7 +157,7 @@ pub(super) static END_STOP: Twin = Twin {
         let way = 65.0 * draw.strength;
         vec![-70.0 + way, 70.0 - way * draw.between(0, 0.7, 1.0)]
     },
-    ..Twin::new("end_stop", Stage::Load, &["low", "high"], &[BOUND, BOUND])
+    ..Twin::new("end_stop", Load, &["low", "high"], &[BOUND, BOUND])
 };
 
 /// How far `x` is beyond `low` or `high`.

@@ -2,9 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use super::super::error::{FINITE, NOT_NEGATIVE, POSITIVE};
 use super::load::beyond;
-use super::twin::{Stage, Twin, followed};
+use super::twin::Stage::Sensor;
+use super::twin::{Twin, followed};
+use crate::error::{FINITE, NOT_NEGATIVE, POSITIVE};
 
 /// Play between the joint and its sensor, of the whole `width`: what is measured is dragged along
 /// by a stiff spring once the play is used up.
@@ -15,7 +16,7 @@ pub(super) static BACKLASH: Twin = Twin {
         measured
     },
     drawn: |draw| vec![15.0 * draw.strength],
-    ..Twin::new("backlash", Stage::Sensor, &["width"], &[NOT_NEGATIVE])
+    ..Twin::new("backlash", Sensor, &["width"], &[NOT_NEGATIVE])
 };
 
 /// Not in the catalogue: an angle sensor that is mounted out of centre.
@@ -34,7 +35,7 @@ pub(super) static SENSOR_NONLINEARITY: Twin = Twin {
     },
     ..Twin::new(
         "sensor_nonlinearity",
-        Stage::Sensor,
+        Sensor,
         &["amplitude", "period", "zero"],
         &[FINITE, POSITIVE, FINITE],
     )

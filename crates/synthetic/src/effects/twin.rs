@@ -1,7 +1,8 @@
 //! What is stated of an effect that a plant can hide.
 
-use super::super::clock::Clock;
-use super::super::error::Rule;
+use crate::clock::Clock;
+use crate::delay_law::Occasion;
+use crate::error::Rule;
 
 /// Where an effect acts; the signal passes the stages in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,8 +38,9 @@ pub(crate) struct At {
     pub(crate) edge: f64,
     /// Their width in output units per second.
     pub(crate) speed_edge: f64,
-    /// 1 where the valve is far enough open to move the joint, 0 where it sticks.
-    pub(crate) moves: f64,
+    /// Direction of motion: 1 or -1 where the valve is far enough open to move the joint, 0
+    /// where it sticks.
+    pub(crate) direction: f64,
     /// Demand of the other joints, 0 to 1.
     pub(crate) others: f64,
 }
@@ -48,16 +50,6 @@ pub(crate) type Numbers = [f64; 7];
 
 /// What moves or remembers in an effect; those that it does not need stay zero.
 pub(crate) type States = [f64; 4];
-
-/// The signal behind an effect with these numbers, for the signal before it and the states of the
-/// effect; the last is where the derivatives of the states go.
-type Act = fn(&Numbers, f64, &At, &States, &mut States) -> f64;
-
-/// Puts the states where a signal that is long held has brought them; the signal behind.
-type Settle = fn(&Numbers, f64, &At, &mut States) -> f64;
-
-/// What a number may be beside another one: the index of the one that is not, and what is allowed.
-type Related = fn(&Numbers, &Clock) -> Option<(usize, &'static str)>;
 
 /// An effect that a plant can hide.
 #[derive(Debug)]
@@ -70,11 +62,22 @@ pub(crate) struct Twin {
     pub(super) allowed: &'static [Rule],
     /// The last numbers, where a file leaves them out.
     pub(super) optional: &'static [f64],
-    pub(super) related: Related,
+    /// What a number may be beside another one: the index of the one that is not, and what is
+    /// allowed.
+    pub(super) related: fn(&Numbers, &Clock) -> Option<(usize, &'static str)>,
     /// An effect that does not act beside it.
     pub(super) instead_of: Option<&'static str>,
-    pub(super) settle: Settle,
-    pub(super) act: Act,
+    /// Puts the states where a signal that is long held has brought them; the signal behind.
+    pub(crate) settle: fn(&Numbers, f64, &At, &mut States) -> f64,
+    /// The signal behind an effect with these numbers, for the signal before it and the states
+    /// of the effect; the last is where the derivatives of the states go.
+    pub(crate) act: fn(&Numbers, f64, &At, &States, &mut States) -> f64,
+    /// Direction of motion at a level of the valve, 0 at rest, where it was the last one before.
+    pub(crate) direction: Option<fn(&Numbers, f64, f64) -> f64>,
+    /// Seconds that it adds to the delay of a step.
+    pub(crate) delay_s: fn(&Numbers, &Occasion) -> f64,
+    /// Seconds that it adds at most.
+    pub(crate) longest_delay_s: fn(&Numbers) -> f64,
     /// Its numbers in a scenario.
     pub(crate) drawn: fn(&Draw) -> Vec<f64>,
 }
@@ -97,6 +100,9 @@ impl Twin {
             instead_of: None,
             settle: |_, signal, _, _| signal,
             act: |_, signal, _, _, _| signal,
+            direction: None,
+            delay_s: |_, _| 0.0,
+            longest_delay_s: |_| 0.0,
             drawn: |_| Vec::new(),
         }
     }
@@ -123,16 +129,16 @@ pub(crate) struct Draw {
     pub(crate) strength: f64,
     /// What makes one instance of an effect differ from the next: drawn from 0 to 1.
     pub(crate) chances: [f64; 3],
-    /// The [`valve_edge`](super::super::JointSpec::valve_edge) of the joint.
+    /// The [`valve_edge`](crate::JointSpec::valve_edge) of the joint.
     pub(crate) valve_edge: f64,
     /// Angle of the joint at the first sample.
     pub(crate) start: f64,
 }
 
 impl Draw {
-    /// Chance `index` between `from` and `to`.
+    /// Chance `index`, below 3, between `from` and `to`.
     pub(super) fn between(&self, index: usize, from: f64, to: f64) -> f64 {
-        from + (to - from) * self.chances.get(index).copied().unwrap_or(0.5)
+        from + (to - from) * self.chances[index]
     }
 
     /// 1 or -1.

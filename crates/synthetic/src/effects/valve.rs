@@ -3,15 +3,16 @@
 //! Corners are rounded over an edge, a small part of the largest level; `ramp` is a rounded
 //! `max(x, 0)`.
 
-use super::super::error::{FINITE, NOT_NEGATIVE, NOT_POSITIVE, POSITIVE, SHARE, TWO_OR_MORE};
 use super::shapes::{ramp, rise, window};
-use super::twin::{LARGEST_LEVEL, Stage, Twin, rises};
+use super::twin::Stage::Valve;
+use super::twin::{LARGEST_LEVEL, Twin, rises};
+use crate::error::{FINITE, NOT_NEGATIVE, NOT_POSITIVE, POSITIVE, SHARE, TWO_OR_MORE};
 
 /// The valve is open a little at zero input: `u + offset`.
 pub(super) static INPUT_OFFSET: Twin = Twin {
     act: |&[offset, ..], u, _, _, _| u + offset,
     drawn: |draw| vec![draw.sign(0) * draw.strength],
-    ..Twin::new("input_offset", Stage::Valve, &["offset"], &[FINITE])
+    ..Twin::new("input_offset", Valve, &["offset"], &[FINITE])
 };
 
 /// No flow between two levels, `lower` ≤ 0 ≤ `upper`: `ramp(u - upper) - ramp(lower - u)`.
@@ -21,7 +22,7 @@ pub(super) static DEAD_BAND: Twin = Twin {
         let end = |index| 1.5 * draw.strength * draw.between(index, 0.6, 1.0);
         vec![-end(0), end(1)]
     },
-    ..Twin::new("dead_band", Stage::Valve, &["lower", "upper"], &[NOT_POSITIVE, NOT_NEGATIVE])
+    ..Twin::new("dead_band", Valve, &["lower", "upper"], &[NOT_POSITIVE, NOT_NEGATIVE])
 };
 
 /// A flow that grows with a power of the opening; 1 is a straight line:
@@ -32,7 +33,7 @@ pub(super) static FLOW_CURVE: Twin = Twin {
         u * ((u * u + square) / (1.0 + square)).powf(0.5 * (exponent - 1.0))
     },
     drawn: |draw| vec![(draw.sign(0) * draw.strength).exp()],
-    ..Twin::new("flow_curve", Stage::Valve, &["exponent"], &[POSITIVE])
+    ..Twin::new("flow_curve", Valve, &["exponent"], &[POSITIVE])
 };
 
 /// Speed for a negative input over that for a positive one:
@@ -40,7 +41,7 @@ pub(super) static FLOW_CURVE: Twin = Twin {
 pub(super) static DIRECTION_GAIN: Twin = Twin {
     act: |&[factor, ..], u, at, _, _| u * (1.0 + (factor - 1.0) * rise(-u, at.edge)),
     drawn: |draw| vec![(draw.sign(0) * draw.strength).exp()],
-    ..Twin::new("direction_gain", Stage::Valve, &["negative_factor"], &[POSITIVE])
+    ..Twin::new("direction_gain", Valve, &["negative_factor"], &[POSITIVE])
 };
 
 /// Not in the catalogue: a worn land passes the part `share` in a range of the input.
@@ -54,7 +55,7 @@ pub(super) static INPUT_NOTCH: Twin = Twin {
         let middle = draw.sign(0) * draw.between(1, 0.9, 1.5);
         vec![middle - 0.35, middle + 0.35, 1.0 - draw.strength]
     },
-    ..Twin::new("input_notch", Stage::Valve, &["from", "to", "share"], &[FINITE, FINITE, SHARE])
+    ..Twin::new("input_notch", Valve, &["from", "to", "share"], &[FINITE, FINITE, SHARE])
 };
 
 /// The flow ends at a limit: `u (1 + abs(u / limit)^p)^(-1/p)`.
@@ -68,7 +69,7 @@ pub(super) static INPUT_SATURATION: Twin = Twin {
         let sharp = HARD * (0.004 / draw.valve_edge).sqrt();
         vec![drawn_limit(draw.strength), if draw.sign(0) > 0.0 { sharp } else { SOFT }]
     },
-    ..Twin::new("input_saturation", Stage::Valve, &["limit", "sharpness"], &[POSITIVE, TWO_OR_MORE])
+    ..Twin::new("input_saturation", Valve, &["limit", "sharpness"], &[POSITIVE, TWO_OR_MORE])
 };
 
 /// The flow ends at another limit in each direction; `negative_ratio` is the negative one over the
@@ -87,7 +88,7 @@ pub(super) static ASYMMETRIC_SATURATION: Twin = Twin {
     },
     ..Twin::new(
         "asymmetric_saturation",
-        Stage::Valve,
+        Valve,
         &["limit", "negative_ratio", "sharpness"],
         &[POSITIVE, POSITIVE, TWO_OR_MORE],
     )

@@ -10,13 +10,13 @@ mod integrator;
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
-use super::delay_law::DelayLaw;
-use super::effects::{self, CATALOGUE, Draw, FINER, LARGEST_LEVEL, OUTSIDE, Twin};
-use super::error::PlantError;
-use super::input::InputSpec;
-use super::random::{Purpose, stream};
-use super::simulate::{Simulated, simulate};
-use super::spec::{JointSpec, PlantSpec};
+use crate::delay_law::DelayLaw;
+use crate::effects::{self, Draw, LARGEST_LEVEL, Twin};
+use crate::error::PlantError;
+use crate::input::InputSpec;
+use crate::random::{Purpose, stream};
+use crate::simulate::{Simulated, simulate};
+use crate::spec::{JointSpec, PlantSpec};
 
 /// Length of a record in seconds.
 const DURATION_S: f64 = 120.0;
@@ -93,20 +93,15 @@ pub struct Scenario {
     pub error_over_noise: f64,
 }
 
-/// Effects of the catalogue that leave different traces; one of each is drawn.
-const FAMILIES: [&[&str]; 5] = [
-    &["dead_band", "stiction", "input_saturation", "flow_curve", "coulomb_friction"],
-    &["input_offset", "direction_gain", "leakage", "gravity_load", "position_gain"],
-    &["rate_limit", "variable_delay", "actuator_lag", "resonance"],
-    &["thermal_drift", "supply_droop"],
-    &["end_stop", "backlash"],
-];
+/// Numbers of the random numbers that choose effects, and those that make a joint without any.
+const CHOICE: usize = 23;
+const BARE: usize = 24;
 
 /// `count` effects of the catalogue, drawn by `seed`, no two of which look alike; at most
 /// five.
 pub fn draw(count: usize, seed: u64) -> Vec<&'static str> {
-    let mut random = stream(seed, CATALOGUE.len() + OUTSIDE.len(), Purpose::Scenario);
-    let mut families = FAMILIES.to_vec();
+    let mut random = stream(seed, CHOICE, Purpose::Scenario);
+    let mut families = effects::families();
     let mut drawn = Vec::new();
     while drawn.len() < count && !families.is_empty() {
         let family = families.swap_remove(random.random_range(0..families.len()));
@@ -116,20 +111,18 @@ pub fn draw(count: usize, seed: u64) -> Vec<&'static str> {
 }
 
 impl Strength {
-    /// Error of the nearest integrator that is aimed at, in deviations of the noise.
-    fn wanted(self) -> f64 {
+    /// Least, wanted and largest error of the nearest integrator, in deviations of the noise.
+    fn errors(self) -> [f64; 3] {
         match self {
-            Self::Weak => 3.0,
-            Self::Clear => 12.0,
+            Self::Weak => [1.5, 3.0, 5.0],
+            Self::Clear => [8.0, 12.0, f64::INFINITY],
         }
     }
 
     /// Whether an error is what the strength means.
     fn holds(self, error: f64) -> bool {
-        match self {
-            Self::Weak => (1.5..=5.0).contains(&error),
-            Self::Clear => error >= 8.0,
-        }
+        let [least, _, largest] = self.errors();
+        (least..=largest).contains(&error)
     }
 }
 
@@ -159,11 +152,9 @@ struct HiddenEffect {
 impl HiddenEffect {
     /// The effect `name`, its particulars drawn by `seed`.
     fn new(name: &str, seed: u64) -> Result<Self, PlantError> {
-        let twin = effects::find(name)?;
-        let names = CATALOGUE.iter().chain(&OUTSIDE).chain(&FINER);
-        let index = names.into_iter().position(|known| *known == twin.name).unwrap_or_default();
-        let mut random = stream(seed, index, Purpose::Scenario);
-        Ok(Self { twin, chances: random.random(), amount: FIRST_AMOUNT, random })
+        let row = effects::find(name)?;
+        let mut random = stream(seed, row.number, Purpose::Scenario);
+        Ok(Self { twin: row.twin, chances: random.random(), amount: FIRST_AMOUNT, random })
     }
 
     fn put_on(&self, joint: &mut JointSpec) {
@@ -200,8 +191,9 @@ const ROUNDS: usize = 9;
 const ROUNDS_EACH: usize = 3;
 
 impl Scenario {
-    /// A joint that hides the effects of the given names, of [`CATALOGUE`] or [`OUTSIDE`],
-    /// each at `strength`; no name, no effect. The same arguments give the same scenario.
+    /// A joint that hides the effects of the given names, of [`CATALOGUE`](effects::CATALOGUE),
+    /// [`FINER`](effects::FINER) or [`OUTSIDE`](effects::OUTSIDE), each at `strength`; no name,
+    /// no effect. The same arguments give the same scenario.
     ///
     /// # Errors
     /// [`ScenarioError`]: for a name that is unknown or there twice, or where an effect
@@ -275,7 +267,7 @@ impl Scenario {
 /// A joint that hides nothing, and another one beside it, without noise: gains, delays and
 /// levels are drawn by `seed`.
 pub fn ideal(seed: u64) -> PlantSpec {
-    let mut random = stream(seed, CATALOGUE.len() + OUTSIDE.len() + 1, Purpose::Scenario);
+    let mut random = stream(seed, BARE, Purpose::Scenario);
     let joints = ["joint", "other"].map(|name| {
         let input = InputSpec::Levels { levels: levels(&mut random), hold_s: HOLD_S };
         let delay = DelayLaw::Constant { seconds: random.random_range(0.05..0.3) };
@@ -358,7 +350,7 @@ fn settle(
             effect.chances = effect.random.random();
         }
     }
-    let (name, wanted) = (effect.twin.name, strength.wanted());
+    let (name, [_, wanted, _]) = (effect.twin.name, strength.errors());
     Err(ScenarioError::OutOfReach { name, found: nearest, wanted })
 }
 
@@ -382,13 +374,14 @@ fn calibrated(
     strength: Strength,
     deviation: f64,
 ) -> Result<Size, PlantError> {
+    let [_, wanted, _] = strength.errors();
     let (mut too_little, mut too_much) = (LEAST_AMOUNT, 1.0);
     let mut best = Size { amount: effect.amount, error: 0.0, reach: 0.0 };
     let mut nearest = f64::INFINITY;
     for _ in 0..TRIES {
         let made = simulate(&with(ideal, std::slice::from_ref(&effect)))?;
         let found = error(&made) / deviation;
-        let ratio = found / strength.wanted();
+        let ratio = found / wanted;
         let missed = if strength.holds(found) { 0.0 } else { MISSED };
         let distance = ratio.ln().abs() + missed;
         if distance < nearest {
@@ -451,13 +444,12 @@ mod tests {
     fn what_is_drawn_together_comes_from_different_families() {
         for seed in 0..50 {
             let drawn = draw(3, seed);
-            let family = |name| FAMILIES.iter().position(|family| family.contains(name));
+            let families = effects::families();
+            let family = |name| families.iter().position(|family| family.contains(name));
             let mut families: Vec<_> = drawn.iter().map(family).collect();
             families.sort_unstable();
             families.dedup();
             assert_eq!(families.len(), 3, "{drawn:?}");
         }
-        let all: Vec<&str> = FAMILIES.concat();
-        assert!(CATALOGUE.iter().all(|name| all.contains(name)) && all.len() == CATALOGUE.len());
     }
 }
