@@ -1,14 +1,14 @@
 //! Samples and the finer time steps between them.
 
 /// Fewest time steps in a lag: the error of one step is then below 1e-5.
-pub(super) const MIN_STEPS_PER_LAG: f64 = 4.0;
+pub(crate) const MIN_STEPS_PER_LAG: f64 = 4.0;
 
 /// Fewest time steps in a period of ringing: the error of one step is below 1e-6.
-pub(super) const MIN_STEPS_PER_PERIOD: f64 = 40.0;
+pub(crate) const MIN_STEPS_PER_PERIOD: f64 = 40.0;
 
 /// The times of a record.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Clock {
+pub(crate) struct Clock {
     period_s: f64,
     samples: usize,
     substeps: u32,
@@ -16,48 +16,43 @@ pub(super) struct Clock {
 
 impl Clock {
     /// `samples` samples, `substeps` time steps from one to the next.
-    pub(super) fn new(period_s: f64, samples: usize, substeps: u32) -> Self {
+    pub(crate) fn new(period_s: f64, samples: usize, substeps: u32) -> Self {
         Self { period_s, samples, substeps }
     }
 
     /// Seconds between samples.
-    pub(super) fn period_s(&self) -> f64 {
+    pub(crate) fn period_s(&self) -> f64 {
         self.period_s
     }
 
     /// Samples in the record.
-    pub(super) fn samples(&self) -> usize {
+    pub(crate) fn samples(&self) -> usize {
         self.samples
     }
 
     /// Length of one time step in seconds.
-    pub(super) fn substep_s(&self) -> f64 {
+    pub(crate) fn substep_s(&self) -> f64 {
         self.period_s / f64::from(self.substeps)
     }
 
     /// Time of the sample with the 1-based number `sample`, in seconds.
-    pub(super) fn time_s(&self, sample: usize) -> f64 {
+    pub(crate) fn time_s(&self, sample: usize) -> f64 {
         (sample as f64 - 1.0) * self.period_s
     }
 
     /// Ends of the time steps between `sample` and the next one, in seconds.
-    pub(super) fn substep_ends(&self, sample: usize) -> impl Iterator<Item = f64> + use<> {
+    pub(crate) fn substep_ends(&self, sample: usize) -> impl Iterator<Item = f64> + use<> {
         let (start, parts, period_s) = (sample as f64 - 1.0, self.substeps, self.period_s);
         (1..=parts).map(move |j| (start + f64::from(j) / f64::from(parts)) * period_s)
     }
 
-    /// 1-based number of the sample nearest to `time_s`.
-    pub(super) fn sample_at(&self, time_s: f64) -> usize {
-        self.samples_in(time_s) + 1
-    }
-
     /// Time of the sample `sample` as a fraction of the record's length.
-    pub(super) fn progress(&self, sample: usize) -> f64 {
+    pub(crate) fn progress(&self, sample: usize) -> f64 {
         (sample as f64 - 1.0) / (self.samples as f64 - 1.0).max(1.0)
     }
 
     /// Whole samples nearest to `seconds`.
-    pub(super) fn samples_in(&self, seconds: f64) -> usize {
+    pub(crate) fn samples_in(&self, seconds: f64) -> usize {
         whole(seconds / self.period_s)
     }
 }
@@ -68,7 +63,7 @@ impl Clock {
     clippy::cast_sign_loss,
     reason = "the cast saturates, and what is out of reach of a record may be cut"
 )]
-pub(super) fn whole(count: f64) -> usize {
+pub(crate) fn whole(count: f64) -> usize {
     count.round() as usize
 }
 

@@ -42,12 +42,12 @@
 //! # Ok::<(), tauscope_synthetic::PlantError>(())
 //! ```
 
-mod arrivals;
 mod check;
 mod clock;
 mod cylinder;
 mod delay_law;
 mod drive;
+mod driver;
 pub mod effects;
 mod error;
 mod input;
@@ -59,7 +59,6 @@ mod sensor;
 mod simulate;
 mod spec;
 mod statics;
-mod together;
 mod truth;
 mod write;
 
@@ -67,7 +66,7 @@ pub use cylinder::{CylinderSpec, Part};
 pub use delay_law::DelayLaw;
 pub use error::{Place, PlantError};
 pub use input::InputSpec;
-pub use simulate::{Recorded, Simulated, TRIAL, simulate};
+pub use simulate::{Recorded, Simulated, simulate};
 pub use spec::{JointSpec, PlantSpec, Ringing, SCHEMA, Spikes};
-pub use truth::StepTruth;
+pub use truth::{StepTruth, TRIAL};
 pub use write::{write_log, write_truth};

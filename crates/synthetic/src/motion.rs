@@ -5,12 +5,13 @@
 //! constant: a time step is split where a level begins to act. No fitted model uses this code, so
 //! that data and model cannot share a mistake.
 
-use super::clock::Clock;
-use super::drive::{Attempt, Drive, Predictor, beyond};
-use super::effects::{At, Instance, Stage, States};
-use super::error::PlantError;
-use super::spec::JointSpec;
-use super::statics::Valve;
+use crate::clock::Clock;
+use crate::drive::Drive;
+use crate::driver::{Attempt, Moving, beyond};
+use crate::effects::{At, Instance, Stage, States};
+use crate::error::PlantError;
+use crate::spec::JointSpec;
+use crate::statics::Valve;
 
 /// All that moves or remembers.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,12 +25,13 @@ struct State {
 /// As many effects as can act beside one another, but for those of delay and valve.
 const MOST_EFFECTS: usize = 20;
 
-/// Draws of a level before the one that goes least beyond the range is taken.
+/// Draws of a level before the one that goes least beyond the range is taken: a joint that
+/// coasts or creeps may have to leave it.
 const PATIENCE: usize = 20;
 
 /// A joint on its way through a record.
 #[derive(Clone, Debug)]
-pub(super) struct Motion<'a> {
+pub(crate) struct Motion<'a> {
     joint: &'a JointSpec,
     clock: Clock,
     valve: Valve,
@@ -40,6 +42,8 @@ pub(super) struct Motion<'a> {
     has_spool: bool,
     /// Arrivals that act already.
     arrived: usize,
+    /// The sample that it has come to.
+    sample: usize,
     now_s: f64,
     /// What is commanded, in input units.
     command: f64,
@@ -50,7 +54,7 @@ pub(super) struct Motion<'a> {
 
 impl<'a> Motion<'a> {
     /// The joint at the first sample; its first level has long been held.
-    pub(super) fn new(joint: &'a JointSpec, clock: Clock) -> Self {
+    pub(crate) fn new(joint: &'a JointSpec, clock: Clock) -> Self {
         let valve = Valve::of(joint);
         let moving = |one: &Instance| !matches!(one.twin.stage, Stage::Delay | Stage::Valve);
         let effects: Vec<_> = joint.effects().filter(moving).collect();
@@ -62,6 +66,7 @@ impl<'a> Motion<'a> {
             valve,
             effects,
             arrived: 0,
+            sample: 1,
             now_s: 0.0,
             command: joint.input.initial(),
             opening: 0.0,
@@ -71,36 +76,23 @@ impl<'a> Motion<'a> {
         motion
     }
 
-    /// Angle as it would be measured without noise.
-    pub(super) fn shown(&self) -> f64 {
-        let at = self.at_angle(&self.state, self.now_s);
-        self.behind(Stage::Sensor, self.state.angle, &at, &self.state, &mut State::default())
-    }
-
-    /// How far the valve is open, as a part of what the largest level opens it; a level of `drive`
-    /// that begins to act now counts.
-    pub(super) fn demand(&mut self, drive: &Drive) -> f64 {
-        self.arrive(self.now_s.next_up(), drive);
-        self.valve.share(self.opening)
-    }
-
-    /// Lets the time from `sample` to the next pass.
-    pub(super) fn pass(&mut self, sample: usize, drive: &Drive, others: f64) {
-        self.at.others = others;
-        for end_s in self.clock.substep_ends(sample) {
+    /// Lets the time until the next sample pass.
+    fn pass(&mut self, drive: &Drive) {
+        for end_s in self.clock.substep_ends(self.sample) {
             self.arrive(end_s, drive);
             self.integrate_to(end_s);
         }
+        self.sample += 1;
     }
 
     /// Lets the levels of `drive` act that begin to before `end_s`.
     fn arrive(&mut self, end_s: f64, drive: &Drive) {
-        while let Some((index, arrival)) = drive.arrivals().later().get(self.arrived) {
+        while let Some(arrival) = drive.later().get(self.arrived) {
             if arrival.time_s >= end_s {
                 break;
             }
             self.integrate_to(arrival.time_s);
-            self.command = drive.level_of(*index);
+            self.command = arrival.level;
             self.open();
             self.arrived += 1;
         }
@@ -137,10 +129,10 @@ impl<'a> Motion<'a> {
         if dt <= 0.0 {
             return;
         }
-        let (start, half) = (self.state, self.now_s + dt / 2.0);
+        let (start, half_s) = (self.state, self.now_s + dt / 2.0);
         let k1 = self.rate(&start, self.now_s);
-        let k2 = self.rate(&self.moved(&start, &k1, dt / 2.0), half);
-        let k3 = self.rate(&self.moved(&start, &k2, dt / 2.0), half);
+        let k2 = self.rate(&self.moved(&start, &k1, dt / 2.0), half_s);
+        let k3 = self.rate(&self.moved(&start, &k2, dt / 2.0), half_s);
         let k4 = self.rate(&self.moved(&start, &k3, dt), end_s);
         let mean = |k1, k2, k3, k4| dt / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
         self.state.angle += mean(k1.angle, k2.angle, k3.angle, k4.angle);
@@ -199,30 +191,45 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// The experimenter tries each level out in advance, other joints staying as they are.
-///
-/// What no level can help does not count: only how far it goes beyond where it is when
-/// the level begins to act.
-impl Predictor for Motion<'_> {
+impl Moving for Motion<'_> {
+    fn run_to(&mut self, sample: usize, drive: &Drive, others: f64) -> Result<(), PlantError> {
+        self.at.others = others;
+        while self.sample < sample {
+            self.pass(drive);
+        }
+        Ok(())
+    }
+
+    fn shown(&self) -> f64 {
+        let at = self.at_angle(&self.state, self.now_s);
+        self.behind(Stage::Sensor, self.state.angle, &at, &self.state, &mut State::default())
+    }
+
+    /// A level that begins to act now counts.
+    fn demand(&mut self, drive: &Drive) -> f64 {
+        self.arrive(self.now_s.next_up(), drive);
+        self.valve.share(self.opening)
+    }
+
+    /// The experimenter tries each level out in advance, other joints staying as they are.
+    ///
+    /// What no level can help does not count: only how far it goes beyond where it is when
+    /// the level begins to act.
     fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError> {
-        let Attempt { intent, range, end_s } = *attempt;
+        let Attempt { step, range, end_s } = *attempt;
         if self.joint.is_plain() {
             // Without inertia and load: known beforehand.
-            let from = drive.arrivals().angle_at(intent.acts_s);
-            let to = from + intent.speed * (end_s - intent.acts_s).max(0.0);
+            let from = drive.angle_at(step.acts_s);
+            let to = from + step.speed * (end_s - step.acts_s).max(0.0);
             return Ok(beyond(from, range).max(beyond(to, range)));
         }
-        let mut drive = drive.clone();
-        drive.push(intent);
-        let mut ahead = self.clone();
-        let period_s = self.clock.period_s();
+        let (mut drive, mut ahead) = (drive.clone(), self.clone());
+        drive.push(step);
         let (mut allowed, mut excess) = (f64::INFINITY, 0.0_f64);
-        let mut sample = self.clock.sample_at(self.now_s);
         while ahead.now_s < end_s {
-            ahead.pass(sample, &drive, self.at.others);
-            sample += 1;
+            ahead.pass(&drive);
             let outside = beyond(ahead.state.angle, range);
-            if ahead.now_s + period_s > intent.acts_s {
+            if ahead.now_s + self.clock.period_s() > step.acts_s {
                 allowed = allowed.min(outside);
                 excess = excess.max(outside - allowed);
             }
@@ -230,8 +237,6 @@ impl Predictor for Motion<'_> {
         Ok(excess)
     }
 
-    /// A joint that coasts or creeps may have to leave its range; of a plain one a range that
-    /// cannot be kept is an error.
     fn max_draws(&self) -> Option<usize> {
         (!self.joint.is_plain()).then_some(PATIENCE)
     }
@@ -241,9 +246,8 @@ impl Predictor for Motion<'_> {
 mod tests {
     use std::f64::consts::TAU;
 
-    use super::super::spec::Ringing;
-    use super::super::{DelayLaw, InputSpec};
     use super::*;
+    use crate::{DelayLaw, InputSpec, Ringing};
 
     /// Angles at 1 kHz for 4 s with the input stepping from 0 to 1 at 0.5 s, at a gain of 10.
     fn step_response(lag_s: Option<f64>, ringing: Option<Ringing>) -> (Clock, Vec<f64>) {
@@ -255,12 +259,11 @@ mod tests {
     }
 
     fn angles(joint: &JointSpec, clock: Clock) -> Vec<f64> {
-        let drive = super::super::drive::tests::driven(joint, clock).unwrap();
+        let drive = crate::driver::tests::driven(joint, clock).unwrap();
         let mut motion = Motion::new(joint, clock);
         let angle = |sample| {
-            let angle = motion.shown();
-            motion.pass(sample, &drive, 0.0);
-            angle
+            motion.run_to(sample, &drive, 0.0).unwrap();
+            motion.shown()
         };
         (1..=clock.samples()).map(angle).collect()
     }

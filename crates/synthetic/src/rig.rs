@@ -1,10 +1,11 @@
 //! The cylinder of a joint on its way through a record: its time, its state, the level that acts.
 
-use super::clock::Clock;
-use super::cylinder::{CylinderSpec, Machine, State};
-use super::drive::{Attempt, Drive, Driven, Driver, Predictor, beyond};
-use super::error::{Place, PlantError};
-use super::spec::JointSpec;
+use crate::clock::Clock;
+use crate::cylinder::{CylinderSpec, Machine, Pressures, State};
+use crate::drive::Drive;
+use crate::driver::{Attempt, Moving, beyond};
+use crate::error::{Place, PlantError};
+use crate::spec::JointSpec;
 
 /// Sound of an integration that is still well: no pressure beyond this, in pascal.
 const ABSURD_PRESSURE: f64 = 1e10;
@@ -13,40 +14,13 @@ const ABSURD_PRESSURE: f64 = 1e10;
 /// then a swing of the oil.
 const SETTLING_S: f64 = 0.3;
 
-/// Drives `joint`, which has the number `index`, by its `cylinder`.
-///
-/// # Errors
-/// [`PlantError::Range`], [`PlantError::ListedDelays`] and [`PlantError::Runaway`].
-pub(super) fn ride(
-    joint: &JointSpec,
-    cylinder: &CylinderSpec,
-    index: usize,
-    seed: u64,
-    clock: Clock,
-) -> Result<Driven, PlantError> {
-    let mut driver = Driver::new(joint, index, seed, clock);
-    let mut rig = Rig::new(joint, cylinder, clock);
-    let mut angles = Vec::new();
-    for sample in 1..=clock.samples() {
-        rig.run(clock.time_s(sample), driver.drive())?;
-        angles.push(joint.outside.shown(rig.angle()));
-        if driver.due() == Some(sample) {
-            driver.act(sample, &rig)?;
-        }
-    }
-    let speed_changes = rig.speed_changes(driver.drive());
-    Ok(Driven { drive: driver.into_drive(), speed_changes, angles })
-}
-
 /// A running machine.
 #[derive(Clone, Debug)]
-struct Rig<'a> {
+pub(crate) struct Rig<'a> {
     joint: &'a JointSpec,
     clock: Clock,
     machine: Machine,
     longest_step_s: f64,
-    /// Radians in the unit of the output.
-    radians: f64,
     now_s: f64,
     state: State,
     level: f64,
@@ -56,18 +30,15 @@ struct Rig<'a> {
 
 impl<'a> Rig<'a> {
     /// The cylinder of `joint` at the first sample, at rest.
-    fn new(joint: &'a JointSpec, cylinder: &CylinderSpec, clock: Clock) -> Self {
-        let machine = Machine::of(cylinder);
-        let radians = joint.radians();
-        let level = joint.input.initial();
+    pub(crate) fn new(joint: &'a JointSpec, cylinder: &CylinderSpec, clock: Clock) -> Self {
+        let (machine, level) = (Machine::of(cylinder), joint.input.initial());
         Self {
             joint,
             clock,
             machine,
             longest_step_s: cylinder.time_step_s,
-            radians,
             now_s: 0.0,
-            state: machine.rest(joint.start * radians, level),
+            state: machine.rest(joint.start * joint.radians(), level),
             level,
             speeds: Vec::new(),
         }
@@ -75,7 +46,7 @@ impl<'a> Rig<'a> {
 
     /// Angle in output units.
     fn angle(&self) -> f64 {
-        self.state.angle / self.radians
+        self.state.angle / self.joint.radians()
     }
 
     /// Runs until `until_s`, with the levels of `drive`.
@@ -83,25 +54,15 @@ impl<'a> Rig<'a> {
     /// # Errors
     /// [`PlantError::Runaway`].
     fn run(&mut self, until_s: f64, drive: &Drive) -> Result<(), PlantError> {
-        while let Some((index, arrival)) = drive.arrivals().later().get(self.speeds.len()) {
+        while let Some(arrival) = drive.later().get(self.speeds.len()) {
             if arrival.time_s >= until_s {
                 break;
             }
             self.integrate(arrival.time_s)?;
-            self.level = drive.level_of(*index);
+            self.level = arrival.level;
             self.speeds.push(self.state.speed);
         }
         self.integrate(until_s)
-    }
-
-    /// Change of speed from the moment each step of `drive` acts to the one the next does,
-    /// in output units per second; zero for a step on its way, none for one that was
-    /// overtaken.
-    fn speed_changes(&self, drive: &Drive) -> Vec<Option<f64>> {
-        let ends = self.speeds.iter().skip(1).chain([&self.state.speed]);
-        let moved = self.speeds.iter().zip(ends).map(|(from, to)| (to - from) / self.radians);
-        let indices = drive.arrivals().later().iter().map(|(index, _)| *index);
-        drive.by_step(indices.zip(moved.chain(std::iter::repeat(0.0))))
     }
 
     /// Time steps of equal length until `until_s`, with the level held.
@@ -116,8 +77,8 @@ impl<'a> Rig<'a> {
             done += 1.0;
         }
         self.now_s = until_s;
-        let pressures = self.state.pressures;
-        let largest = pressures.piston.abs().max(pressures.rod.abs()).max(pressures.supply.abs());
+        let Pressures { supply, piston, rod } = self.state.pressures;
+        let largest = piston.abs().max(rod.abs()).max(supply.abs());
         if self.state.is_finite() && largest < ABSURD_PRESSURE {
             return Ok(());
         }
@@ -125,20 +86,34 @@ impl<'a> Rig<'a> {
     }
 }
 
-/// The experimenter tries each level out on a copy of the cylinder, until the next step
-/// acts and has settled.
-///
-/// Where the level before leads out of the range, this one must not lead further.
-impl Predictor for Rig<'_> {
-    /// That of the first sample outside, which is enough without `max_draws`.
+impl Moving for Rig<'_> {
+    fn run_to(&mut self, sample: usize, drive: &Drive, _: f64) -> Result<(), PlantError> {
+        self.run(self.clock.time_s(sample), drive)
+    }
+
+    fn shown(&self) -> f64 {
+        self.joint.outside.shown(self.angle())
+    }
+
+    /// From the moment each step acts to the one the next does; zero for a step on its way.
+    fn speed_changes(&self, drive: &Drive) -> Vec<Option<f64>> {
+        let ends = self.speeds.iter().skip(1).chain([&self.state.speed]);
+        let radians = self.joint.radians();
+        let moved = self.speeds.iter().zip(ends).map(|(from, to)| (to - from) / radians);
+        drive.by_step(moved.chain(std::iter::repeat(0.0)))
+    }
+
+    /// The experimenter tries each level out on a copy of the cylinder, until the next step
+    /// acts and has settled; that of the first sample outside.
+    ///
+    /// Where the level before leads out of the range, this one must not lead further.
     fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError> {
-        let Attempt { intent, range, end_s } = *attempt;
-        let mut drive = drive.clone();
-        drive.push(intent);
-        let mut ahead = self.clone();
-        let mut now_s = intent.acts_s + SETTLING_S;
+        let Attempt { step, range: [lowest, highest], end_s } = *attempt;
+        let (mut drive, mut ahead) = (drive.clone(), self.clone());
+        drive.push(step);
+        let mut now_s = step.acts_s + SETTLING_S;
         ahead.run(now_s, &drive)?;
-        let range = [range[0].min(ahead.angle()), range[1].max(ahead.angle())];
+        let range = [lowest.min(ahead.angle()), highest.max(ahead.angle())];
         let end_s = end_s + SETTLING_S;
         while now_s < end_s {
             now_s = (now_s + self.clock.period_s()).min(end_s);
@@ -149,10 +124,5 @@ impl Predictor for Rig<'_> {
             }
         }
         Ok(0.0)
-    }
-
-    /// Never: a range that cannot be kept is an error.
-    fn max_draws(&self) -> Option<usize> {
-        None
     }
 }

@@ -1,15 +1,14 @@
 //! From a plant to the logs of its joints.
 
-use super::clock::Clock;
-use super::drive::Driven;
-use super::error::{Place, PlantError};
-use super::random::{Purpose, stream};
-use super::spec::{JointSpec, PlantSpec};
-use super::truth::{self, StepTruth};
-use super::{sensor, together};
-
-/// Label of the only trial, in the truth.
-pub const TRIAL: &str = "1";
+use crate::clock::Clock;
+use crate::driver::{Driver, Moving};
+use crate::error::{Place, PlantError};
+use crate::motion::Motion;
+use crate::random::{Purpose, stream};
+use crate::rig::Rig;
+use crate::sensor;
+use crate::spec::{JointSpec, PlantSpec};
+use crate::truth::{StepTruth, truth_of};
 
 /// What was recorded of one joint, from time 0 on: values that are finite, one of the input and
 /// one of the output for each sample.
@@ -51,18 +50,71 @@ pub struct Simulated {
 pub fn simulate(spec: &PlantSpec) -> Result<Simulated, PlantError> {
     spec.check()?;
     let clock = spec.clock()?;
+    let joints = spec.joints.iter().enumerate();
+    let mut rides: Vec<_> =
+        joints.map(|(index, joint)| Ride::new(joint, index, spec.seed, clock)).collect();
+    // A cylinder has a pump of its own; the other joints share one.
+    let (cylinders, mut others): (Vec<_>, Vec<_>) =
+        rides.iter_mut().partition(|ride| ride.joint.cylinder.is_some());
+    for cylinder in cylinders {
+        drive(&mut [cylinder], &clock)?;
+    }
+    drive(&mut others, &clock)?;
     let (mut joints, mut truth) = (Vec::new(), Vec::new());
-    let driven = together::drive(spec, clock)?;
-    for (index, (joint, Driven { drive, speed_changes, angles })) in
-        spec.joints.iter().zip(driven).enumerate()
-    {
-        truth.extend(truth::truth_of(&joint.name, TRIAL, drive.steps(), speed_changes, &clock));
+    for (index, Ride { joint, driver, moving, input, shown }) in rides.into_iter().enumerate() {
+        let drive = driver.drive();
+        let speed_changes = moving.speed_changes(drive);
+        truth.extend(truth_of(&joint.name, drive.steps(), speed_changes, &clock));
         let mut noise = stream(spec.seed, index, Purpose::Noise);
-        let mut output = sensor::measure(joint, angles, &mut noise);
+        let mut output = sensor::measure(joint, shown, &mut noise);
         sensor::spike(joint, &mut output, &mut stream(spec.seed, index, Purpose::Spikes));
-        joints.push(recorded(joint, &clock, drive.input(clock.samples()), output)?);
+        joints.push(recorded(joint, &clock, input, output)?);
     }
     Ok(Simulated { joints, truth })
+}
+
+/// A joint, what drives it, and for each sample so far its input and what an ideal sensor shows.
+struct Ride<'a> {
+    joint: &'a JointSpec,
+    driver: Driver<'a>,
+    moving: Box<dyn Moving + 'a>,
+    input: Vec<f64>,
+    shown: Vec<f64>,
+}
+
+impl<'a> Ride<'a> {
+    fn new(joint: &'a JointSpec, index: usize, seed: u64, clock: Clock) -> Self {
+        let moving: Box<dyn Moving + 'a> = match &joint.cylinder {
+            Some(cylinder) => Box::new(Rig::new(joint, cylinder, clock)),
+            None => Box::new(Motion::new(joint, clock)),
+        };
+        let driver = Driver::new(joint, index, seed, clock);
+        Self { joint, driver, moving, input: Vec::new(), shown: Vec::new() }
+    }
+
+    /// Sets the step that is due at `sample`; the joint's demand for oil there.
+    fn act(&mut self, sample: usize) -> Result<f64, PlantError> {
+        self.driver.act(sample, self.moving.as_ref())?;
+        self.input.push(self.driver.drive().level());
+        let demand = self.moving.demand(self.driver.drive());
+        self.shown.push(self.moving.shown());
+        Ok(demand)
+    }
+}
+
+/// Drives joints that share a pump side by side: each sees the demand of the others, on average,
+/// from one sample to the next.
+fn drive(rides: &mut [&mut Ride<'_>], clock: &Clock) -> Result<(), PlantError> {
+    let others = (rides.len() as f64 - 1.0).max(1.0);
+    let mut demands = vec![0.0; rides.len()];
+    for sample in 1..=clock.samples() {
+        let sum: f64 = demands.iter().sum();
+        for (ride, demand) in rides.iter_mut().zip(&mut demands) {
+            ride.moving.run_to(sample, ride.driver.drive(), (sum - *demand) / others)?;
+            *demand = ride.act(sample)?;
+        }
+    }
+    Ok(())
 }
 
 /// The log of one joint.
@@ -76,20 +128,15 @@ fn recorded(
     if let Some(index) = input.iter().zip(&output).position(|pair| !finite(pair)) {
         return Err(PlantError::NotFinite { place: Place::joint(&spec.name), sample: index + 1 });
     }
-    Ok(Recorded {
-        name: spec.name.clone(),
-        input_unit: spec.input_unit.clone(),
-        output_unit: spec.output_unit.clone(),
-        period_s: clock.period_s(),
-        input,
-        output,
-    })
+    let [name, input_unit, output_unit] =
+        [&spec.name, &spec.input_unit, &spec.output_unit].map(String::clone);
+    Ok(Recorded { name, input_unit, output_unit, period_s: clock.period_s(), input, output })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{DelayLaw, InputSpec, Ringing};
     use super::*;
+    use crate::{DelayLaw, InputSpec, Ringing};
 
     const PERIOD_S: f64 = 0.01;
 

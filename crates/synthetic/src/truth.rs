@@ -1,7 +1,10 @@
 //! What is known about each step because it was made.
 
-use super::clock::Clock;
-use super::drive::Step;
+use crate::clock::Clock;
+use crate::drive::Step;
+
+/// Label of the only trial, in the truth.
+pub const TRIAL: &str = "1";
 
 /// The truth about one step of one joint's input.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,9 +39,8 @@ pub struct StepTruth {
 
 /// The truth about each of `steps`, in their order, with the change of speed that each
 /// caused; none for one that was overtaken.
-pub(super) fn truth_of(
+pub(crate) fn truth_of(
     joint: &str,
-    trial: &str,
     steps: &[Step],
     speed_changes: Vec<Option<f64>>,
     clock: &Clock,
@@ -49,7 +51,7 @@ pub(super) fn truth_of(
     let steps = steps.iter().zip(speed_changes).zip(ends).enumerate();
     let truth = steps.map(|(index, ((step, change), end))| StepTruth {
         joint: joint.to_owned(),
-        trial: trial.to_owned(),
+        trial: TRIAL.to_owned(),
         i: index + 1,
         p: step.sample,
         input_before: step.before,

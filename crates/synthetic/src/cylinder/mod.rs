@@ -18,4 +18,5 @@ mod spec;
 mod valve;
 
 pub(super) use machine::{Machine, State};
+pub(super) use oil::Pressures;
 pub use spec::{CylinderSpec, Part};
