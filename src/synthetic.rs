@@ -78,3 +78,18 @@ fn recorded(joint: &Joint) -> Option<Recorded> {
         output: trial.output().to_vec(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_record_is_a_joint_and_back() {
+        let input = InputSpec::Steps { steps: vec![(2, 0.5)], initial: 0.1 };
+        let spec = JointSpec::new("arm", input, DelayLaw::Constant { seconds: 0.0 });
+        let made = tauscope_synthetic::simulate(&PlantSpec::new(1, 0.05, vec![spec])).unwrap();
+        let synthetic = Synthetic::from(made.clone());
+        assert_eq!(synthetic.joints[0].trials[0].label(), "1");
+        assert_eq!(synthetic.joints.iter().filter_map(recorded).collect::<Vec<_>>(), made.joints);
+    }
+}

@@ -74,7 +74,7 @@ impl PlantSpec {
             ("duration_s", &duration_s, short, lengths),
             ("substeps", &substeps, few, parts),
         ])?;
-        Ok(Clock::new(period_s, whole(samples), substeps))
+        Ok(Clock { period_s, samples: whole(samples), substeps })
     }
 }
 

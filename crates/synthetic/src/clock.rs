@@ -9,27 +9,15 @@ pub(crate) const MIN_STEPS_PER_PERIOD: f64 = 40.0;
 /// The times of a record.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
-    period_s: f64,
-    samples: usize,
-    substeps: u32,
+    /// Seconds between samples.
+    pub(crate) period_s: f64,
+    /// Samples in the record.
+    pub(crate) samples: usize,
+    /// Time steps from one sample to the next.
+    pub(crate) substeps: u32,
 }
 
 impl Clock {
-    /// `samples` samples, `substeps` time steps from one to the next.
-    pub(crate) fn new(period_s: f64, samples: usize, substeps: u32) -> Self {
-        Self { period_s, samples, substeps }
-    }
-
-    /// Seconds between samples.
-    pub(crate) fn period_s(&self) -> f64 {
-        self.period_s
-    }
-
-    /// Samples in the record.
-    pub(crate) fn samples(&self) -> usize {
-        self.samples
-    }
-
     /// Length of one time step in seconds.
     pub(crate) fn substep_s(&self) -> f64 {
         self.period_s / f64::from(self.substeps)
@@ -73,7 +61,7 @@ mod tests {
 
     #[test]
     fn the_last_time_step_ends_at_the_next_sample() {
-        let clock = Clock::new(0.01, 100, 20);
+        let clock = Clock { period_s: 0.01, samples: 100, substeps: 20 };
         let ends: Vec<f64> = clock.substep_ends(7).collect();
         assert_eq!(ends.len(), 20);
         assert!((ends[0] - 0.0605).abs() < 1e-12);

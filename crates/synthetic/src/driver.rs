@@ -174,7 +174,7 @@ impl<'a> Driver<'a> {
         let Some(range) = self.joint.range else { return Ok(0.0) };
         let next_s = self.clock.time_s(step.sample.saturating_add(hold));
         let acts_s = next_s + self.joint.longest_delay_s();
-        let end_s = acts_s.min(self.clock.time_s(self.clock.samples()));
+        let end_s = acts_s.min(self.clock.time_s(self.clock.samples));
         moving.excess(&self.drive, &Attempt { step, range, end_s })
     }
 
@@ -183,7 +183,7 @@ impl<'a> Driver<'a> {
         let (index, before) = (self.drive.steps().len(), self.drive.level());
         let (progress, time_s) = (self.clock.progress(sample), self.clock.time_s(sample));
         let held = sample - self.drive.steps().last().map_or(1, |step| step.sample);
-        let held_s = held as f64 * self.clock.period_s();
+        let held_s = held as f64 * self.clock.period_s;
         let at = Occasion { index, before, after, progress, chance, held_s, time_s };
         let delay_s = self.joint.delay_s(&at).ok_or_else(|| PlantError::ListedDelays {
             place: Place::joint(&self.joint.name),
@@ -207,14 +207,14 @@ pub(super) mod tests {
     use crate::motion::Motion;
 
     fn clock(samples: usize) -> Clock {
-        Clock::new(0.01, samples, 20)
+        Clock { period_s: 0.01, samples, substeps: 20 }
     }
 
     /// All steps of a plain `joint`.
     pub(crate) fn driven(joint: &JointSpec, clock: Clock) -> Result<Drive, PlantError> {
         let mut driver = Driver::new(joint, 0, 3, clock);
         let motion = Motion::new(joint, clock);
-        for sample in 1..=clock.samples() {
+        for sample in 1..=clock.samples {
             driver.act(sample, &motion)?;
         }
         Ok(driver.drive)

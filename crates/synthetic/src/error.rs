@@ -156,10 +156,10 @@ pub(crate) const LASTS_A_PERIOD: Rule =
 const LASTS: &str = "finite seconds, long enough for the time steps (sample_period_s / substeps): \
                      4 or more in a time constant, 40 in a period";
 pub(crate) const LASTS_A_SAMPLE: Rule =
-    Rule("finite, a sample or more", |x, clock| x.is_finite() && x >= clock.period_s());
+    Rule("finite, a sample or more", |x, clock| x.is_finite() && x >= clock.period_s);
 /// The part of a distance that is lost per second.
 pub(crate) const DRAINS: Rule =
-    Rule("0 or more, below one in a sample", |x, clock| x >= 0.0 && x * clock.period_s() < 1.0);
+    Rule("0 or more, below one in a sample", |x, clock| x >= 0.0 && x * clock.period_s < 1.0);
 
 /// A key, its value, whether that is allowed, and what is.
 pub(crate) type Condition<'a> = (&'a str, &'a dyn fmt::Debug, bool, &'static str);

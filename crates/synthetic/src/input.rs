@@ -80,7 +80,7 @@ impl InputSpec {
     pub(crate) fn mean_hold_s(&self, clock: &Clock) -> f64 {
         match self {
             Self::Levels { hold_s: [shortest, longest], .. } => f64::midpoint(*shortest, *longest),
-            Self::Steps { steps, .. } => clock.time_s(clock.samples()) / steps.len() as f64,
+            Self::Steps { steps, .. } => clock.time_s(clock.samples) / steps.len() as f64,
         }
     }
 
@@ -88,7 +88,7 @@ impl InputSpec {
     pub(crate) fn steps_in(&self, clock: &Clock) -> f64 {
         // A hold is a sample at least.
         let samples = clock.samples_in(self.mean_hold_s(clock)).max(1);
-        clock.samples() as f64 / samples as f64
+        clock.samples as f64 / samples as f64
     }
 
     /// Refuses what cannot be drawn or does not fit the record.
@@ -130,7 +130,7 @@ fn check_steps(
     let (mut sample_before, mut level_before) = (1, initial);
     for step in steps {
         let (sample, level) = *step;
-        let rises = sample > sample_before && sample <= clock.samples();
+        let rises = sample > sample_before && sample <= clock.samples;
         let samples = "samples that rise, the first from 2, the last within the record";
         let changes = level.is_finite() && differ(level, level_before);
         let levels = "finite levels, each other than the one before";

@@ -229,7 +229,7 @@ impl Moving for Motion<'_> {
         while ahead.now_s < end_s {
             ahead.pass(&drive);
             let outside = beyond(ahead.state.angle, range);
-            if ahead.now_s + self.clock.period_s() > step.acts_s {
+            if ahead.now_s + self.clock.period_s > step.acts_s {
                 allowed = allowed.min(outside);
                 excess = excess.max(outside - allowed);
             }
@@ -254,7 +254,7 @@ mod tests {
         let input = InputSpec::Steps { steps: vec![(501, 1.0)], initial: 0.0 };
         let law = DelayLaw::Constant { seconds: 0.0 };
         let joint = JointSpec { lag_s, ringing, ..JointSpec::new("a", input, law) };
-        let clock = Clock::new(1e-3, 4000, 20);
+        let clock = Clock { period_s: 1e-3, samples: 4000, substeps: 20 };
         (clock, angles(&joint, clock))
     }
 
@@ -265,7 +265,7 @@ mod tests {
             motion.run_to(sample, &drive, 0.0).unwrap();
             motion.shown()
         };
-        (1..=clock.samples()).map(angle).collect()
+        (1..=clock.samples).map(angle).collect()
     }
 
     #[test]
@@ -315,7 +315,7 @@ mod tests {
         let input = InputSpec::Steps { steps: Vec::new(), initial: 0.5 };
         let law = DelayLaw::Constant { seconds: 0.0 };
         let joint = JointSpec { lag_s: Some(0.1), start: 3.0, ..JointSpec::new("a", input, law) };
-        let clock = Clock::new(0.01, 11, 20);
+        let clock = Clock { period_s: 0.01, samples: 11, substeps: 20 };
         assert!((angles(&joint, clock)[10] - 3.5).abs() < 1e-12);
     }
 }

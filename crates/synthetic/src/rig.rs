@@ -116,7 +116,7 @@ impl Moving for Rig<'_> {
         let range = [lowest.min(ahead.angle()), highest.max(ahead.angle())];
         let end_s = end_s + SETTLING_S;
         while now_s < end_s {
-            now_s = (now_s + self.clock.period_s()).min(end_s);
+            now_s = (now_s + self.clock.period_s).min(end_s);
             ahead.run(now_s, &drive)?;
             let excess = beyond(ahead.angle(), range);
             if excess > 0.0 {

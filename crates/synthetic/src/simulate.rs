@@ -107,7 +107,7 @@ impl<'a> Ride<'a> {
 fn drive(rides: &mut [&mut Ride<'_>], clock: &Clock) -> Result<(), PlantError> {
     let others = (rides.len() as f64 - 1.0).max(1.0);
     let mut demands = vec![0.0; rides.len()];
-    for sample in 1..=clock.samples() {
+    for sample in 1..=clock.samples {
         let sum: f64 = demands.iter().sum();
         for (ride, demand) in rides.iter_mut().zip(&mut demands) {
             ride.moving.run_to(sample, ride.driver.drive(), (sum - *demand) / others)?;
@@ -130,7 +130,7 @@ fn recorded(
     }
     let [name, input_unit, output_unit] =
         [&spec.name, &spec.input_unit, &spec.output_unit].map(String::clone);
-    Ok(Recorded { name, input_unit, output_unit, period_s: clock.period_s(), input, output })
+    Ok(Recorded { name, input_unit, output_unit, period_s: clock.period_s, input, output })
 }
 
 #[cfg(test)]

@@ -330,7 +330,7 @@ pub(crate) mod tests {
         let input = InputSpec::Levels { levels: vec![-1.0, 1.0], hold_s: [1.0, 2.0] };
         let delay = DelayLaw::Constant { seconds: 0.1 };
         assert_eq!(spec, PlantSpec::new(1, 10.0, vec![JointSpec::new("a", input, delay)]));
-        assert_eq!(spec.clock().unwrap().samples(), 1000);
+        assert_eq!(spec.clock().unwrap().samples, 1000);
     }
 
     #[test]

@@ -46,8 +46,8 @@ pub(crate) fn truth_of(
     clock: &Clock,
 ) -> Vec<StepTruth> {
     let ends = steps.iter().skip(1).map(|next| next.sample);
-    let ends = ends.chain([clock.samples() + 1]);
-    let period_s = clock.period_s();
+    let ends = ends.chain([clock.samples + 1]);
+    let period_s = clock.period_s;
     let steps = steps.iter().zip(speed_changes).zip(ends).enumerate();
     let truth = steps.map(|(index, ((step, change), end))| StepTruth {
         joint: joint.to_owned(),

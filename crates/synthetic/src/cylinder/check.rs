@@ -52,7 +52,7 @@ impl CylinderSpec {
 
     fn check_time_step(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         let (key, step_s) = ("cylinder.time_step_s", &self.time_step_s);
-        let few = clock.time_s(clock.samples()) / step_s <= MAX_TIME_STEPS;
+        let few = clock.time_s(clock.samples) / step_s <= MAX_TIME_STEPS;
         let short = step_s * Machine::of(self).fastest_rate() <= MAX_STEP_TIMES_RATE;
         let longer = "longer: the record has more than fifty million steps";
         let shorter = "shorter, for oil, seals and spool as fast as these; or larger volumes, less \

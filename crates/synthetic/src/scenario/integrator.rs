@@ -1,5 +1,6 @@
 //! How far a record is from that of an integrator with a delay.
 
+use crate::clock::whole;
 use crate::simulate::Recorded;
 
 /// Longest delay that is tried, in seconds.
@@ -65,15 +66,10 @@ impl Way {
     /// At `delay_s` before sample `index`; the first level has long been held.
     fn before(&self, index: usize, delay_s: f64) -> f64 {
         let place = index as f64 - delay_s / self.period_s;
-        let below = whole(place.max(0.0)).min(self.at.len().saturating_sub(2));
+        let below = whole(place.floor()).min(self.at.len().saturating_sub(2));
         let [from, to] = [below, below + 1].map(|k| self.at.get(k).copied().unwrap_or(0.0));
         from + (to - from) * (place - below as f64)
     }
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative")]
-fn whole(place: f64) -> usize {
-    place as usize
 }
 
 /// The stretches of constant input.

@@ -156,12 +156,6 @@ impl HiddenEffect {
         let mut random = stream(seed, row.number, Purpose::Scenario);
         Ok(Self { twin: row.twin, chances: random.random(), amount: FIRST_AMOUNT, random })
     }
-
-    fn put_on(&self, joint: &mut JointSpec) {
-        let (strength, chances) = (self.amount, self.chances);
-        let draw = Draw { strength, chances, valve_edge: joint.valve_edge, start: joint.start };
-        joint.put(self.twin, &(self.twin.drawn)(&draw));
-    }
 }
 
 /// Amount of an effect before it is known what it does.
@@ -257,10 +251,18 @@ impl Scenario {
         }
         let (given, error_over_noise) = match alone {
             Some(alone) if effects.len() == 1 => alone,
-            _ => together(bare, &effects, noise.deviation)?,
+            _ => {
+                let given = with_input_for(bare, &effects)?;
+                let error = error(&simulate(&with(&given, &effects))?);
+                (given, error / noise.deviation)
+            }
         };
+        let mut plant = with(&given, &effects);
+        for joint in &mut plant.joints {
+            (joint.noise, joint.noise_correlation) = (noise.deviation, noise.correlation);
+        }
         let hidden = effects.iter().map(|effect| effect.twin.name).collect();
-        Ok(Self { plant: noisy(with(&given, &effects), noise), hidden, error_over_noise })
+        Ok(Self { plant, hidden, error_over_noise })
     }
 }
 
@@ -296,8 +298,10 @@ fn levels(random: &mut ChaCha8Rng) -> Vec<f64> {
 fn with(ideal: &PlantSpec, effects: &[HiddenEffect]) -> PlantSpec {
     let mut plant = ideal.clone();
     if let Some(joint) = plant.joints.first_mut() {
-        for effect in effects {
-            effect.put_on(joint);
+        let (valve_edge, start) = (joint.valve_edge, joint.start);
+        for HiddenEffect { twin, chances, amount, .. } in effects {
+            let draw = Draw { strength: *amount, chances: *chances, valve_edge, start };
+            joint.put(twin, &(twin.drawn)(&draw));
         }
     }
     plant
@@ -313,17 +317,6 @@ fn with_input_for(bare: &PlantSpec, effects: &[HiddenEffect]) -> Result<PlantSpe
         (joint.input, joint.range) = (InputSpec::Steps { steps, initial: 0.0 }, None);
     }
     Ok(given)
-}
-
-/// `bare` with an input for all of `effects`, and the error in deviations of the noise.
-fn together(
-    bare: &PlantSpec,
-    effects: &[HiddenEffect],
-    deviation: f64,
-) -> Result<(PlantSpec, f64), PlantError> {
-    let given = with_input_for(bare, effects)?;
-    let found = error(&simulate(&with(&given, effects))?) / deviation;
-    Ok((given, found))
 }
 
 /// Finds the amount of `effect` that makes the error which `strength` means; the plant
@@ -409,13 +402,6 @@ fn error(made: &Simulated) -> f64 {
 fn reach(made: &Simulated) -> f64 {
     let output = made.joints.first().map_or(&[][..], |joint| &joint.output);
     output.iter().fold(0.0, |farthest, angle| angle.abs().max(farthest))
-}
-
-fn noisy(mut plant: PlantSpec, noise: Noise) -> PlantSpec {
-    for joint in &mut plant.joints {
-        (joint.noise, joint.noise_correlation) = (noise.deviation, noise.correlation);
-    }
-    plant
 }
 
 #[cfg(test)]
