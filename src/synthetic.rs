@@ -47,8 +47,8 @@ pub fn simulate(spec: &PlantSpec) -> Result<Synthetic, PlantError> {
     tauscope_synthetic::simulate(spec).map(Synthetic::from)
 }
 
-/// Writes the first trial of each joint as one CSV table, as long as the first joint's, as
-/// [`tauscope_synthetic::write_log`] does.
+/// Writes the first trial of each joint as one CSV table, as long as the first joint's and with
+/// times from its first sample on, as [`tauscope_synthetic::write_log`] does.
 ///
 /// # Errors
 /// What writing to `out` gives.

@@ -16,9 +16,9 @@ use crate::truth::{StepTruth, truth_of};
 pub struct Recorded {
     /// Name of the joint.
     pub name: String,
-    /// Unit of the input.
+    /// Unit of the input; empty where it is not known.
     pub input_unit: String,
-    /// Unit of the output.
+    /// Unit of the output; empty where it is not known.
     pub output_unit: String,
     /// Seconds between samples, above zero.
     pub period_s: f64,

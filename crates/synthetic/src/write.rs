@@ -75,9 +75,12 @@ pub fn write_truth(truth: &[StepTruth], out: impl Write) -> Result<(), csv::Erro
     Ok(())
 }
 
+/// Names of the columns of one joint; without brackets where a unit is empty.
 fn column_names(joint: &Recorded) -> [String; 2] {
-    let Recorded { name, input_unit, output_unit, .. } = joint;
-    [format!("{name}.input [{input_unit}]"), format!("{name}.output [{output_unit}]")]
+    [("input", &joint.input_unit), ("output", &joint.output_unit)].map(|(signal, unit)| {
+        let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+        format!("{}.{signal}{unit}", joint.name)
+    })
 }
 
 /// Input and output of one row; empty beyond the end of the record.

@@ -16,7 +16,9 @@ pub(super) const LITRE_PER_MINUTE: f64 = LITRE / 60.0;
 /// Makes [`CylinderSpec`] of a row for each key: its type, what it is where a file leaves it out,
 /// and what it may be, where that depends on no other key.
 macro_rules! cylinder {
-    ($(#[$of_all:meta])* { $($(#[$doc:meta])* $key:ident: $type:ty = $default:expr $(, $rule:ident)?;)* }) => {
+    ($(#[$of_all:meta])* {
+        $($(#[$doc:meta])* $key:ident: $type:ty = $default:expr $(, $rule:ident)?;)*
+    }) => {
         $(#[$of_all])*
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         #[serde(default, deny_unknown_fields)]
