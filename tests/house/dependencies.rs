@@ -126,9 +126,9 @@ fn tree(arguments: &[&str]) -> BTreeSet<String> {
 /// second time, and with it all that uses it.
 #[test]
 fn no_dependency_of_the_program_is_built_twice() {
-    let program = tree(&["--edges", "normal,build"]);
+    let program = tree(&["--edges", "normal,build", "--package", "tauscope"]);
     assert!(program.len() > 100);
-    let tests = tree(&["--edges", "normal,build,dev"]);
+    let tests = tree(&["--edges", "normal,build,dev", "--package", "tauscope"]);
     let python = tree(&["--edges", "normal,build", "--package", "tauscope-python"]);
     for (user, packages) in [("tests", &tests), ("the package for Python", &python)] {
         let own = |line: &&String| line.starts_with("tauscope v");
