@@ -7,7 +7,8 @@
 //! - [`units`]: scalars that are valid once they exist
 //! - [`numerics`]: statistics, filters, projections, noise models
 //! - [`experiment`]: logs, joints, trials, and the formats they are read from
-//! - [`synthetic`]: logs of joints with known delays and effects, made by plants of their own
+//! - [`synthetic`]: logs of joints with known delays and effects, made by plants of their own: the
+//!   crate `crates/synthetic`, which uses nothing of this one
 //! - [`effect`]: the catalogue of physical effects
 //! - [`delay`]: the delay of every step of one joint
 //! - [`model`]: the grey-box model of a joint, its simulation and its file
@@ -28,7 +29,7 @@
 //!
 //! | what | one file | one line, beside its `mod` |
 //! |---|---|---|
-//! | an effect | `src/effect/` | `src/effect/registry.rs`; its independent twin for tests: a row in the file of its stage in `src/synthetic/effects/`, and its name in `table.rs`; a row in `docs/simulating.md`; `tests/models/hidden_effects.rs`, `tests/models/export_models.rs` and `tests/commands/documents.rs` name what is missing |
+//! | an effect | `src/effect/` | `src/effect/registry.rs`; its independent twin for tests: a row in the file of its stage in `crates/synthetic/src/effects/`, and one in `registry.rs` there; a row in `docs/simulating.md`; `tests/models/hidden_effects.rs`, `tests/models/export_models.rs` and `tests/commands/documents.rs` name what is missing |
 //! | a method that finds delays | `src/delay/method/` | `src/delay/method/registry.rs`; a row in `docs/methods.md` |
 //! | a format of logs | `src/experiment/format/` | `src/experiment/format/registry.rs`; where it needs a library, a feature in `Cargo.toml`; a section in `docs/formats.md`; a target in `fuzz/targets/` (its name in `fuzz/Cargo.toml`, `fuzz/run`, `tests/reading/replay.rs`) |
 //! | a field of a command's JSON | the file of the result in `src/report/`; what models have in common in `compare.rs` | |
