@@ -67,6 +67,7 @@ static SPEC: Spec = Spec::new(
 .confused_with(&["coulomb_friction", "direction_gain", "gravity_load"])
 .absorbing(&["coulomb_friction", "actuator_lag"])
 .refining("coulomb_friction")
+.looking_like_both(&[["dead_band", "direction_gain"], ["coulomb_friction", "direction_gain"]])
 .limiting_case("time_constant", &["dead_band", "direction_gain"])
 .equations(
     Equations::new(&[

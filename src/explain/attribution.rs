@@ -22,7 +22,7 @@ use super::candidate::ALIKE;
 use super::contribution::{Attribution, Contribution};
 use super::decide::is_founded;
 use super::determined::is_determined;
-use super::eligible::{could_be_missing, is_due};
+use super::eligible::{are_as_simple, could_be_missing, is_due};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
 use super::likeness::looks_like;
@@ -129,10 +129,19 @@ impl Grown<'_, '_> {
         workers: &impl Workers,
     ) -> Vec<(Change, FitOutcome)> {
         let found = left_out.iter().filter(|one| self.has_consequence(one));
-        let others =
-            |one: &LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
-        let (free, lawful): (Vec<_>, Vec<_>) = found.partition(|one| self.is_any_form(one.effect));
-        let changes = |of: Vec<&LeftOut>| of.into_iter().flat_map(others).collect::<Vec<Change>>();
+        self.with_each_exchanged(found.map(|one| one.effect), workers)
+    }
+
+    /// The model with each of `effects` exchanged for one that looks like it, fitted.
+    fn with_each_exchanged(
+        &self,
+        effects: impl Iterator<Item = &'static str>,
+        workers: &impl Workers,
+    ) -> Vec<(Change, FitOutcome)> {
+        let others = |old| replacements(self.record, &self.whole.model, old, self.options);
+        let (free, lawful): (Vec<_>, Vec<_>) = effects.partition(|old| self.is_any_form(old));
+        let changes =
+            |of: Vec<&'static str>| of.into_iter().flat_map(others).collect::<Vec<Change>>();
         let mut exchanged = fitted_with(self.record, self.whole, &changes(lawful), workers);
         // Which law a free form resembles is asked, though it leaves more.
         let resembling = workers.map(&changes(free), |change| {
@@ -148,7 +157,7 @@ impl Grown<'_, '_> {
     /// needs fewer than the model: of such models the simpler one is named. A friction without
     /// inertia is a dead band. In the place of an effect that does not show the feature after which it is
     /// named it need not be as likely: a resonance that does not swing is a lag, and its second pole a detail.
-    pub(super) fn simpler<'f>(
+    fn simpler<'f>(
         &self,
         exchanged: &'f [(Change, FitOutcome)],
     ) -> Option<&'f (Change, FitOutcome)> {
@@ -169,6 +178,36 @@ impl Grown<'_, '_> {
                     || matches!(change, Change::Replaced { old, .. } if self.is_any_form(old)))
         });
         as_little.min_by_key(|(_, fit)| count(fit))
+    }
+
+    /// The changes that lead to a simpler model that leaves as little, and the models: an exchange, or an
+    /// exchange after a lag or a rate limit was put to the other side of the valve. A gain by direction behind
+    /// a spool that slews looks like a weight where it is the load that slews.
+    pub(super) fn simplified(
+        &self,
+        exchanged: &[(Change, FitOutcome)],
+        workers: &impl Workers,
+    ) -> Vec<(Change, FitOutcome)> {
+        if let Some(simpler) = self.simpler(exchanged) {
+            return vec![simpler.clone()];
+        }
+        let changes_side = |one: &&(Change, FitOutcome)| match one.0 {
+            Change::Replaced { old, new } => {
+                are_as_simple(old, new) && self.leaves_as_little(&one.1)
+            }
+            _ => false,
+        };
+        let behind = |moved: &(Change, FitOutcome)| {
+            let whole = moved.1.on(self.record);
+            let added = ids(&whole.model).into_iter();
+            let others = added.filter(|id| {
+                Some(*id) != moved.0.new_effect() && !ids(&self.first.model).contains(id)
+            });
+            let grown = Grown { whole: &whole, ..*self };
+            let exchanged = grown.with_each_exchanged(others, workers);
+            Some(vec![moved.clone(), grown.simpler(&exchanged)?.clone()])
+        };
+        exchanged.iter().filter(changes_side).find_map(behind).unwrap_or_default()
     }
 
     /// Whether an exchange is that for the limiting case of which the record shows no more.

@@ -2,7 +2,7 @@
 
 use super::options::Options;
 use crate::delay::InputMotion;
-use crate::effect::{Effect, Spec, WithinTrials};
+use crate::effect::{Effect, Spec, Stage, WithinTrials, by_id};
 use crate::experiment::are_opposites;
 use crate::fit::FitRecord;
 use crate::model::JointModel;
@@ -78,12 +78,59 @@ fn shows_condition(record: &FitRecord<'_>, model: &JointModel, of: WithinTrials<
 }
 
 /// Whether it is time to look for `effect`: what it refines is in the model, or is not to be
-/// looked for.
+/// looked for; or it needs no more parameters, and the model has a curve of the valve: a lag before that
+/// is another than one behind it.
 pub(super) fn is_due(model: &JointModel, effect: &Spec, options: &Options) -> bool {
     let is_sought = |id| options.effects.iter().any(|effect| effect.spec().id == id);
-    effect.refines.is_none_or(|id| has(model, |spec| spec.id == id) || !is_sought(id))
+    let has_curve = || has(model, |spec| spec.stage == Stage::Input && spec.is_steady);
+    effect.refines.is_none_or(|id| {
+        has(model, |spec| spec.id == id)
+            || !is_sought(id)
+            || is_as_simple_a_form(effect, id) && has_curve()
+    })
+}
+
+/// Whether one is a finer form of the other that needs no more parameters: the same on the other side of
+/// the valve.
+pub(super) fn are_as_simple(one: &str, other: &str) -> bool {
+    let is_form = |of: &str, simple| {
+        by_id(of).is_some_and(|effect| is_as_simple_a_form(effect.spec(), simple))
+    };
+    is_form(one, other) || is_form(other, one)
+}
+
+/// Whether an effect is a finer form of `simple` that needs no more parameters.
+pub(super) fn is_as_simple_a_form(of: &Spec, simple: &str) -> bool {
+    let parameters = by_id(simple).map(|simple| simple.spec().parameters.len());
+    of.refines == Some(simple) && parameters == Some(of.parameters.len())
 }
 
 fn has(model: &JointModel, is_it: impl Fn(&Spec) -> bool) -> bool {
     model.components().iter().any(|component| is_it(component.effect().spec()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{ActuatorLag, DeadBand, DirectionGain, SpoolLag};
+    use crate::model::Component;
+
+    #[test]
+    fn a_lag_before_the_valve_is_due_where_a_curve_tells_it_from_one_behind() {
+        let options = Options::default();
+        let integrator = JointModel::integrator(1.0, 0.1);
+        let is_due = |model: &JointModel| is_due(model, SpoolLag.spec(), &options);
+        let with = |effect| integrator.clone().with(Component::neutral(effect));
+        assert!(!is_due(&integrator));
+        assert!(is_due(&with(&DeadBand)) && is_due(&with(&DirectionGain)));
+        assert!(is_due(&with(&ActuatorLag)));
+    }
+
+    #[test]
+    fn the_other_side_of_the_valve_is_as_simple() {
+        assert!(are_as_simple("spool_lag", "actuator_lag"));
+        assert!(are_as_simple("rate_limit", "spool_rate_limit"));
+        assert!(!are_as_simple("asymmetric_friction", "coulomb_friction"), "it has one more");
+        assert!(!are_as_simple("dead_band", "flow_curve"));
+    }
 }

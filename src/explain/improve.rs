@@ -113,19 +113,23 @@ fn attributed(
         let may_go = |least: &LeftOut| !all.options.keeps_refinements && grown.is_refinement(least);
         // The least comes last.
         let least = left_out.iter().rposition(may_go).map(|index| left_out.remove(index));
-        let (change, fit) = if let Some(least) = least {
+        let changes = if let Some(least) = least {
             refinements.push(least.effect);
-            (Change::Removed(least.effect), least.fit.on(all.record))
+            vec![(Change::Removed(least.effect), least.fit)]
         } else {
             let exchanged = grown.exchanged(&left_out, workers);
-            let Some((change, fit)) = grown.simpler(&exchanged) else {
+            let changes = grown.simplified(&exchanged, workers);
+            if changes.is_empty() {
                 return grown.attribution_of(&left_out, &exchanged, refinements);
-            };
-            (*change, fit.on(all.record))
+            }
+            changes
         };
-        if !visit(&Step::new(all.record, change, fit.clone())) {
-            return Attribution::default();
+        for (change, fit) in changes {
+            let fit = fit.on(all.record);
+            if !visit(&Step::new(all.record, change, fit.clone())) {
+                return Attribution::default();
+            }
+            whole = fit;
         }
-        whole = fit;
     }
 }

@@ -3,7 +3,7 @@
 use super::candidate::ALIKE;
 use super::comparison::MUCH_LESS;
 use super::decide::is_founded;
-use super::eligible::{could_be_missing, is_due};
+use super::eligible::{could_be_missing, is_as_simple_a_form, is_due};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
 use super::likeness::looks_like;
@@ -13,7 +13,7 @@ use super::outcome::FitOutcome;
 use super::revision::Change;
 use super::screening::fit_best;
 use super::workers::Workers;
-use crate::effect::{Effect, Spec, by_id};
+use crate::effect::{Effect, by_id};
 use crate::fit::{Fit, FitRecord, survey};
 use crate::model::{Component, JointModel};
 
@@ -112,13 +112,16 @@ impl Removal<'_> {
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
                 || self.misfit.has_consequence(&own, &fit.errors);
+            // What needs fewer parameters is the simpler name, were it that of two effects.
+            let is_unusual =
+                exchange.is_unusual() && fit.parameters.len() >= whole.parameters.len();
             let leaves_less = if exchange.has_free_form() {
                 fit.cost < MUCH_LESS * MUCH_LESS * whole.cost
             } else {
-                !exchange.is_unusual() || fit.cost < LESS * whole.cost
+                !is_unusual || fit.cost < LESS * whole.cost
             };
             // Two in the place of one have to be ahead of the one, too.
-            let hurdle = if exchange.is_unusual() { ALIKE } else { 0.0 };
+            let hurdle = if is_unusual { ALIKE } else { 0.0 };
             let behind = evidence.criterion() - of_whole.criterion() + hurdle;
             let new: Vec<&str> = exchange.new_effects().collect();
             let is_founded = is_founded(record, &fit, &new, self.options);
@@ -225,12 +228,6 @@ pub(super) fn replacements(
 /// Whether an effect is a curve of any form.
 fn is_free_form(id: &str) -> bool {
     by_id(id).is_some_and(|effect| effect.spec().is_free_form)
-}
-
-/// Whether an effect is a finer form of `old` that needs no more parameters.
-fn is_as_simple_a_form(of: &Spec, old: &str) -> bool {
-    let parameters = by_id(old).map(|old| old.spec().parameters.len());
-    of.refines == Some(old) && parameters == Some(of.parameters.len())
 }
 
 /// The models with the best few of `changes`.
