@@ -138,6 +138,11 @@ mod tests {
             let expected = expected(0.02, 5.0, signal, end);
             assert!((outs[k] / expected - 1.0).abs() < 2e-3, "{} is not {expected}", outs[k]);
         }
-        assert!(outs[499] < 6.0 && outs[800].abs() > 7.0, "{} {}", outs[499], outs[800]);
+        assert!(
+            outs[499] < 7.0 && outs[800].abs() > outs[499] + 0.5,
+            "{} {}",
+            outs[499],
+            outs[800]
+        );
     }
 }

@@ -6,8 +6,8 @@
 //!
 //! The parabola stands for the lever arm of the cylinder about the joint, through which the speed of the
 //! one is divided to get that of the other. By the law of cosines the arm has a maximum and falls to both
-//! sides: a parabola follows it within 0.4 % where the gain changes by a factor of 2.5 to 5 over the
-//! record, while a parabola in the place of the gain leaves 4 % (medians of 150 random linkages over 40 to
+//! sides: a parabola follows it within 0.3 % where the gain changes by a factor of 2.5 to 5 over the
+//! record, while a parabola in the place of the gain leaves 4 % (medians of 1000 random linkages over 40 to
 //! 110 degrees; see the test). The gain of the joint is that at `reference`, which is a choice and not fitted: the middle
 //! of the record, so that the gain is known best. Outside the angles of the record the parabola says
 //! nothing, and the floor only keeps the joint from turning round.
@@ -104,7 +104,7 @@ mod tests {
         let mut uniform = uniform(1);
         let mut between = |low: f64, high: f64| low + (high - low) * (0.5 + uniform());
         let (mut of_arms, mut of_gains) = (Vec::new(), Vec::new());
-        while of_arms.len() < 150 {
+        while of_arms.len() < 1000 {
             // The cylinder between two sides of a triangle, one of them 1, with this angle between them.
             let (side, span) = (between(0.3, 1.0), between(40.0, 110.0));
             let start = between(5.0, 170.0);
@@ -124,7 +124,7 @@ mod tests {
             }
         }
         let medians = (median(&of_arms).unwrap(), median(&of_gains).unwrap());
-        assert!((0.0035..0.0045).contains(&medians.0), "{medians:?}");
+        assert!((0.0025..0.0035).contains(&medians.0), "{medians:?}");
         assert!((0.035..0.045).contains(&medians.1), "{medians:?}");
     }
 }

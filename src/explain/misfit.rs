@@ -85,7 +85,7 @@ fn batches(windows: &[Vec<f64>]) -> Arc<[f64]> {
     /// size effects in the analysis of simulation output", Operations Research 30 (1982), 556-568).
     const FEWEST: usize = 10;
     let of_each = FEWEST.div_ceil(windows.len().max(1));
-    let cut = |window: &'_ Vec<f64>| {
+    let cut = |window: &Vec<f64>| {
         let length = window.len().div_ceil(of_each).max(1);
         let sums = window.chunks(length).map(|batch| batch.iter().map(|e| e * e).sum());
         sums.collect::<Vec<f64>>()
