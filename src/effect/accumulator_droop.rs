@@ -46,8 +46,8 @@ static SPEC: Spec = Spec::new(
 .limiting_case("recovery_time", &["flow_curve"])
 .equations(
     Equations::new(&["pressure = (1 + droop * way / 0.7)^-1.4
-             short = 2 * droop * way
-             part = if(short < 1e-9, 1, (1 - pressure) / short)
+             lack = 2 * droop * way
+             part = if(lack < 1e-9, 1, (1 - pressure) / lack)
              filled = way + dt * abs(signal) * sqrt(pressure)
              next = if(recovery_time > 0, filled / (1 + dt * part / recovery_time), 0)
              during = (way + next) / 2
@@ -78,8 +78,8 @@ impl Effect for AccumulatorDroop {
         let (&[droop, recovery_time], [way]) = (parameters, memory) else { return at.signal };
         let passed = |way: f64| (1.0 + droop * way / POWER).powf(-POWER);
         let root = passed(*way);
-        let short = 2.0 * droop * *way;
-        let part = if short < NOTHING { 1.0 } else { (1.0 - root * root) / short };
+        let lack = 2.0 * droop * *way;
+        let part = if lack < NOTHING { 1.0 } else { (1.0 - root * root) / lack };
         let filled = *way + at.dt_s * at.signal.abs() * root;
         let next =
             if recovery_time > 0.0 { filled / (1.0 + at.dt_s * part / recovery_time) } else { 0.0 };
