@@ -7,6 +7,7 @@ use super::extension::ids;
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
+use super::removal::is_free_form;
 use super::revision::{Change, Improvement, Revision};
 use super::separate::separate;
 use super::stepwise::{Ended, Step, add_stepwise};
@@ -15,13 +16,13 @@ use super::verdict::Verdict;
 use super::workers::Workers;
 use crate::delay::are_strokes;
 use crate::diagnosis::compare_knowing;
-use crate::fit::{Fit, FitRecord};
+use crate::fit::{Fit, FitRecord, fit_to_compare};
 
 /// Adds what is missing from the model of `fit`, one effect after the other.
 ///
 /// Where that ends far from the noise, the search starts anew from the usual
 /// structures of such joints, and the more likely end counts: `done` then sees the first
-/// revision once more.
+/// revision once more. Where it ends with a curve of any form, effects with a law are sought in its place.
 ///
 /// After each effect, those that were added before and have become useless are removed. At the
 /// end, unless [`Options::keeps_refinements`], those without practical consequence go, too: see
@@ -67,24 +68,19 @@ pub fn improve(
         last = next;
     }
     let mut ended = add_stepwise(record, last, &given, options, workers, misfit, &mut visit);
+    let again = Again { record, given: &given, options, misfit, workers };
+    let mut turn_to = |ended: &mut Ended, (steps, other): (Vec<Step>, Ended)| {
+        *ended = Ended { was_stopped: !steps.iter().all(&mut visit), ..other };
+    };
     let is_far = misfit.is_far_from_noise(&Errors::of(record, &ended.fit));
     if !makes_strokes && is_far && !ended.was_stopped {
-        /// Effects that are added to a structure, at most: what it has is most of what there is.
-        const MORE: usize = 3;
-        let mut steps = most_promising(record, &begin, options, misfit, workers);
-        if let Some(start) = steps.pop() {
-            let mut later = Vec::new();
-            let mut keep = |step: &Step| {
-                later.push(step.clone());
-                true
-            };
-            let max_effects = options.max_effects.min(steps.len() + 1 + MORE);
-            let options = &Options { max_effects, ..options.clone() };
-            let other = add_stepwise(record, start, &given, options, workers, misfit, &mut keep);
-            if is_more_likely(record, &other.fit, &ended.fit) {
-                let mut all = std::iter::once(begin).chain(steps).chain(later);
-                ended = Ended { was_stopped: !all.all(|step| visit(&step)), ..other };
-            }
+        if let Some(other) = again.from_structure(begin, &ended) {
+            turn_to(&mut ended, other);
+        }
+    }
+    if !ended.was_stopped {
+        if let Some(other) = again.by_laws(&ended) {
+            turn_to(&mut ended, other);
         }
     }
     let verdict = ended.verdict;
@@ -95,6 +91,57 @@ pub fn improve(
         attributed(&grown, ended.refinements, workers, visit)
     };
     Improvement { revisions, verdict, attribution }
+}
+
+/// A search that starts anew from elsewhere.
+struct Again<'a, 'r, W> {
+    record: &'a FitRecord<'r>,
+    given: &'a [&'static str],
+    options: &'a Options,
+    misfit: Misfit,
+    workers: &'a W,
+}
+
+impl<W: Workers> Again<'_, '_, W> {
+    /// From the most promising of the usual structures; where it ends, and its steps from `begin` on, where
+    /// that is more likely than where a search `ended`.
+    fn from_structure(&self, begin: Step, ended: &Ended) -> Option<(Vec<Step>, Ended)> {
+        /// Effects that are added to a structure, at most: what it has is most of what there is.
+        const MORE: usize = 3;
+        let Self { record, options, misfit, workers, .. } = *self;
+        let mut steps = most_promising(record, &begin, options, misfit, workers);
+        let start = steps.pop()?;
+        let max_effects = options.max_effects.min(steps.len() + 1 + MORE);
+        let (later, other) = self.from(start, &Options { max_effects, ..options.clone() });
+        let all = || std::iter::once(begin).chain(steps).chain(later).collect();
+        is_more_likely(record, &other.fit, &ended.fit).then(|| (all(), other))
+    }
+
+    /// From the model in which a search `ended` without its curve of any form, by effects with a law alone;
+    /// where it ends, and its steps, where the curve is not more likely than that.
+    fn by_laws(&self, ended: &Ended) -> Option<(Vec<Step>, Ended)> {
+        let added = ids(&ended.fit.model).into_iter().filter(|id| !self.given.contains(id));
+        let curve = added.into_iter().find(|id| is_free_form(id))?;
+        let model = ended.fit.model.without(curve);
+        let fit = fit_to_compare(self.record, &model, &self.record.range_for(&model)).ok()?;
+        let mut lawful = self.options.clone();
+        lawful.effects.retain(|effect| !effect.spec().is_free_form);
+        let (steps, other) =
+            self.from(Step::new(self.record, Change::Removed(curve), fit), &lawful);
+        (!is_more_likely(self.record, &ended.fit, &other.fit)).then_some((steps, other))
+    }
+
+    /// The steps from `start` on, and where they end.
+    fn from(&self, start: Step, options: &Options) -> (Vec<Step>, Ended) {
+        let Self { record, given, misfit, workers, .. } = *self;
+        let mut steps = Vec::new();
+        let keep = |step: &Step| {
+            steps.push(step.clone());
+            true
+        };
+        let ended = add_stepwise(record, start, given, options, workers, misfit, keep);
+        (steps, ended)
+    }
 }
 
 /// What each effect of the whole model carries, without those of no consequence, which are removed

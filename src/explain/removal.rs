@@ -226,7 +226,7 @@ pub(super) fn replacements(
 }
 
 /// Whether an effect is a curve of any form.
-fn is_free_form(id: &str) -> bool {
+pub(super) fn is_free_form(id: &str) -> bool {
     by_id(id).is_some_and(|effect| effect.spec().is_free_form)
 }
 
