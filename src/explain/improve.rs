@@ -73,15 +73,17 @@ pub fn improve(
         *ended = Ended { was_stopped: !steps.iter().all(&mut visit), ..other };
     };
     let is_far = misfit.is_far_from_noise(&Errors::of(record, &ended.fit));
-    if !makes_strokes && is_far && !ended.was_stopped {
-        if let Some(other) = again.from_structure(begin, &ended) {
-            turn_to(&mut ended, other);
-        }
+    if !makes_strokes
+        && is_far
+        && !ended.was_stopped
+        && let Some(other) = again.by_structures(begin, &ended)
+    {
+        turn_to(&mut ended, other);
     }
-    if !ended.was_stopped {
-        if let Some(other) = again.by_laws(&ended) {
-            turn_to(&mut ended, other);
-        }
+    if !ended.was_stopped
+        && let Some(other) = again.by_laws(&ended)
+    {
+        turn_to(&mut ended, other);
     }
     let verdict = ended.verdict;
     let attribution = if ended.was_stopped {
@@ -105,14 +107,14 @@ struct Again<'a, 'r, W> {
 impl<W: Workers> Again<'_, '_, W> {
     /// From the most promising of the usual structures; where it ends, and its steps from `begin` on, where
     /// that is more likely than where a search `ended`.
-    fn from_structure(&self, begin: Step, ended: &Ended) -> Option<(Vec<Step>, Ended)> {
+    fn by_structures(&self, begin: Step, ended: &Ended) -> Option<(Vec<Step>, Ended)> {
         /// Effects that are added to a structure, at most: what it has is most of what there is.
         const MORE: usize = 3;
         let Self { record, options, misfit, workers, .. } = *self;
         let mut steps = most_promising(record, &begin, options, misfit, workers);
         let start = steps.pop()?;
         let max_effects = options.max_effects.min(steps.len() + 1 + MORE);
-        let (later, other) = self.from(start, &Options { max_effects, ..options.clone() });
+        let (later, other) = self.started(start, &Options { max_effects, ..options.clone() });
         let all = || std::iter::once(begin).chain(steps).chain(later).collect();
         is_more_likely(record, &other.fit, &ended.fit).then(|| (all(), other))
     }
@@ -127,12 +129,12 @@ impl<W: Workers> Again<'_, '_, W> {
         let mut lawful = self.options.clone();
         lawful.effects.retain(|effect| !effect.spec().is_free_form);
         let (steps, other) =
-            self.from(Step::new(self.record, Change::Removed(curve), fit), &lawful);
+            self.started(Step::new(self.record, Change::Removed(curve), fit), &lawful);
         (!is_more_likely(self.record, &ended.fit, &other.fit)).then_some((steps, other))
     }
 
     /// The steps from `start` on, and where they end.
-    fn from(&self, start: Step, options: &Options) -> (Vec<Step>, Ended) {
+    fn started(&self, start: Step, options: &Options) -> (Vec<Step>, Ended) {
         let Self { record, given, misfit, workers, .. } = *self;
         let mut steps = Vec::new();
         let keep = |step: &Step| {
