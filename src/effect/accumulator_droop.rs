@@ -4,12 +4,12 @@
 //! out = in · √p,   p = (1 + droop · w / 0.7)^(−1.4),   w' = |out| − (1 − p) / (2 · droop · recovery_time)
 //! ```
 //!
-//! A pump that is smaller than the largest demand feeds an accumulator: its pressure `p`, in parts of that of
-//! the full one, falls with the oil that was drawn, here as the way `w` that the joint went. Its gas expands
-//! without heat, `p V^1.4` = const, since moves last seconds, and the flow through the valve goes with the
-//! root of the pressure. The pump refills it as the pressure is short, near full charge by `w /
-//! recovery_time`. At the start of a record the accumulator is full. One that recovers at once is a
-//! [curve of the flow](super::FlowCurve).
+//! A pump that is smaller than the largest demand feeds an accumulator: its pressure `p`, in parts of
+//! that at full charge, falls with the oil that was drawn, here as the way `w` that the joint went. Its
+//! gas expands without heat, `p V^1.4` = const, since moves last seconds, and the flow through the valve
+//! goes with the root of the pressure. The flow of the pump is proportional to the missing pressure `1 −
+//! p`, and near full charge it is `w / recovery_time`. At the start of a record the accumulator is full.
+//! One that recovers at once is a [curve of the flow](super::FlowCurve).
 //!
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (pumps that hold a pressure; accumulators; orifice
@@ -72,8 +72,8 @@ impl Effect for AccumulatorDroop {
         false
     }
 
-    /// The memory is the way `w`; over an interval the joint takes what the charge at its start gives, and the
-    /// pump gives what the charge at its end is short of.
+    /// The memory is the way `w`. Over an interval the flow to the joint is that of the charge at its start,
+    /// and the flow of the pump that of the charge at its end.
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
         let (&[droop, recovery_time], [way]) = (parameters, memory) else { return at.signal };
         let passed = |way: f64| (1.0 + droop * way / POWER).powf(-POWER);
@@ -108,7 +108,7 @@ mod tests {
     use super::super::testing::moment;
     use super::*;
 
-    /// By steps of Euler's method, so short that their error is none.
+    /// By Euler's method in steps that are short enough.
     fn expected(droop: f64, recovery_time: f64, signal: impl Fn(f64) -> f64, end: f64) -> f64 {
         const STEP: f64 = 1e-5;
         let (mut way, mut time, mut out) = (0.0_f64, 0.0, 0.0);

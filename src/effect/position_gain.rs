@@ -4,13 +4,14 @@
 //! out = in / max(1 − slope · (y − reference) − curvature · (y − reference)², 0.05)
 //! ```
 //!
-//! The parabola stands for the lever arm of the cylinder about the joint, through which the speed of the
-//! one is divided to get that of the other. By the law of cosines the arm has a maximum and falls to both
-//! sides: a parabola follows it within 0.3 % where the gain changes by a factor of 2.5 to 5 over the
-//! record, while a parabola in the place of the gain leaves 4 % (medians of 1000 random linkages over 40 to
-//! 110 degrees; see the test). The gain of the joint is that at `reference`, which is a choice and not fitted: the middle
-//! of the record, so that the gain is known best. Outside the angles of the record the parabola says
-//! nothing, and the floor only keeps the joint from turning round.
+//! The parabola stands for the lever arm of the cylinder about the joint, through which the speed of
+//! the one is divided to get that of the other. By the law of cosines the arm has a maximum and falls
+//! to both sides: a parabola follows it within 0.3 % where the gain changes by a factor of 2.5 to 5
+//! over the record, while a parabola in the place of the gain leaves 4 % (medians of 1000 random
+//! linkages over 40 to 110 degrees; see the test). The gain of the joint is that at `reference`,
+//! which is a choice and not fitted: the middle of the record, so that the gain is known best.
+//! Outside the angles of the record the parabola says nothing, and the floor only keeps the joint
+//! from turning round.
 //!
 //! # References
 //! Koivo, A. J., 1994, Kinematics of excavators (backhoes) for transferring surface

@@ -181,8 +181,8 @@ impl Grown<'_, '_> {
     }
 
     /// The changes that lead to a simpler model that leaves as little, and the models: an exchange, or an
-    /// exchange after a lag or a rate limit was put to the other side of the valve. A gain by direction behind
-    /// a spool that slews looks like a weight where it is the load that slews.
+    /// exchange after a lag or a rate limit was put to the other side of the valve. Where the model limits the
+    /// rate behind the valve and the plant before it, a gain by direction looks like a weight.
     pub(super) fn simplified(
         &self,
         exchanged: &[(Change, FitOutcome)],

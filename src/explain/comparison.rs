@@ -26,12 +26,7 @@ pub(super) fn compared(
     };
     let noise = NoiseMemory::of(record, &best.fit.on(record));
     let (of_base, errors) = (Judged::of(record, base, &noise), Errors::of(record, base));
-    let candidate = |extension: Extension| {
-        let generalises = generalizes(&errors, &extension.fit.errors);
-        let mut candidate = of_base.candidate(record, &noise, noise_floor, extension);
-        candidate.judgement.generalises = generalises;
-        candidate
-    };
+    let candidate = |extension| of_base.candidate(record, &noise, noise_floor, &errors, extension);
     let mut candidates: Vec<Candidate> = extensions.into_iter().map(candidate).collect();
     candidates.sort_by(|a, b| a.behind.total_cmp(&b.behind));
     keep_one_form(&mut candidates);
@@ -63,12 +58,13 @@ impl Judged {
         self.training.map_or(f64::NAN, |e| e.rmse * e.rmse)
     }
 
-    /// `extension` beside this model, which it extends.
+    /// `extension` beside this model, which it extends and which has these `errors`.
     fn candidate(
         &self,
         record: &FitRecord<'_>,
         noise: &NoiseMemory,
         noise_floor: f64,
+        errors: &Errors,
         extension: Extension,
     ) -> Candidate {
         let fit = extension.fit.on(record);
@@ -94,7 +90,10 @@ impl Judged {
             share_of_misfit: ((base_square - square) / misfit).clamp(-1.0, 1.0),
             behind,
             evidence,
-            judgement: Judgement::pending(evidence),
+            judgement: Judgement {
+                generalises: generalizes(errors, &extension.fit.errors),
+                ..Judgement::pending(evidence)
+            },
             deviance,
             indistinguishable_from: Vec::new(),
             separated_by: Vec::new(),

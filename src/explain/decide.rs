@@ -18,7 +18,7 @@ use crate::fit::{AssessedModel, Fit, FitRecord};
 pub(super) struct Judge<'a, 'r> {
     record: &'a FitRecord<'r>,
     pub(super) base: &'a Fit,
-    own: Errors,
+    pub(super) own: Errors,
     pub(super) misfit: Misfit,
     pub(super) options: &'a Options,
     /// Whether many curves match the few levels of the input: more is then asked of an effect.

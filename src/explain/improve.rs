@@ -10,7 +10,7 @@ use super::outcome::FitOutcome;
 use super::removal::is_free_form;
 use super::revision::{Change, Improvement, Revision};
 use super::separate::separate;
-use super::stepwise::{Ended, Step, add_stepwise};
+use super::stepwise::{Ended, Step, add_stepwise, steps_to};
 use super::structures::{is_more_likely, most_promising, of_strokes};
 use super::verdict::Verdict;
 use super::workers::Workers;
@@ -58,17 +58,17 @@ pub fn improve(
     let makes_strokes = are_strokes(&record.joint().trials);
     let begin = first.clone();
     let usual =
-        if makes_strokes { of_strokes(record, &first, options, misfit) } else { Vec::new() };
+        if makes_strokes { of_strokes(record, &first.fit, options, misfit) } else { Vec::new() };
     let mut last = first;
-    for next in usual {
+    for (change, fit) in usual {
         if !visit(&last) {
             let attribution = Attribution::default();
             return Improvement { revisions, verdict: Verdict::MissingEffect, attribution };
         }
-        last = next;
+        last = Step::new(record, change, fit);
     }
     let mut ended = add_stepwise(record, last, &given, options, workers, misfit, &mut visit);
-    let again = Again { record, given: &given, options, misfit, workers };
+    let again = Restart { record, begin, given: &given, options, misfit, workers };
     let mut turn_to = |ended: &mut Ended, (steps, other): (Vec<Step>, Ended)| {
         *ended = Ended { was_stopped: !steps.iter().all(&mut visit), ..other };
     };
@@ -76,7 +76,7 @@ pub fn improve(
     if !makes_strokes
         && is_far
         && !ended.was_stopped
-        && let Some(other) = again.by_structures(begin, &ended)
+        && let Some(other) = again.by_structures(&ended)
     {
         turn_to(&mut ended, other);
     }
@@ -95,32 +95,35 @@ pub fn improve(
     Improvement { revisions, verdict, attribution }
 }
 
-/// A search that starts anew from elsewhere.
-struct Again<'a, 'r, W> {
+/// A search that starts anew from elsewhere; its steps are those from the first model on.
+struct Restart<'a, 'r, W> {
     record: &'a FitRecord<'r>,
+    begin: Step,
     given: &'a [&'static str],
     options: &'a Options,
     misfit: Misfit,
     workers: &'a W,
 }
 
-impl<W: Workers> Again<'_, '_, W> {
-    /// From the most promising of the usual structures; where it ends, and its steps from `begin` on, where
-    /// that is more likely than where a search `ended`.
-    fn by_structures(&self, begin: Step, ended: &Ended) -> Option<(Vec<Step>, Ended)> {
+impl<W: Workers> Restart<'_, '_, W> {
+    /// From the most promising of the usual structures; its steps, and where it ends, where that is more
+    /// likely than where a search `ended`.
+    fn by_structures(&self, ended: &Ended) -> Option<(Vec<Step>, Ended)> {
         /// Effects that are added to a structure, at most: what it has is most of what there is.
         const MORE: usize = 3;
         let Self { record, options, misfit, workers, .. } = *self;
-        let mut steps = most_promising(record, &begin, options, misfit, workers);
+        let structure = most_promising(record, &self.begin.fit, options, misfit, workers);
+        let step = |(change, fit)| Step::new(record, change, fit);
+        let mut steps: Vec<Step> = structure.into_iter().map(step).collect();
         let start = steps.pop()?;
         let max_effects = options.max_effects.min(steps.len() + 1 + MORE);
-        let (later, other) = self.started(start, &Options { max_effects, ..options.clone() });
-        let all = || std::iter::once(begin).chain(steps).chain(later).collect();
-        is_more_likely(record, &other.fit, &ended.fit).then(|| (all(), other))
+        steps.insert(0, self.begin.clone());
+        let other = self.started(steps, start, &Options { max_effects, ..options.clone() });
+        is_more_likely(record, &other.1.fit, &ended.fit).then_some(other)
     }
 
     /// From the model in which a search `ended` without its curve of any form, by effects with a law alone;
-    /// where it ends, and its steps, where the curve is not more likely than that.
+    /// its steps, and where it ends, where the curve is not more likely than that.
     fn by_laws(&self, ended: &Ended) -> Option<(Vec<Step>, Ended)> {
         let added = ids(&ended.fit.model).into_iter().filter(|id| !self.given.contains(id));
         let curve = added.into_iter().find(|id| is_free_form(id))?;
@@ -128,15 +131,21 @@ impl<W: Workers> Again<'_, '_, W> {
         let fit = fit_to_compare(self.record, &model, &self.record.range_for(&model)).ok()?;
         let mut lawful = self.options.clone();
         lawful.effects.retain(|effect| !effect.spec().is_free_form);
-        let (steps, other) =
-            self.started(Step::new(self.record, Change::Removed(curve), fit), &lawful);
-        (!is_more_likely(self.record, &ended.fit, &other.fit)).then_some((steps, other))
+        let others = ids(&model).into_iter().filter(|id| !self.given.contains(id));
+        let changes: Vec<Change> = others.map(Change::Added).collect();
+        let (mut steps, mut start) = steps_to(self.record, &self.begin.fit.model, &changes, fit);
+        if changes.is_empty() {
+            start = self.begin.clone();
+        } else {
+            steps.insert(0, self.begin.clone());
+        }
+        let other = self.started(steps, start, &lawful);
+        (!is_more_likely(self.record, &ended.fit, &other.1.fit)).then_some(other)
     }
 
-    /// The steps from `start` on, and where they end.
-    fn started(&self, start: Step, options: &Options) -> (Vec<Step>, Ended) {
+    /// `steps` and those from `start` on, and where these end.
+    fn started(&self, mut steps: Vec<Step>, start: Step, options: &Options) -> (Vec<Step>, Ended) {
         let Self { record, given, misfit, workers, .. } = *self;
-        let mut steps = Vec::new();
         let keep = |step: &Step| {
             steps.push(step.clone());
             true

@@ -107,21 +107,19 @@ fn is_named(
     }
     let is_usual = |one: &Candidate| one.effects.iter().all(is_usual_of_strokes);
     let usual = are_strokes(&record.joint().trials)
-        && usual_account_for_most(record, fit, options)
+        && usual_account_for_most(record, &judge)
         && brought_forward(ranking, is_usual);
     usual
         || brought_forward(ranking, |_| true) && accounts_for_it(record, ranking, options, workers)
 }
 
-/// Whether the usual effects together explain most of what the model of `fit` lacks.
-fn usual_account_for_most(record: &FitRecord<'_>, fit: &Fit, options: &Options) -> bool {
+/// Whether the usual effects together explain most of what the model lacks that `judge` adds to.
+fn usual_account_for_most(record: &FitRecord<'_>, judge: &Judge<'_, '_>) -> bool {
     /// The share of the misfit that is most of it.
     const MOST: f64 = 0.5;
-    let first = Step::new(record, Change::Start, fit.clone());
-    let own = Errors::of(record, fit);
-    let misfit = Misfit::of(record, &own);
-    let with_all = of_strokes(record, &first, options, misfit).pop();
-    with_all.is_some_and(|all| misfit.share(&own, &Errors::of(record, &all.fit)) >= MOST)
+    let Judge { base, ref own, misfit, options, .. } = *judge;
+    let with_all = of_strokes(record, base, options, misfit).pop();
+    with_all.is_some_and(|(_, all)| misfit.share(own, &Errors::of(record, &all)) >= MOST)
 }
 
 /// Puts the first candidate that nothing speaks against and that `is_it` in front; whether there is one.

@@ -16,7 +16,7 @@ pub(super) fn looks_like(one: &str, other: &str) -> bool {
 
 /// Whether each of the effects `new` of a fitted model is distinguished from what looks like it beside
 /// it: it is known to do something, and shows the feature after which it is named. Of two steady curves
-/// both must show it: of one that does not, the other is a correction.
+/// both must show it: beside one whose feature is not seen, the other may only correct its form.
 ///
 /// What was there before may no longer be: that is for a removal to judge.
 pub(super) fn are_distinguished(

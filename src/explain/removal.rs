@@ -112,7 +112,7 @@ impl Removal<'_> {
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
                 || self.misfit.has_consequence(&own, &fit.errors);
-            // What needs fewer parameters is the simpler name, were it that of two effects.
+            // Two effects with fewer parameters than one are the simpler explanation.
             let is_unusual =
                 exchange.is_unusual() && fit.parameters.len() >= whole.parameters.len();
             let leaves_less = if exchange.has_free_form() {

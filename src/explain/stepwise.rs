@@ -260,7 +260,7 @@ fn exchanged(
 
 /// The steps by which `changes` make the model of `fit` of `model`, the last apart: one for each change,
 /// which need not be better on the way, or one for all where these cannot be fitted.
-fn steps_to(
+pub(super) fn steps_to(
     record: &FitRecord<'_>,
     model: &JointModel,
     changes: &[Change],

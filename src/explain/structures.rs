@@ -22,7 +22,6 @@ use super::evidence::NoiseMemory;
 use super::misfit::{Errors, Misfit, generalizes};
 use super::options::Options;
 use super::revision::Change;
-use super::stepwise::Step;
 use super::workers::Workers;
 use crate::effect::{
     ActuatorLag, AsymmetricSaturation, DeadBand, DirectionGain, Effect, EndStop, GravityLoad,
@@ -53,14 +52,14 @@ pub(super) fn is_usual_of_strokes(id: &&'static str) -> bool {
     OF_STROKES.iter().any(|effect| effect.spec().id == *id)
 }
 
-/// The steps from `first` to the structure of a joint that makes strokes; none where fewer effects may be
-/// added than it has: of a few the best are wanted, not the usual ones.
+/// The changes that make of the model of `first` that of a joint that makes strokes, each with its fit; none
+/// where fewer effects may be added than that has: of a few the best are wanted, not the usual ones.
 pub(super) fn of_strokes(
     record: &FitRecord<'_>,
-    first: &Step,
+    first: &Fit,
     options: &Options,
     misfit: Misfit,
-) -> Vec<Step> {
+) -> Vec<(Change, Fit)> {
     // A limit by direction takes the place of one for both.
     if options.max_effects + 1 < OF_STROKES.len() {
         return Vec::new();
@@ -68,16 +67,17 @@ pub(super) fn of_strokes(
     climbed(record, first, OF_STROKES, options, misfit)
 }
 
-/// The steps from `first` to the structure that a survey finds most promising.
+/// The changes that make of the model of `first` the structure that a survey finds most promising, each with
+/// its fit.
 pub(super) fn most_promising(
     record: &FitRecord<'_>,
-    first: &Step,
+    first: &Fit,
     options: &Options,
     misfit: Misfit,
     workers: &impl Workers,
-) -> Vec<Step> {
-    let costs = workers
-        .map(&STRUCTURES, |structure| surveyed(record, &first.fit.model, structure, options));
+) -> Vec<(Change, Fit)> {
+    let costs =
+        workers.map(&STRUCTURES, |structure| surveyed(record, &first.model, structure, options));
     let found = costs.into_iter().zip(STRUCTURES);
     let found = found.filter_map(|(cost, structure)| Some((cost?, structure)));
     let best = found.min_by(|a, b| a.0.total_cmp(&b.0));
@@ -101,16 +101,16 @@ fn surveyed(
     Some(found.cost)
 }
 
-/// The steps from `first` on, one for each effect of `structure` that has a practical consequence and
+/// The changes from `first` on, one for each effect of `structure` that has a practical consequence and
 /// predicts what was not fitted no worse.
 fn climbed(
     record: &FitRecord<'_>,
-    first: &Step,
+    first: &Fit,
     structure: Structure,
     options: &Options,
     misfit: Misfit,
-) -> Vec<Step> {
-    let mut fit = first.fit.clone();
+) -> Vec<(Change, Fit)> {
+    let mut fit = first.clone();
     let mut steps = Vec::new();
     for effect in structure {
         if steps.len() == options.max_effects {
@@ -121,7 +121,7 @@ fn climbed(
         let (before, after) = (Errors::of(record, &fit), Errors::of(record, &next));
         if generalizes(&before, &after) && misfit.has_consequence(&before, &after) {
             let change = Change::between(&fit.model, &next.model, effect.spec().id);
-            steps.push(Step::new(record, change, next.clone()));
+            steps.push((change, next.clone()));
             fit = next;
         }
     }

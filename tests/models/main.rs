@@ -37,3 +37,4 @@ mod simulation;
 #[expect(dead_code, reason = "other stories look at delays alone")]
 mod stroke;
 mod strokes;
+mod valve_laws;
