@@ -24,14 +24,14 @@ use super::decide::is_founded;
 use super::determined::is_determined;
 use super::eligible::{are_as_simple, could_be_missing, is_due};
 use super::evidence::NoiseMemory;
+use super::exchange::{Exchange, exchanges_for};
 use super::extension::{components_of, ids};
 use super::likeness::looks_like;
 use super::limiting_case::limiting_case;
 use super::misfit::{Errors, Misfit, generalizes};
 use super::options::Options;
 use super::outcome::FitOutcome;
-use super::removal::{changed, fitted_with, replacements};
-use super::revision::Change;
+use super::removal::{FINALISTS, fitted_of, fitted_with};
 use super::workers::Workers;
 use crate::effect::RecordRange;
 use crate::fit::{AssessedModel, Fit, FitRecord, Score};
@@ -122,34 +122,30 @@ impl Grown<'_, '_> {
         self.attribution_of(&left_out, &exchanged, Vec::new())
     }
 
-    /// The model with each effect of consequence exchanged for one that looks like it, fitted.
+    /// The model with each effect of consequence exchanged for one, or two, that look like it, fitted.
     pub(super) fn exchanged(
         &self,
         left_out: &[LeftOut],
         workers: &impl Workers,
-    ) -> Vec<(Change, FitOutcome)> {
+    ) -> Vec<(Exchange, FitOutcome)> {
         let found = left_out.iter().filter(|one| self.has_consequence(one));
         self.with_each_exchanged(found.map(|one| one.effect), workers)
     }
 
-    /// The model with each of `effects` exchanged for one that looks like it, fitted.
+    /// The model with each of `effects` exchanged for one, or two, that look like it, fitted.
     fn with_each_exchanged(
         &self,
         effects: impl Iterator<Item = &'static str>,
         workers: &impl Workers,
-    ) -> Vec<(Change, FitOutcome)> {
-        let others = |old| replacements(self.record, &self.whole.model, old, self.options);
+    ) -> Vec<(Exchange, FitOutcome)> {
+        let others = |old| exchanges_for(self.record, &self.whole.model, old, self.options);
         let (free, lawful): (Vec<_>, Vec<_>) = effects.partition(|old| self.is_any_form(old));
-        let changes =
-            |of: Vec<&'static str>| of.into_iter().flat_map(others).collect::<Vec<Change>>();
-        let mut exchanged = fitted_with(self.record, self.whole, &changes(lawful), workers);
-        // Which law a free form resembles is asked, though it leaves more.
-        let resembling = workers.map(&changes(free), |change| {
-            let model = changed(&self.whole.model, *change).into_iter().next()?;
-            let range = self.record.range_for(&model);
-            Some((*change, FitOutcome::fitted(self.record, &model, &range)?))
-        });
-        exchanged.extend(resembling.into_iter().flatten());
+        let exchanges =
+            |of: Vec<&'static str>| of.into_iter().flat_map(others).collect::<Vec<Exchange>>();
+        let mut exchanged = fitted_with(self.record, self.whole, &exchanges(lawful), workers);
+        // Which laws a free form resembles most is asked, though they leave more.
+        let kept = |costs: &[f64]| costs.len().min(FINALISTS);
+        exchanged.extend(fitted_of(self.record, self.whole, &exchanges(free), kept, workers));
         exchanged
     }
 
@@ -159,8 +155,8 @@ impl Grown<'_, '_> {
     /// named it need not be as likely: a resonance that does not swing is a lag, and its second pole a detail.
     fn simpler<'f>(
         &self,
-        exchanged: &'f [(Change, FitOutcome)],
-    ) -> Option<&'f (Change, FitOutcome)> {
+        exchanged: &'f [(Exchange, FitOutcome)],
+    ) -> Option<&'f (Exchange, FitOutcome)> {
         let noise = NoiseMemory::of(self.record, self.whole);
         let of_whole = noise.evidence(self.record, self.whole).criterion();
         let is_as_likely = |fit: &FitOutcome| {
@@ -169,39 +165,37 @@ impl Grown<'_, '_> {
         let own = Errors::of(self.record, self.whole);
         let count = |fit: &AssessedModel| fit.parameters.len();
         let fewer = exchanged.iter().filter(|(_, fit)| count(fit) < count(self.whole));
-        let as_little = fewer.filter(|(change, fit)| {
+        let as_little = fewer.filter(|(exchange, fit)| {
+            let new: Vec<&str> = exchange.new_effects().collect();
             self.leaves_as_little(fit)
-                && is_founded(self.record, fit, change.new_effect().as_slice(), self.options)
+                && is_founded(self.record, fit, &new, self.options)
                 && generalizes(&own, &fit.errors)
                 && (is_as_likely(fit)
-                    || self.is_to_limiting_case(*change)
-                    || matches!(change, Change::Replaced { old, .. } if self.is_any_form(old)))
+                    || self.is_to_limiting_case(exchange)
+                    || exchange.old().is_some_and(|old| self.is_any_form(old)))
         });
         as_little.min_by_key(|(_, fit)| count(fit))
     }
 
-    /// The changes that lead to a simpler model that leaves as little, and the models: an exchange, or an
-    /// exchange after a lag or a rate limit was put to the other side of the valve. Where the model limits the
+    /// The exchanges that lead to a simpler model that leaves as little, and the models: one, or one after a lag or a rate limit was put to the other side of the valve. Where the model limits the
     /// rate behind the valve and the plant before it, a gain by direction looks like a weight.
     pub(super) fn simplified(
         &self,
-        exchanged: &[(Change, FitOutcome)],
+        exchanged: &[(Exchange, FitOutcome)],
         workers: &impl Workers,
-    ) -> Vec<(Change, FitOutcome)> {
+    ) -> Vec<(Exchange, FitOutcome)> {
         if let Some(simpler) = self.simpler(exchanged) {
             return vec![simpler.clone()];
         }
-        let changes_side = |one: &&(Change, FitOutcome)| match one.0 {
-            Change::Replaced { old, new } => {
-                are_as_simple(old, new) && self.leaves_as_little(&one.1)
-            }
-            _ => false,
+        let changes_side = |(exchange, fit): &&(Exchange, FitOutcome)| {
+            exchange.one_for_one().is_some_and(|(old, new)| are_as_simple(old, new))
+                && self.leaves_as_little(fit)
         };
-        let behind = |moved: &(Change, FitOutcome)| {
+        let behind = |moved: &(Exchange, FitOutcome)| {
             let whole = moved.1.on(self.record);
             let added = ids(&whole.model).into_iter();
             let others = added.filter(|id| {
-                Some(*id) != moved.0.new_effect() && !ids(&self.first.model).contains(id)
+                moved.0.new_effects().all(|new| new != *id) && !ids(&self.first.model).contains(id)
             });
             let grown = Grown { whole: &whole, ..*self };
             let exchanged = grown.with_each_exchanged(others, workers);
@@ -211,8 +205,8 @@ impl Grown<'_, '_> {
     }
 
     /// Whether an exchange is that for the limiting case of which the record shows no more.
-    fn is_to_limiting_case(&self, change: Change) -> bool {
-        let Change::Replaced { old, new } = change else { return false };
+    fn is_to_limiting_case(&self, exchange: &Exchange) -> bool {
+        let Some((old, new)) = exchange.one_for_one() else { return false };
         let case = |old| limiting_case(self.record, self.whole, old, self.options);
         let old = [old];
         let mut cases = components_of(&self.whole.model, &old).filter_map(case);
@@ -224,20 +218,23 @@ impl Grown<'_, '_> {
     pub(super) fn attribution_of(
         &self,
         left_out: &[LeftOut],
-        exchanged: &[(Change, FitOutcome)],
+        exchanged: &[(Exchange, FitOutcome)],
         mut refinements: Vec<&'static str>,
     ) -> Attribution {
         let (found, small): (Vec<_>, Vec<_>) =
             left_out.iter().partition(|one| self.has_consequence(one));
         let score = Score::of(self.record, &self.whole.model, &self.range());
         let alternatives = |one: &LeftOut| {
-            let as_little = exchanged.iter().filter_map(|(change, fit)| match *change {
-                Change::Replaced { old, new } if old == one.effect => {
-                    (self.share(fit) < self.hardly(one, fit)).then_some(new)
-                }
-                _ => None,
+            let own = exchanged.iter().filter(|(exchange, fit)| {
+                exchange.old() == Some(one.effect) && self.share(fit) < self.hardly(one, fit)
             });
-            as_little.collect()
+            let mut others: Vec<Vec<_>> =
+                own.map(|(exchange, _)| exchange.new_effects().collect()).collect();
+            // Beside one that will do alone, another says nothing.
+            let alone: Vec<_> =
+                others.iter().filter(|one| one.len() == 1).flatten().copied().collect();
+            others.retain(|other| other.len() == 1 || !other.iter().any(|id| alone.contains(id)));
+            others
         };
         let contribution = |one: &LeftOut| Contribution {
             effect: one.effect,

@@ -10,8 +10,8 @@ pub struct Contribution {
     /// The error that the model has without it, the rest fitted again, output units: on the part that
     /// was not fitted, where there is one.
     pub error_without: f64,
-    /// Effects that leave as little in its place.
-    pub alternatives: Vec<&'static str>,
+    /// What leaves as little in its place: an effect, or two together.
+    pub alternatives: Vec<Vec<&'static str>>,
     /// Effects that would not show beside it: what they do, its parameters do too.
     pub hidden: Vec<&'static str>,
 }
@@ -20,7 +20,7 @@ impl Contribution {
     /// What leaves as little in its place, in names: `gravity_load`, or `leakage + input_offset` for a leakage
     /// beside which an offset would not show.
     pub fn alternative_names(&self) -> Vec<String> {
-        let others = self.alternatives.iter().map(|id| (*id).to_owned());
+        let others = self.alternatives.iter().map(|effects| effects.join(" + "));
         others.chain(self.hidden.iter().map(|id| format!("{} + {id}", self.effect))).collect()
     }
 }

@@ -3,11 +3,11 @@
 use super::attribution::{Grown, LeftOut};
 use super::contribution::Attribution;
 use super::decide::in_order;
+use super::exchange::{Exchange, is_free_form};
 use super::extension::ids;
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
-use super::removal::is_free_form;
 use super::revision::{Change, Improvement, Revision};
 use super::separate::separate;
 use super::stepwise::{Ended, Step, add_stepwise, steps_to};
@@ -171,20 +171,21 @@ fn attributed(
         let may_go = |least: &LeftOut| !all.options.keeps_refinements && grown.is_refinement(least);
         // The least comes last.
         let least = left_out.iter().rposition(may_go).map(|index| left_out.remove(index));
-        let changes = if let Some(least) = least {
+        let exchanges = if let Some(least) = least {
             refinements.push(least.effect);
-            vec![(Change::Removed(least.effect), least.fit)]
+            vec![(Exchange::alone(Change::Removed(least.effect)), least.fit)]
         } else {
             let exchanged = grown.exchanged(&left_out, workers);
-            let changes = grown.simplified(&exchanged, workers);
-            if changes.is_empty() {
+            let exchanges = grown.simplified(&exchanged, workers);
+            if exchanges.is_empty() {
                 return grown.attribution_of(&left_out, &exchanged, refinements);
             }
-            changes
+            exchanges
         };
-        for (change, fit) in changes {
+        for (exchange, fit) in exchanges {
             let fit = fit.on(all.record);
-            if !visit(&Step::new(all.record, change, fit.clone())) {
+            let (between, last) = steps_to(all.record, &whole.model, &exchange.0, fit.clone());
+            if !between.iter().chain([&last]).all(&mut visit) {
                 return Attribution::default();
             }
             whole = fit;

@@ -1,7 +1,7 @@
 //! Effects that look like one another in a record.
 
 use super::determined::{BESIDE_ITS_LIKE, is_distinct};
-use crate::effect::{Effect, RecordRange, by_id};
+use crate::effect::{Effect, Moment, RecordRange, by_id};
 use crate::fit::AssessedModel;
 use crate::model::Component;
 
@@ -15,8 +15,9 @@ pub(super) fn looks_like(one: &str, other: &str) -> bool {
 }
 
 /// Whether each of the effects `new` of a fitted model is distinguished from what looks like it beside
-/// it: it is known to do something, and shows the feature after which it is named. Of two steady curves
-/// both must show it: beside one whose feature is not seen, the other may only correct its form.
+/// it: it is known to do something, and shows the feature after which it is named. Of two steady effects
+/// both must show it: beside one whose feature is not seen, the other may only correct its form. Of two
+/// curves it must be seen at levels at which a valve that sticks beside them moves.
 ///
 /// What was there before may no longer be: that is for a removal to judge.
 pub(super) fn are_distinguished(
@@ -27,23 +28,49 @@ pub(super) fn are_distinguished(
     let is_fitted = |component: &&Component| component.parameters().iter().any(|p| !p.fixed);
     let fitted: Vec<&Component> = fit.model.components().iter().filter(is_fitted).collect();
     let id = |component: &Component| component.effect().spec().id;
-    let shows_its_form = |one: &Component| one.effect().shows_its_form(&one.plain(), range);
+    let moving: Vec<f64> =
+        range.input_levels.iter().copied().filter(|level| !stick(&fitted, *level)).collect();
+    let moving = RecordRange { input_levels: &moving, ..*range };
     let mut added = fitted.iter().filter(|one| new.contains(&id(one)));
     added.all(|one| {
         let mut alike = fitted.iter().filter(|other| looks_like(id(one), id(other)));
         alike.all(|other| {
-            let are_curves = one.effect().is_steady() && other.effect().is_steady();
+            let both = |is: fn(&Component) -> bool| is(one) && is(other);
+            let seen = if both(is_curve) { &moving } else { range };
+            let shows_its_form = |one: &Component| one.effect().shows_its_form(&one.plain(), seen);
             is_distinct(fit, one, BESIDE_ITS_LIKE)
                 && shows_its_form(one)
-                && (!are_curves || shows_its_form(other))
+                && (!both(|one| one.effect().is_steady()) || shows_its_form(other))
         })
     })
+}
+
+/// Whether an effect is a curve: steady, and without memory.
+fn is_curve(one: &Component) -> bool {
+    one.effect().is_steady() && one.effect().spec().memory == 0
+}
+
+/// Whether a joint at rest stays there at a command of this magnitude because of one of the `effects` that
+/// remember whether it moves.
+fn stick(effects: &[&Component], magnitude: f64) -> bool {
+    let sticks = |one: &&Component, command: f64| {
+        let (effect, values) = (one.effect(), one.plain());
+        let mut memory = vec![0.0; effect.spec().memory];
+        let at = Moment::of(command);
+        effect.settle(&values, &mut memory, &at);
+        effect.step(&values, &mut memory, &at).abs() <= 0.0
+    };
+    let mut remembering = effects.iter().filter(|one| one.effect().is_steady() && !is_curve(one));
+    magnitude > 0.0
+        && remembering.any(|one| [magnitude, -magnitude].iter().all(|level| sticks(one, *level)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{CoulombFriction, DeadBand, FlowCurve, InputOffset, InputSaturation};
+    use crate::effect::{
+        CoulombFriction, DeadBand, FlowCurve, InputOffset, InputSaturation, Stiction,
+    };
     use crate::fit::{Parameter, Status};
     use crate::model::{JointModel, Value};
 
@@ -90,6 +117,21 @@ mod tests {
         offset[0].fixed = true;
         alone.model = alone.model.with(Component::new(&InputOffset, offset).unwrap());
         assert!(is_told(&alone, &["coulomb_friction"]));
+    }
+
+    #[test]
+    fn an_overlap_that_a_stiction_hides_is_not_told_from_a_bend_of_the_flow_curve() {
+        let with = |start: f64| {
+            let mut fit = fitted(&[(&DeadBand, -9.0), (&FlowCurve, 9.0)]);
+            let sticky = Component::new(&Stiction, [start, start].map(Value::from).to_vec());
+            fit.model = fit.model.with(sticky.unwrap());
+            fit
+        };
+        // The overlap ends at 0.9.
+        let record = RecordRange { input_levels: &[0.3, 0.6, 1.0, 2.0], ..RecordRange::default() };
+        let is_told = |start| are_distinguished(&with(start), &["dead_band"], &record);
+        assert!(is_told(0.4), "it does not move at 0.6 either");
+        assert!(!is_told(0.95));
     }
 
     #[test]

@@ -31,6 +31,7 @@ mod decide;
 mod determined;
 mod eligible;
 mod evidence;
+mod exchange;
 mod extension;
 mod improve;
 mod judge;

@@ -10,12 +10,13 @@ use std::ops::ControlFlow;
 
 use super::candidate::Candidate;
 use super::decide::Judge;
+use super::exchange::changed;
 use super::extension::ids;
 use super::judgement::Refusal;
 use super::misfit::{Errors, Misfit};
 use super::options::{Options, Tried};
 use super::ranking::{Beside, Scope, rank, rank_beside};
-use super::removal::{Removal, changed};
+use super::removal::Removal;
 use super::revision::Change;
 use super::verdict::Verdict;
 use super::workers::Workers;

@@ -177,7 +177,10 @@ fn rough<'p, 'r>(
     } else {
         let beginning = Beginning::of(short, model, space, (given.clone(), &starts));
         let starts = beginning.most_promising(starts, FOLLOWED);
-        let found = starts.iter().map(|start| descended(beginning.search(start.clone()))).collect();
+        let mut begun: Vec<_> =
+            starts.iter().map(|start| beginning.search(start.clone())).collect();
+        keep_distinct(&mut begun, |search| search.problem.cost(), 0.0);
+        let found = begun.into_iter().map(descended).collect();
         (starts, found, Some(beginning.cost()))
     };
     let is_above = |given: f64| searches.iter().all(|search: &Search<'_, '_>| search.cost > given);
@@ -185,8 +188,24 @@ fn rough<'p, 'r>(
         searches.extend(starts.iter().map(|start| search(nearer(&given, start))));
     }
     searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    keep_distinct(&mut searches, |search| search.cost, SAME_VALLEY);
     searches.truncate(FINALISTS);
     searches
+}
+
+/// Keeps one of the searches whose costs differ by no more than the part `apart`: the first.
+fn keep_distinct<'p, 'r>(
+    searches: &mut Vec<Search<'p, 'r>>,
+    cost: impl Fn(&Search<'p, 'r>) -> f64,
+    apart: f64,
+) {
+    let mut kept: Vec<f64> = Vec::new();
+    searches.retain(|search| {
+        let cost = cost(search);
+        let is_new = kept.iter().all(|other| (cost - other).abs() > apart * other);
+        kept.push(cost);
+        is_new
+    });
 }
 
 /// A start that is nearer to the values `given`: from one that is too far a descent may end in a valley
@@ -258,6 +277,11 @@ fn plain(model: &JointModel) -> Vec<f64> {
 
 /// Starts that are followed.
 const FOLLOWED: usize = 3;
+
+/// The part by which costs differ after rough descents into one valley: a thirtieth of what these leave
+/// open. On two measured joints 2 of 138 searches that end so close to another come to less than it in
+/// the end, by more than 0.1 %.
+const SAME_VALLEY: f64 = 1e-4;
 
 /// Searches that are brought to their end; the others are given up when it is seen where
 /// they lead.

@@ -173,7 +173,8 @@ impl Consequence<'_> {
     fn alternatives(&self) -> impl Iterator<Item = String> {
         let found = self.attribution.iter().flat_map(|known| &known.found);
         found.filter(|one| !one.alternatives.is_empty()).map(|one| {
-            let others = one.alternatives.join(" or ");
+            let others: Vec<String> = one.alternatives.iter().map(|own| own.join(" + ")).collect();
+            let others = others.join(" or ");
             format!("In place of {}, {others} fits about as well.", one.effect)
         })
     }
