@@ -121,6 +121,11 @@ impl Candidate {
         self.added().any(|effect| is_distinct(&self.fit, effect, DISTINCT))
     }
 
+    /// Whether all that it adds are curves of the input.
+    pub(super) fn is_steady(&self) -> bool {
+        self.added().all(|effect| effect.effect().is_steady())
+    }
+
     /// Whether it is needed even where the model passes for adequate.
     pub(super) fn is_beyond_doubt(&self) -> bool {
         self.p_value < BEYOND_DOUBT && self.explains(BEYOND_DOUBT_PERCENT)

@@ -21,7 +21,7 @@ pub(super) struct Judge<'a, 'r> {
     pub(super) own: Errors,
     pub(super) misfit: Misfit,
     pub(super) options: &'a Options,
-    /// Whether many curves match the few levels of the input: more is then asked of an effect.
+    /// Whether many curves match the few levels of the input: more is then asked of a curve.
     pub(super) are_levels_few: bool,
 }
 
@@ -41,7 +41,8 @@ impl<'a, 'r> Judge<'a, 'r> {
         let share = self.misfit.share(&self.own, &candidate.fit.errors);
         let determined = are_determined(&candidate.fit, &candidate.effects)
             && (!self.are_levels_few
-                || candidate.determines_as_much_as(self.base) && candidate.is_distinct());
+                || candidate.determines_as_much_as(self.base)
+                    && (candidate.is_distinct() || !candidate.is_steady()));
         let implausible = implausible(self.record, &candidate.fit, &candidate.effects);
         let mut judgement = Judgement {
             evidence: candidate.evidence,

@@ -4,7 +4,7 @@
 //! its exponent or level it is another shape than its name says. That is no reason to name it.
 
 use super::extension::components_of;
-use crate::effect::{Dimension, Effect, Parameter, RecordRange, Stage, by_id};
+use crate::effect::{Dimension, Effect, Parameter, RecordRange, Stage, UNLIMITED, by_id};
 use crate::fit::{self, AssessedModel, FitRecord, Status};
 use crate::model::Component;
 
@@ -59,9 +59,15 @@ pub(super) fn is_distinct(fit: &AssessedModel, component: &Component, errors: f6
     known.peek().is_none() || known.any(|distance| distance > errors)
 }
 
-/// How many standard errors a value is from the one at which it does nothing, where there are any.
+/// How many standard errors a value is from the one at which it does nothing, where there are any. Of a
+/// scale or a level that does nothing where it is infinite it is the reciprocal that is 0 there, and as many
+/// of its standard errors from 0 as the value is of its own; a place of the joint is at 0 as well as
+/// elsewhere.
 pub(super) fn distance_from_neutral(parameter: &Parameter, fitted: &fit::Parameter) -> Option<f64> {
-    Some((fitted.value - parameter.neutral).abs() / fitted.std_error?)
+    let is_infinite =
+        parameter.neutral.abs() >= UNLIMITED && parameter.dimension != Dimension::Output;
+    let neutral = if is_infinite { 0.0 } else { parameter.neutral };
+    Some((fitted.value - neutral).abs() / fitted.std_error?)
 }
 
 /// Whether an effect acts within what the record of `fit` reaches: not one of which all levels or
@@ -130,4 +136,23 @@ pub(super) fn fitted<'a>(
         let name = format!("{}.{}", spec.id, parameter.name);
         Some((parameter, fit.parameters.iter().find(|fitted| fitted.name == name)?))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{EndStop, VariableDelay};
+
+    #[test]
+    fn a_scale_that_may_be_infinite_is_not_known_to_be_another() {
+        let distance = |effect: &dyn Effect, name: &str, value: f64, std_error: f64| {
+            let own = effect.spec().parameters.iter().find(|own| own.name == name).unwrap();
+            let (name, std_error) = (name.to_owned(), Some(std_error));
+            let fitted = fit::Parameter { name, value, std_error, status: Status::Fitted };
+            distance_from_neutral(own, &fitted).unwrap()
+        };
+        assert!((distance(&VariableDelay, "size_scale", 9.0, 18.0) - 0.5).abs() < 1e-12);
+        assert!((distance(&VariableDelay, "size", -0.3, 0.1) - 3.0).abs() < 1e-12);
+        assert!(distance(&EndStop, "low", 0.1, 0.2) > 1e9, "an end of the way may be at 0");
+    }
 }

@@ -188,8 +188,8 @@ fn rough<'p, 'r>(
         searches.extend(starts.iter().map(|start| search(nearer(&given, start))));
     }
     searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    keep_distinct(&mut searches, |search| search.cost, SAME_VALLEY);
     searches.truncate(FINALISTS);
+    keep_distinct(&mut searches, |search| search.cost, SAME_VALLEY);
     searches
 }
 

@@ -185,7 +185,7 @@ fn chain(case: &Case, improvement: &Improvement) -> String {
         format!(" (p = {:.1e}, misfit {:.1} %)", test.p_value, 100.0 * test.misfit_share)
     });
     let carried = attribution.found.iter().map(|found| {
-        let or = found.alternatives.iter().map(|other| format!(" or {other}"));
+        let or = found.alternatives.iter().map(|other| format!(" or {}", other.join(" + ")));
         format!("{}{} {:.1} %", found.effect, or.collect::<String>(), 100.0 * found.error_share)
     });
     let carried: Vec<String> = carried.collect();
