@@ -317,7 +317,7 @@ fn a_browser_has_nothing_to_complain_of() {
     );
     let (page, profile) = (desk.folder.path().join("r.html"), desk.folder.path().join("profile"));
     let (dom, complaints) = shown(browser, &page, &profile, &["--dump-dom"]);
-    assert!(dom.contains("Delays and models in log.csv") && dom.contains("</svg>"), "{complaints}");
+    assert!(dom.contains("Models and delays in log.csv") && dom.contains("</svg>"), "{complaints}");
     assert!(!complaints.contains("CONSOLE"), "{complaints}");
 
     // The check can fail: a page that complains is heard.

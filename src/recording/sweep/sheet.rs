@@ -191,9 +191,8 @@ impl<'s> Page<'s> {
             (self.rows.high - block.first as f64 - 0.5 * block.count as f64, block.label)
         };
         let ticks = named(self.swept.grid).into_iter().map(name).collect();
-        // An axis with a name is one of numbers, of which some may be left out.
         let name = "which settings agree; black: step not accepted".to_owned();
-        let y = Axis { span: self.rows, name, ticks, is_logarithmic: false };
+        let y = Axis { ticks, ..Axis::new(self.rows, name, 1.0) };
         Panel { x: Axis { name: "step".to_owned(), ..self.axis() }, y, height: 180, marks }
     }
 

@@ -24,12 +24,16 @@ const USUAL: f64 = 0.05;
 
 impl Finding<'_> {
     pub(super) fn adequate_headline(&self) -> String {
-        let is_shown = self.comparison().lack_of_fit.is_some_and(|test| !test.adequate);
-        let of_consequence = if is_shown { " of consequence" } else { "" };
+        let of_consequence = if self.is_lack_shown() { " of consequence" } else { "" };
         match self.explained() {
             None => format!("no missing effect{of_consequence} found"),
             Some(explained) => format!("{explained}; nothing more{of_consequence} is missing"),
         }
+    }
+
+    /// Whether the residual is no noise, though no effect is named for it.
+    pub(super) fn is_lack_shown(&self) -> bool {
+        self.comparison().lack_of_fit.is_some_and(|test| !test.adequate)
     }
 
     pub(super) fn adequate(&self) -> Vec<Passage> {

@@ -35,6 +35,10 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
         passages.map(|passage| Block::Passage { question: passage.topic.0, text: passage.text() }),
     );
     blocks.extend(conclusion.commands.into_iter().map(Block::Code));
+    blocks.extend(errors(improved, file));
+    blocks.extend(beside_the_measurement(report, improved, file));
+    blocks.extend(failures(improved, file));
+    blocks.push(Block::part("Equations and parameters"));
     blocks.push(Block::Code(equations(compared)));
     blocks.push(Block::Table(parameter_table(compared.joint, &compared.comparison.fit)));
     blocks.push(Block::text(match compared.comparison.termination {
@@ -43,9 +47,6 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
         }
         termination => format!("The fit: {termination}."),
     }));
-    blocks.extend(errors(improved, file));
-    blocks.extend(beside_the_measurement(report, improved, file));
-    blocks.extend(failures(improved, file));
     blocks.extend(rankings(improved));
     blocks
 }
@@ -276,7 +277,7 @@ fn curve(joint: &Joint, curves: &[&Curve], file: String) -> Figure {
     let speed = of_output.map(|unit| format!("{unit}/s"));
     let is_of = |of: CurveOf| curves.iter().all(|curve| curve.of == of);
     let (across, up, caption) = if is_of(CurveOf::Angle) {
-        (bracketed("angle", of_output), "relative speed".to_owned(), "against the angle")
+        (bracketed("output", of_output), "relative speed".to_owned(), "against the output")
     } else if is_of(CurveOf::Time) {
         ("time [s]".to_owned(), "relative speed".to_owned(), "against the time")
     } else {
