@@ -75,13 +75,11 @@ impl Placed {
 fn names(panel: &Panel, room: f32) -> Vec<Vec<(Rgb, String)>> {
     let name = [panel.y.name.as_str(), panel.x.name.as_str()];
     let name = name.into_iter().filter(|name| !name.is_empty()).collect::<Vec<_>>().join(" over ");
-    let name = (!name.is_empty()).then_some((palette::BORDER, name));
+    let name = broken(&name, room).into_iter().filter(|line| !line.is_empty());
+    let name = name.map(|line| (palette::BORDER, line));
     let legend = panel.legend().map(|(mark, name)| (rgb(mark.role), format!("– {name}")));
-    let entries = name.into_iter().chain(legend);
-    let pieces = entries
-        .flat_map(|(rgb, text)| broken(&text, room).into_iter().map(move |piece| (rgb, piece)));
     let mut lines: Vec<Vec<(Rgb, String)>> = Vec::new();
-    for piece in pieces {
+    for piece in name.chain(legend) {
         let taken =
             |line: &Vec<(Rgb, String)>| line.iter().map(|(_, text)| width(text)).sum::<f32>();
         match lines.last_mut() {

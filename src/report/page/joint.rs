@@ -51,9 +51,13 @@ pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>, file: &
 pub(super) fn sentences(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> String {
     let model = report.model_of(estimated.joint).map(model::sentence);
     let reviewed = ReviewCount::on(estimated).map(|count| format!("{}.", count.sentence()));
-    let sentences = model.into_iter().chain([delay_answer(estimated)]);
-    let sentences = sentences.chain(doubtful_count(estimated)).chain(reviewed);
-    sentences.collect::<Vec<_>>().join(" ")
+    let mut sentences: Vec<String> = model.into_iter().chain([delay_answer(estimated)]).collect();
+    if estimated.obstacle().is_some() {
+        // A model of columns that do not belong together says nothing.
+        sentences.reverse();
+    }
+    sentences.extend(doubtful_count(estimated).into_iter().chain(reviewed));
+    sentences.join(" ")
 }
 
 /// `words` with a capital letter and a full stop.
