@@ -24,10 +24,10 @@ use crate::study::StepResult;
 pub(super) const SIZE: (f32, f32) = (1740.0, 720.0);
 
 /// Left and right end of the plots of the whole segment.
-const SIDES: (f32, f32) = (120.0, 1050.0);
+const SIDES: (f32, f32) = (120.0, 1000.0);
 
 /// Left and right end of the close-up.
-const CLOSE: (f32, f32) = (1180.0, 1725.0);
+const CLOSE: (f32, f32) = (1130.0, 1725.0);
 
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(

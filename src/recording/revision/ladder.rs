@@ -9,7 +9,7 @@ use crate::recording::canvas::{LINE, width};
 use crate::recording::palette::{self, role};
 use crate::recording::panels::Placed;
 use crate::report::ImprovedJoint;
-use crate::report::ladder::change_in_words;
+use crate::report::ladder::{change_in_words, judged_error};
 
 /// Length of the longest bar.
 const LONGEST: f32 = 130.0;
@@ -124,7 +124,7 @@ fn ladder(improved: &ImprovedJoint<'_>, at: usize) -> Bars {
     };
     let all = improved.numbered().enumerate().filter(|(place, _)| shown.contains(place));
     let is_validated = improved.revisions.iter().all(|one| one.comparison.validation.is_some());
-    let name = if is_validated { "validation error" } else { "error" };
+    let name = judged_error(is_validated);
     let title = match count - shown.len() {
         0 => name.to_owned(),
         _ => format!("{name}, {} of {count} revisions", shown.len()),

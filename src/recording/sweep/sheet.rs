@@ -36,7 +36,7 @@ pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordEr
     let placed = [
         Placed::new(page.delays(), SIDES, 100.0..=390.0),
         Placed::new(page.causes(), SIDES, 466.0..=700.0),
-        Placed::new(page.map(), SIDES, 772.0..=1042.0),
+        Placed::new(page.map(), SIDES, 804.0..=1066.0),
     ];
     let plots = [0, 1, 2].map(|place: usize| placed[place].plot);
     if let Some((image, place)) = picture(swept, &plots[2]) {
@@ -227,7 +227,7 @@ impl<'s> Page<'s> {
         let name = |run: usize| {
             let name = self.swept.names.get(run).map_or("", String::as_str);
             let text = format!("framed: {name} ({} of {all})", run + 1);
-            let at = Vec2D::new(map.left + 0.5 * width(&text), map.top - LINE);
+            let at = Vec2D::new(map.left + 0.5 * width(&text), map.top - 2.0 * LINE);
             vec![(at, text, palette::HERE)]
         };
         layers.texts("setting/name", runs().map(name).collect())
@@ -247,7 +247,7 @@ impl<'s> Page<'s> {
         let map = plots[2];
         let name = |(_, step): (f64, &SweptStep)| {
             let text = format!("framed: step {} at {:.2} s", step.number, step.time_s);
-            let at = Vec2D::new(map.right - 0.5 * width(&text), map.top - LINE);
+            let at = Vec2D::new(map.right - 0.5 * width(&text), map.top - 2.0 * LINE);
             vec![(at, text, palette::HERE)]
         };
         layers.texts("step/name", self.steps().map(name).collect())

@@ -177,13 +177,12 @@ impl Finding<'_> {
 
     /// What the error becomes.
     fn improvement(&self, best: &Candidate) -> String {
-        let part = if best.validation.is_some() { "not fitted" } else { "fitted" };
+        let part = if best.validation.is_some() { "validation" } else { "training" };
         let (before, after) = (self.output(self.error()), self.output(best.rmse()));
         let reduction = rounded(best.error_reduction_percent);
         let p_value = p_text(best.p_value);
         let falls = format!(
-            "With it the error on data that were {part} falls from {before} to {after}, by \
-             {reduction} % ({p_value})"
+            "With it the {part} error falls from {before} to {after}, by {reduction} % ({p_value})"
         );
         let Some(noise) = self.noise() else { return format!("{falls}.") };
         if best.rmse() > ABOVE_NOISE * noise {

@@ -14,7 +14,7 @@ use crate::fit::{Split, Termination};
 use crate::model::Component;
 use crate::report::compare::errors_note;
 use crate::report::conclusion::Topic;
-use crate::report::ladder::{LadderRow, ladder_table};
+use crate::report::ladder::{LadderRow, judged_error, ladder_table};
 use crate::report::parameters::{delay_of_steps, filled_in, parameter_table};
 use crate::report::ranking::ranking_table;
 use crate::report::{ComparedJoint, ImprovedJoint};
@@ -212,16 +212,12 @@ pub(super) fn ladder(improved: &ImprovedJoint<'_>, file: String) -> Figure {
     let name = (bracketed("root-mean-square error", unit), "ladder");
     let mut panel = panel(name, &rungs, (sensor_noise(&joint.trials), unit), 1.2);
     if let Some(first) = panel.marks.first_mut() {
-        first.name = Some(judged_on(&rows).to_owned());
+        let is_validated = rows.iter().all(|row| row.errors.validation_rmse.is_some());
+        first.name = Some(judged_error(is_validated).to_owned());
     }
     let name = format!("Errors of the revisions of {}", joint.name);
     let caption = "How the error falls from revision to revision.".to_owned();
     Figure { file, name, width: WIDTH, panels: vec![panel], caption }
-}
-
-fn judged_on(rungs: &[LadderRow]) -> &'static str {
-    let validated = rungs.iter().all(|row| row.errors.validation_rmse.is_some());
-    if validated { "error on data that were not fitted" } else { "error" }
 }
 
 /// Shares of the squared error and of the time in each part of the feature whose parts
