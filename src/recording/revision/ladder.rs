@@ -204,3 +204,16 @@ fn tried(improved: &ImprovedJoint<'_>, at: usize) -> (Vec<Rung>, Option<String>)
 fn rung(name: String, error: f64, role: Role) -> Rung {
     Rung { name, error: error.is_finite().then_some(error), training: None, role }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_more_revisions_than_there_is_room_for_those_are_drawn_that_matter() {
+        let falls = [f64::INFINITY, 0.9, 0.1, 0.8, 0.7, 0.2, 0.6, 0.5, 0.4, 0.3, f64::INFINITY];
+        let shown = telling(falls.len(), |place| falls[place]);
+        assert_eq!(shown, [0, 1, 3, 4, 6, 7, 8, 9, 10]);
+        assert_eq!(telling(3, |_| 0.0), [0, 1, 2]);
+    }
+}
