@@ -15,6 +15,11 @@ pub(crate) struct Rung {
     pub(crate) role: Role,
 }
 
+/// What stands beside the bar of a rung.
+pub(crate) fn value(rung: &Rung, unit: Option<&str>) -> String {
+    rung.error.map_or_else(|| "diverges".to_owned(), |error| measure(error, unit))
+}
+
 /// A row for each rung, and the `noise` of the sensor as a line; behind the longest bar there is so much
 /// `room` for its value, in its own length. Programs find the bars by `part`.
 pub(crate) fn panel(
@@ -39,8 +44,7 @@ pub(crate) fn panel(
     }
     let word = |(row, rung): (f64, &Rung)| {
         let end = rung.error.unwrap_or(0.0).max(rung.training.unwrap_or(0.0));
-        let value = rung.error.map(|error| measure(error, unit));
-        ((end, row), value.unwrap_or_else(|| "diverges".to_owned()))
+        ((end, row), value(rung, unit))
     };
     marks.push(Mark::new(Role::Ink, Shape::Words(numbered().map(word).collect())));
     marks.extend(noise.map(|noise| {

@@ -14,6 +14,8 @@ pub(crate) struct Axis {
     pub(crate) ticks: Vec<(f64, String)>,
     /// Whether its range is of logarithms to base ten, and its ticks name the numbers.
     pub(crate) is_logarithmic: bool,
+    /// Whether names stand at it instead of numbers.
+    pub(crate) has_names: bool,
 }
 
 /// A place in a panel.
@@ -73,21 +75,22 @@ impl Axis {
     /// An axis with about so many round numbers at it.
     pub(crate) fn new(span: Span, name: impl Into<String>, ticks: f64) -> Self {
         let ticks = span.ticks(ticks).into_iter().map(|tick| (tick, number(tick))).collect();
-        Self { span, name: name.into(), ticks, is_logarithmic: false }
+        Self { span, name: name.into(), ticks, is_logarithmic: false, has_names: false }
     }
 
     /// An axis of numbers whose logarithms to base ten are drawn.
     pub(crate) fn logarithmic(span: Span, name: impl Into<String>, ticks: f64) -> Self {
         let named = |tick: f64| (tick, number(power_of_ten(tick)));
         let ticks = span.ticks(ticks).into_iter().map(named).collect();
-        Self { span, name: name.into(), ticks, is_logarithmic: true }
+        Self { span, name: name.into(), ticks, is_logarithmic: true, has_names: false }
     }
 
     /// An axis of names, one at each whole number from 0, from the top down.
     pub(crate) fn of_names(names: &[String], name: impl Into<String>) -> Self {
         let ticks = (0..).zip(names).map(|(row, name)| (-f64::from(row), name.clone()));
         let span = Span::new(0.6 - names.len() as f64, 0.6);
-        Self { span, name: name.into(), ticks: ticks.collect(), is_logarithmic: false }
+        let ticks = ticks.collect();
+        Self { span, name: name.into(), ticks, is_logarithmic: false, has_names: true }
     }
 
     /// This axis without numbers and name: those of the panel below hold for it.
@@ -99,11 +102,6 @@ impl Axis {
     /// Whether the panel below says what is at it.
     pub(crate) fn is_bare(&self) -> bool {
         self.ticks.iter().all(|(_, text)| text.is_empty()) && self.name.is_empty()
-    }
-
-    /// Whether names stand at it instead of numbers.
-    pub(crate) fn has_names(&self) -> bool {
-        self.name.is_empty() && !self.is_bare()
     }
 
     /// The number that is drawn at `place`.
@@ -130,6 +128,12 @@ impl Mark {
     /// This mark with a name in the legend.
     pub(crate) fn named(self, name: impl Into<String>) -> Self {
         Self { name: Some(name.into()), ..self }
+    }
+
+    /// Takes this mark out of the legend; programs find it by the name that it had there.
+    pub(crate) fn unname(&mut self) {
+        let name = self.name.take().map(Cow::Owned);
+        self.part = self.part.take().or(name);
     }
 
     /// This mark, which programs find by `part`.

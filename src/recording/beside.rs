@@ -70,9 +70,13 @@ impl Shown {
         Self { delay: step.delay, interval: step.interval, verdict: step.verdict }
     }
 
-    /// The line of the result `name` in a legend.
+    /// The line of the result `name` in a legend; its interval is drawn.
     pub(super) fn in_short(self, name: &str) -> String {
-        format!("{name}: δ = {} {}", self.delay(), verdict_in_short(self.verdict, "✓"))
+        let delay = self.delay.map_or_else(|| "none".to_owned(), number);
+        match self.verdict {
+            Verdict::Accepted => format!("{name}: δ = {delay} ✓"),
+            Verdict::Rejected(condition) => format!("{name}: δ = {delay} ✗ {condition}"),
+        }
     }
 
     /// The row of the result `name` in a table.

@@ -36,6 +36,8 @@ pub(super) enum Page {
         class: &'static str,
         name: String,
         contents: Vec<String>,
+        /// Width and height of the sheet of a drawing, all of which is in view at first.
+        sheet: Option<(f32, f32)>,
         properties: Vec<(&'static str, Box<dyn AsComponents>)>,
     },
     /// Pages with the parts that they have of its height or width.
@@ -49,7 +51,7 @@ impl Page {
         contents: impl IntoIterator<Item = P>,
     ) -> Self {
         let contents = contents.into_iter().map(|path| path.to_string()).collect();
-        Self::View { class, name: name.into(), contents, properties: Vec::new() }
+        Self::View { class, name: name.into(), contents, sheet: None, properties: Vec::new() }
     }
 
     /// A text.
@@ -67,15 +69,12 @@ impl Page {
     }
 
     /// A drawing, which is all that lies below `root`: the whole sheet is in view.
-    pub(super) fn drawing(
-        name: impl Into<String>,
-        root: &EntityPath,
-        (width, height): (f32, f32),
-    ) -> Self {
-        let (width, height) = (f64::from(width), f64::from(height));
-        let (x, y) = ([0.0, width].into(), [0.0, height].into());
-        let bounds = VisualBounds2D::new(Range2D { x_range: x, y_range: y });
-        Self::view("2D", name, [format!("{root}/**")]).with("VisualBounds2D", bounds)
+    pub(super) fn drawing(name: impl Into<String>, root: &EntityPath, size: (f32, f32)) -> Self {
+        let mut view = Self::view("2D", name, [format!("{root}/**")]);
+        if let Self::View { sheet, .. } = &mut view {
+            *sheet = Some(size);
+        }
+        view
     }
 
     /// Scalars over a time axis that moves with those of all other plots.
@@ -88,6 +87,30 @@ impl Page {
     /// middle.
     pub(super) fn lanes(name: impl Into<String>, entities: &[EntityPath]) -> Self {
         Self::view("StateTimeline", name, entities).with("TimeAxis", whole_record())
+    }
+
+    /// How large each drawing is shown, by its name, where the page has so many points.
+    #[cfg(test)]
+    pub(super) fn scales(&self, (width, height): (f32, f32)) -> Vec<(String, f32)> {
+        /// Height of the bar with the name of a view, or with tabs.
+        const BAR: f32 = 25.0;
+        match self {
+            Self::View { name, sheet, .. } => {
+                let scale = |(w, h): &(f32, f32)| (width / w).min((height - BAR) / h);
+                sheet.iter().map(|size| (name.clone(), scale(size))).collect()
+            }
+            Self::Container { kind, pages, .. } => {
+                let all: f32 = pages.iter().map(|(share, _)| share).sum();
+                let of_page = |(share, page): &(f32, Self)| match (kind, page) {
+                    (ContainerKind::Horizontal, _) => page.scales((width * share / all, height)),
+                    (ContainerKind::Vertical, _) => page.scales((width, height * share / all)),
+                    // The name of a view is its tab.
+                    (_, Self::View { .. }) => page.scales((width, height)),
+                    _ => page.scales((width, height - BAR)),
+                };
+                pages.iter().flat_map(of_page).collect()
+            }
+        }
     }
 
     /// Sets a property of a view, such as `VisualBounds2D`.
@@ -220,12 +243,18 @@ impl Builder<'_> {
 
     fn add(&mut self, page: Page) -> Result<Node, RecordError> {
         match page {
-            Page::View { class, name, contents, properties } => {
+            Page::View { class, name, contents, sheet, properties } => {
                 let node = self.node("view");
                 let path = &node.path;
                 let contents = contents.iter().map(|query| QueryExpression::from(query.as_str()));
                 self.log(&format!("{path}/ViewContents"), &ViewContents::new(contents))?;
                 self.log(path, &ViewBlueprint::new(class).with_display_name(name))?;
+                if let Some((width, height)) = sheet {
+                    let range = |end: f32| [0.0, f64::from(end)].into();
+                    let (x_range, y_range) = (range(width), range(height));
+                    let bounds = VisualBounds2D::new(Range2D { x_range, y_range });
+                    self.log(&format!("{path}/VisualBounds2D"), &bounds)?;
+                }
                 for (property, value) in properties {
                     self.log(&format!("{path}/{property}"), value.as_ref())?;
                 }

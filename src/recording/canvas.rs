@@ -32,7 +32,7 @@ pub(super) const SHEET: (f32, f32) = (1600.0, 640.0);
 pub(super) const LINE: f32 = 44.0;
 
 /// How far below its point the middle of a text is drawn.
-const LABEL_DROP: f32 = 14.0;
+const LABEL_DROP: f32 = 18.0;
 
 /// Room of a text on a sheet in a window of 1280 points.
 pub(super) fn width(text: &str) -> f32 {
@@ -101,10 +101,12 @@ impl Plot {
         Vec2D::new(self.x(x), self.bottom + distance)
     }
 
-    /// Where a text is put to end beside `y`, left of the plot.
+    /// Where a text is put to end beside `y`, left of the plot: above the texts below it.
     pub(super) fn left_of(&self, y: f64, text: &str) -> Vec2D {
-        let drop = LABEL_DROP * text.lines().count() as f32;
-        Vec2D::new(self.left - 0.5 * width(text), self.y(y) - drop)
+        /// Room below its middle.
+        const BELOW: f32 = 14.0;
+        let middle = self.y(y).min(self.bottom - BELOW);
+        Vec2D::new(self.left - 0.5 * width(text), middle - LABEL_DROP)
     }
 
     /// Where a text is put to begin beside a place.

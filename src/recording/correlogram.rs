@@ -10,16 +10,16 @@ use crate::figure::correlogram::panels;
 use crate::report::ComparedJoint;
 
 /// Width and height of the sheet.
-pub(super) const SIZE: (f32, f32) = (1900.0, 480.0);
+pub(super) const SIZE: (f32, f32) = (1840.0, 376.0);
 
 /// Draws the correlations of `models`: a curve and a band per model.
 pub(super) fn add(chunks: &mut Chunks, models: &[&ComparedJoint<'_>]) -> Result<(), RecordError> {
     let models = models.iter().enumerate();
     let models: Vec<_> = models.map(|(n, one)| (Role::of_revision(n), one.comparison)).collect();
-    let mut left = -525.0;
+    let mut left = -505.0;
     let placed = panels(&models).map(|panel| {
-        left += 635.0;
-        Placed::new(panel, (left, left + 510.0), 46.0..=430.0)
+        left += 615.0;
+        Placed::new(panel, (left, left + 490.0), 46.0..=324.0)
     });
     panels::add(&mut Layers::fixed(chunks, paths::CORRELATION), [placed.into()])
 }

@@ -7,12 +7,12 @@ use super::panels::{self, Placed};
 use super::paths;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
-use crate::figure::Role;
 use crate::figure::error_share::panels;
+use crate::figure::{Panel, Role};
 use crate::report::ComparedJoint;
 
 /// Width and height of the sheet: two rows of plots.
-pub(super) const SIZE: (f32, f32) = (1900.0, 480.0);
+pub(super) const SIZE: (f32, f32) = (1840.0, 376.0);
 
 /// Plots in a row.
 const COLUMNS: usize = 4;
@@ -26,10 +26,13 @@ pub(super) fn add(chunks: &mut Chunks, models: &[&ComparedJoint<'_>]) -> Result<
     panels::add(&mut Layers::fixed(chunks, paths::ERROR_SHARE), [placed])
 }
 
-/// Each panel in one of eight places on the sheet.
+/// Each panel in one of eight places on the sheet, below its quantity: the name of the view says what
+/// its bars and lines are, for which there is no room above each.
 pub(super) fn placed(joint: &Joint, models: &[(Role, &Comparison)]) -> Vec<Placed> {
-    let place = |(place, panel)| {
-        let rows = if place < COLUMNS { 36.0..=190.0 } else { 282.0..=436.0 };
+    let place = |(place, mut panel): (usize, Panel)| {
+        panel.y.name.clear();
+        panel.marks.iter_mut().for_each(|mark| mark.unname());
+        let rows = if place < COLUMNS { 46.0..=140.0 } else { 232.0..=326.0 };
         let width = SIZE.0 / COLUMNS as f32;
         let left = (place % COLUMNS) as f32 * width;
         Placed::new(panel, (left + 95.0, left + width - 20.0), rows)

@@ -1,76 +1,82 @@
-//! What was found of a joint and its model, what is doubtful, what to do next: a strip above its
-//! decisions and above the revisions of its model.
+//! What was found, what is doubtful, what to do next, in strips above the pages of a joint: one on its
+//! delays above the decisions, one on its model above the revisions.
 
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layout::JointLayout;
-use super::markdown::plain;
+use super::markdown::{plain, prose};
 use super::paths;
 use crate::experiment::Source;
 use crate::explain::Verdict;
 use crate::report::ImprovedJoint;
-use crate::report::answer::delay_answer;
+use crate::report::answer::{delay_answer, doubtful_count};
+use crate::report::conclusion::Topic;
 use crate::wording::capitalized;
 
-/// Adds `/headline`.
+/// Adds `/headline`, and of a model `/revision/headline`.
 pub(super) fn add(
     chunks: &mut Chunks,
     layout: &JointLayout<'_>,
     sources: &[Source],
     improved: Option<&ImprovedJoint<'_>>,
 ) -> Result<(), RecordError> {
-    chunks.page(paths::HEADLINE, text(layout, sources, improved))
+    chunks.page(paths::HEADLINE, on_delays(layout, sources, improved.is_some()))?;
+    improved.map_or(Ok(()), |improved| {
+        chunks.page(paths::REVISION_HEADLINE, on_model(layout, improved))
+    })
 }
 
-fn text(
-    layout: &JointLayout<'_>,
-    sources: &[Source],
-    improved: Option<&ImprovedJoint<'_>>,
-) -> String {
+/// What the delays are, what speaks against them, and how to correct them; where none is doubtful, what
+/// follows.
+fn on_delays(layout: &JointLayout<'_>, sources: &[Source], has_model: bool) -> String {
     let estimated = layout.estimated;
     let name = plain(&estimated.joint.name);
-    let answer = format!("**{name}: {}**", plain(&delay_answer(estimated)));
+    let answer = format!("**{name}: {}**", prose(&delay_answer(estimated)));
     // What to do about a warning is in the report and on the terminal.
     let warnings = estimated.warnings().into_iter();
     let mut sentences: Vec<String> =
-        warnings.map(|warning| format!("⚠ {}.", plain(&capitalized(&warning.short)))).collect();
-    sentences.extend(
-        improved.map(|improved| format!("**Model: {}.**", plain(&improved.finding.headline()))),
-    );
-    let doubtful = layout.segments().filter(|(_, segment)| segment.is_open()).count();
+        warnings.map(|warning| format!("⚠ {}.", prose(&capitalized(&warning.short)))).collect();
     let log = match sources {
         [source] => source.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         _ => "LOG".to_owned(),
     };
     let quoted = |word: &str| shlex::try_quote(word).map_or_else(|_| word.to_owned(), Into::into);
     let data = format!("{} --joint {}", quoted(&log), quoted(&estimated.joint.name));
-    sentences.push(match doubtful {
+    let next = match doubtful_count(estimated) {
         _ if estimated.obstacle().is_some() => {
             format!("What the columns are taken for: `tauscope columns {}`", quoted(&log))
         }
-        0 => format!("No decision is doubtful. {}", next(&data, improved)),
-        1 => format!("1 decision is doubtful. {}", review(&data)),
-        count => format!("{count} decisions are doubtful. {}", review(&data)),
-    });
+        Some(doubtful) => {
+            format!(
+                "{doubtful} To correct them: `tauscope estimate {data} --review-sheet review.csv`"
+            )
+        }
+        None if has_model => "No decision is doubtful.".to_owned(),
+        None => {
+            format!("No decision is doubtful. What a model lacks: `tauscope improve {data}`")
+        }
+    };
+    sentences.push(next);
     format!("{answer}  \n{}", sentences.join(" "))
 }
 
-/// What follows where no decision is doubtful.
-fn next(data: &str, improved: Option<&ImprovedJoint<'_>>) -> String {
-    let Some(improved) = improved else {
-        return format!("What a model lacks: `tauscope improve {data}`");
-    };
-    let add = improved.finding.conclusion().commands.into_iter().next();
-    match (add, improved.finding.verdict) {
-        (Some(add), _) => format!("To add it: `{add}`"),
-        (None, Verdict::Adequate) => {
-            "To check it on another log: `tauscope compare LOG --model MODEL.toml`".to_owned()
+/// What the model explains and what remains, then the delays in short, and what to do next.
+fn on_model(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>) -> String {
+    let conclusion = improved.conclusion();
+    let mut sentences = vec![prose(&delay_answer(layout.estimated))];
+    sentences.extend(
+        doubtful_count(layout.estimated).map(|doubtful| format!("{doubtful} See *Decisions*.")),
+    );
+    let next = conclusion.passages.iter().find(|passage| passage.topic == Topic::NEXT);
+    sentences.extend(match (conclusion.commands.first(), next, improved.finding.verdict) {
+        (Some(add), ..) => Some(format!("To add it: `{add}`")),
+        (None, Some(next), _) => Some(prose(&next.text())),
+        (None, None, Verdict::Adequate) => {
+            Some("To check it on another log: `tauscope compare LOG --model MODEL.toml`".to_owned())
         }
-        (None, _) => "Where the rest arises is on the tab behind the ladder.".to_owned(),
-    }
-}
-
-/// How decisions are corrected.
-fn review(data: &str) -> String {
-    format!("To correct them: `tauscope estimate {data} --review-sheet review.csv`")
+        (None, None, _) => {
+            Some("Where the remaining error arises: the second tab above the drawing.".to_owned())
+        }
+    });
+    format!("**{}.**  \n{}", prose(&conclusion.headline), sentences.join(" "))
 }

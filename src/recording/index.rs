@@ -100,7 +100,7 @@ impl Content for IndexRecording<'_> {
             (6.0, Page::text("Verdict", path(paths::VERDICT))),
         ];
         let columns =
-            [(6.2, Page::stacked("Decisions", left)), (3.8, Page::stacked("Words", right))];
+            [(6.8, Page::stacked("Decisions", left)), (3.2, Page::stacked("Words", right))];
         let tabs = vec![Page::beside("Joints and doubtful decisions", columns)];
         let about = "About".to_owned();
         Blueprint { tabs, about, timeline: "doubt", play: PlayState::Paused }

@@ -134,11 +134,6 @@ pub(super) struct SegmentLayout<'a> {
 pub(super) type Placed<'l, 'a> = (&'l TrialLayout<'a>, &'l SegmentLayout<'a>);
 
 impl SegmentLayout<'_> {
-    /// Whether its decision is doubtful, and no person has spoken of it.
-    pub(super) fn is_open(&self) -> bool {
-        self.doubt.is_doubtful() && self.decision.reviewer_verdict.is_none()
-    }
-
     pub(super) fn is_accepted(&self) -> bool {
         self.decision.verdict() == Verdict::Accepted
     }

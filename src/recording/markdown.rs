@@ -1,5 +1,7 @@
 //! Names from a log inside Markdown.
 
+use crate::wording::typed_parts;
+
 /// A name from a log as Markdown that means nothing but itself.
 pub(super) fn plain(name: &str) -> String {
     let mut text = String::with_capacity(name.len());
@@ -26,15 +28,10 @@ pub(super) fn link(file: &str) -> String {
 
 /// Sentences of ours, with names from a log, in which backticks hold what is typed.
 pub(super) fn prose(sentences: &str) -> String {
-    let parts: Vec<&str> = sentences.split('`').collect();
-    let is_paired = parts.len() % 2 == 1 && parts.iter().skip(1).step_by(2).all(|p| !p.is_empty());
-    if !is_paired {
-        return plain(sentences);
-    }
-    let part = |(place, part): (usize, &&str)| {
-        if place % 2 == 1 { format!("`{part}`") } else { plain(part) }
+    let part = |(part, is_typed): (&str, bool)| {
+        if is_typed { format!("`{part}`") } else { plain(part) }
     };
-    parts.iter().enumerate().map(part).collect()
+    typed_parts(sentences).into_iter().map(part).collect()
 }
 
 #[cfg(test)]

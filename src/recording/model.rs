@@ -15,6 +15,7 @@ use super::{correlogram, error_share, model_lanes, revision, scatter};
 use crate::diagnosis::failure::Region;
 use crate::diagnosis::{Comparison, SIGNIFICANCE, sensor_noise};
 use crate::report::compare::{errors_note, model_differences, model_table};
+use crate::report::finding::times_noise;
 use crate::report::parameters::parameter_table;
 use crate::report::{ComparedJoint, TextTable};
 use crate::wording::{
@@ -281,7 +282,7 @@ fn headline(judged: &ComparedJoint<'_>) -> String {
         }
         // Many times the noise say no more than the error itself.
         (_, Some(times)) if times < COUNTED => {
-            format!("{followed}the error is {error}, {} times the noise", number(times.round()))
+            format!("{followed}the error is {error}, {}", times_noise(times))
         }
         (_, Some(_)) if followed.is_empty() => {
             format!("the model follows nothing of the motion; the error is {error}")

@@ -101,7 +101,7 @@ fn vertices([first, last]: [usize; 2], steps: [usize; 2]) -> Vec<usize> {
 }
 
 /// Height of the small map on its sheet.
-pub(super) const MAP_HEIGHT: f32 = 182.0;
+pub(super) const MAP_HEIGHT: f32 = 220.0;
 
 /// Height of the large one.
 pub(super) const LARGE_HEIGHT: f32 = 680.0;
@@ -119,8 +119,8 @@ fn add_maps(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordE
         None => delay_panel(layout.estimated, &timeline),
     };
     let small = vec![
-        Placed::unnamed(output.clone(), SIDES, 6.0..=96.0),
-        Placed::unnamed(input.clone(), SIDES, 104.0..=138.0),
+        Placed::unnamed(output.clone(), SIDES, 6.0..=124.0),
+        Placed::unnamed(input.clone(), SIDES, 134.0..=174.0),
     ];
     // Where no delay is known, the output has its room.
     let rows = if delay.is_some() { 64.0..=298.0 } else { 64.0..=486.0 };
@@ -128,7 +128,7 @@ fn add_maps(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordE
         vec![Placed::new(output, SIDES, rows), Placed::new(input, SIDES, 566.0..=634.0)];
     large.extend(delay.map(|panel| Placed::new(panel, SIDES, 378.0..=486.0)));
     for (root, map, rows) in
-        [(paths::MAP, small, (2.0, 142.0)), (paths::LARGE_MAP, large, (60.0, 638.0))]
+        [(paths::MAP, small, (2.0, 178.0)), (paths::LARGE_MAP, large, (60.0, 638.0))]
     {
         let plot = map.first().map(|placed| placed.plot);
         panels::add(&mut Layers::fixed(chunks, root), [map])?;

@@ -45,7 +45,7 @@ impl Placed {
     /// Frame, grid, and the texts of ticks, name and legend.
     fn around(&self) -> (Vec<Strip>, Vec<Text>) {
         let (Panel { x, y, .. }, plot) = (&self.panel, &self.plot);
-        let levels = y.ticks.iter().filter(|_| !y.has_names()).map(|(y, _)| plot.level(*y));
+        let levels = y.ticks.iter().filter(|_| !y.has_names).map(|(y, _)| plot.level(*y));
         let grid = x.ticks.iter().map(|(x, _)| plot.vertical(*x)).chain(levels);
         let grid = grid.chain([plot.frame()]).map(|strip| (strip, palette::GRID)).collect();
         let mut texts = Vec::new();
@@ -53,7 +53,7 @@ impl Placed {
             texts.push((plot.below(x, 2.0), text, palette::BORDER));
         }
         // Of names none is left out.
-        let room = |_: &str| if y.has_names() { 0.0 } else { LINE };
+        let room = |_: &str| if y.has_names { 0.0 } else { LINE };
         for (y, text) in apart(y, |y| plot.y(y), room) {
             texts.push((plot.left_of(y, &text), text, palette::BORDER));
         }
@@ -75,19 +75,34 @@ impl Placed {
 fn names(panel: &Panel, room: f32) -> Vec<Vec<(Rgb, String)>> {
     let name = [panel.y.name.as_str(), panel.x.name.as_str()];
     let name = name.into_iter().filter(|name| !name.is_empty()).collect::<Vec<_>>().join(" over ");
-    let name = (!name.is_empty()).then_some((palette::BORDER, name));
+    let name = broken(&name, room).into_iter().filter(|line| !line.is_empty());
+    let name = name.map(|line| (palette::BORDER, line));
     let legend = panel.legend().map(|(mark, name)| (rgb(mark.role), format!("– {name}")));
     let mut lines: Vec<Vec<(Rgb, String)>> = Vec::new();
-    for entry in name.into_iter().chain(legend) {
-        let own = width(&entry.1);
+    for piece in name.chain(legend) {
         let taken =
             |line: &Vec<(Rgb, String)>| line.iter().map(|(_, text)| width(text)).sum::<f32>();
         match lines.last_mut() {
-            Some(line) if taken(line) + own <= room => line.push(entry),
-            _ => lines.push(vec![entry]),
+            Some(line) if taken(line) + width(&piece.1) <= room => line.push(piece),
+            _ => lines.push(vec![piece]),
         }
     }
     lines
+}
+
+/// A text in lines for which there is `room`, as far as its words allow; a unit stays with its quantity.
+fn broken(text: &str, room: f32) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.replace(" [", "\u{a0}[").split(' ') {
+        match lines.last_mut() {
+            Some(line) if width(&format!("{line} {word}")) <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines.into_iter().map(|line| line.replace('\u{a0}', " ")).collect()
 }
 
 /// The ticks of an axis whose texts do not cover each other.
@@ -238,8 +253,10 @@ fn to_and_fro(columns: impl Iterator<Item = [f32; 3]>) -> Vec<Vec2D> {
 
 /// Places between two others that lines of radius [`HATCH`] cover without a gap.
 fn hatched(left: f32, right: f32) -> impl Iterator<Item = f32> {
+    /// Distance of two lines in radii: at 1.2 seams are seen where a line is thinner than two pixels.
+    const APART: f32 = 0.8;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
-    let count = ((right - left) / (1.2 * HATCH)).ceil().max(1.0) as usize;
+    let count = ((right - left) / (APART * HATCH)).ceil().max(1.0) as usize;
     let step = (right - left - 2.0 * HATCH).max(0.0) / count as f32;
     (0..=count).map(move |k| left + HATCH + step * k as f32)
 }
@@ -444,6 +461,18 @@ mod tests {
         let places: Vec<_> = hatched(10.0, 40.0).collect();
         assert!((places[0] - 11.5).abs() < 1e-4 && (places[places.len() - 1] - 38.5).abs() < 1e-4);
         assert!(places.windows(2).all(|pair| pair[1] - pair[0] < 2.0 * HATCH));
+    }
+
+    #[test]
+    fn a_name_that_is_too_long_for_its_panel_stands_in_two_lines() {
+        let room = width("changes with the measured");
+        let lines = broken("changes with the measured input's over lag [s]", room);
+        assert_eq!(lines, ["changes with the measured", "input's over lag [s]"]);
+        assert_eq!(
+            broken("speed over input [%]", width("speed over input")),
+            ["speed over", "input [%]"]
+        );
+        assert_eq!(broken("one_word_without_room", 10.0), ["one_word_without_room"]);
     }
 
     fn unit() -> (Span, Span) {

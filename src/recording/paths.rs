@@ -47,7 +47,7 @@ pub(crate) const VERDICT: &str = "verdict";
 pub(crate) const VERDICT_LOG: &str = "verdict/log";
 pub(crate) const SEGMENT: &str = "segment";
 pub(crate) const TRIAL: &str = "trial";
-/// What was found of the joint, and what to do next.
+/// What was found of the delays of the joint, and what to do next.
 pub(crate) const HEADLINE: &str = "headline";
 /// Where the cursor is, in words.
 pub(crate) const PLACE: &str = "place";
@@ -96,8 +96,9 @@ pub(crate) const SCATTER: &str = "scatter";
 pub(crate) const ERROR_SHARE: &str = "error_share";
 pub(crate) const CORRELATION: &str = "correlation";
 
-/// The revisions of a model: ladder, evidence and ranking; the whole record beside what is simulated;
+/// The revisions of a model: what was found of it; ladder, evidence and ranking; the whole record beside what is simulated;
 /// the share of the error in each region; pages.
+pub(crate) const REVISION_HEADLINE: &str = "revision/headline";
 pub(crate) const REVISION_SHEET: &str = "revision/sheet";
 pub(crate) const REVISION_RECORD: &str = "revision/record";
 pub(crate) const REVISION_SHARE: &str = "revision/share";

@@ -1,6 +1,5 @@
-//! The residual against what it may depend on: input, angle, speed, time since the step.
+//! The residual against what it may depend on: input, output, speed, time since the step.
 
-use super::canvas::SHEET;
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layers::Layers;
@@ -12,7 +11,7 @@ use crate::report::ComparedJoint;
 use crate::wording::bracketed;
 
 /// Width and height of the sheet: four plots side by side.
-pub(super) const SIZE: (f32, f32) = (SHEET.0, 280.0);
+pub(super) const SIZE: (f32, f32) = (1840.0, 376.0);
 
 /// Points that are drawn of each plot; more hide one another.
 const POINTS: usize = 3000;
@@ -38,10 +37,10 @@ pub(super) fn add(
     let unit = judged.joint.output_unit.as_deref();
     let place = |(place, pairs): (usize, Pairs)| {
         let of_each = all.iter().map(|all| all.get(place));
-        let left = 400.0 * place as f32;
+        let left = 460.0 * place as f32;
         // There is room for one name above each plot; the residual is named above the first.
         let y = if place == 0 { bracketed("residual", unit) } else { String::new() };
-        Placed::new(panel(&pairs, of_each, y), (left + 105.0, left + 385.0), 48.0..=226.0)
+        Placed::new(panel(&pairs, of_each, y), (left + 105.0, left + 445.0), 48.0..=324.0)
     };
     let placed = quantities(judged).into_iter().enumerate().map(place).collect();
     panels::add(&mut Layers::fixed(chunks, paths::SCATTER), [placed])
@@ -84,14 +83,14 @@ fn quantities(compared: &ComparedJoint<'_>) -> Vec<Pairs> {
     let all = |values: Vec<Vec<f64>>| values.concat();
     let acting = all(evaluation.simulated.iter().map(|s| s.acting.clone()).collect());
     let velocity = all(evaluation.simulated.iter().map(|s| s.velocity.clone()).collect());
-    let angle = all(joint.trials.iter().map(|trial| trial.output().to_vec()).collect());
+    let outputs = all(joint.trials.iter().map(|trial| trial.output().to_vec()).collect());
     let periods = joint.trials.iter().map(|trial| trial.period().seconds());
     let since =
         all(periods.zip(&evaluation.simulated).map(|(t, s)| since_step(&s.acting, t)).collect());
     let quantity = |name: String, x: Vec<f64>| Pairs { name, x, residual: residual.clone() };
     vec![
         quantity(format!("acting input{input}"), acting),
-        quantity(format!("angle{output}"), angle),
+        quantity(format!("output{output}"), outputs),
         quantity(format!("speed{speed}"), velocity),
         quantity("time since the step [s]".to_owned(), since),
     ]

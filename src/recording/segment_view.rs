@@ -6,7 +6,7 @@
 //! so that nothing leaks into the next segment.
 
 use super::beside::{Other, Shown};
-use super::canvas::{Plot, SHEET};
+use super::canvas::Plot;
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layers::Layers;
@@ -21,13 +21,13 @@ use crate::figure::{Mark, Panel};
 use crate::study::StepResult;
 
 /// Width and height of the sheet.
-pub(super) const SIZE: (f32, f32) = (SHEET.0, 770.0);
+pub(super) const SIZE: (f32, f32) = (1740.0, 720.0);
 
 /// Left and right end of the plots of the whole segment.
-const SIDES: (f32, f32) = (120.0, 960.0);
+const SIDES: (f32, f32) = (120.0, 1000.0);
 
 /// Left and right end of the close-up.
-const CLOSE: (f32, f32) = (1080.0, 1585.0);
+const CLOSE: (f32, f32) = (1130.0, 1725.0);
 
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(
@@ -91,10 +91,10 @@ impl<'l, 'a> Drawing<'l, 'a> {
             }
         }
         [
-            Placed::new(output, SIDES, 60.0..=370.0),
-            Placed::new(self.figure.residual(), SIDES, 496.0..=556.0),
-            Placed::new(self.figure.errors(), SIDES, 606.0..=712.0),
-            Placed::new(close, CLOSE, 60.0..=712.0),
+            Placed::new(output, SIDES, 60.0..=340.0),
+            Placed::new(self.figure.residual(), SIDES, 460.0..=514.0),
+            Placed::new(self.figure.errors(), SIDES, 562.0..=660.0),
+            Placed::new(close, CLOSE, 60.0..=660.0),
         ]
     }
 

@@ -206,21 +206,20 @@ impl Tab<'_> {
             summary_cells("", &JointSummary::of(self.estimated));
         let verdicts = format!("{accepted} of {steps} ✓ accepted · ✗ rejected: {rejected}");
         // The verdict names the trial: a lane for it would hide that of the verdicts in a small window.
-        let left = [
-            (6.3, self.segment()),
-            (2.1, self.drawing(map, paths::MAP, (SHEET.0, MAP_HEIGHT))),
-            (2.3, self.lanes(&verdicts, &[paths::VERDICT, paths::SEGMENT])),
-        ];
+        let map = self.drawing(map, paths::MAP, (SHEET.0, MAP_HEIGHT));
+        let lanes = self.lanes(&verdicts, &[paths::VERDICT, paths::SEGMENT]);
+        // Behind one another: below one another neither has its room in a small window.
+        let left = [(7.4, self.segment()), (2.6, Page::tabs("Record", [map, lanes]))];
         let right = [(7.2, self.text("Verdict", paths::VERDICT)), (2.8, self.lists())];
         let columns =
             [(6.8, Page::stacked("Segment", left)), (3.2, Page::stacked("Verdicts", right))];
-        self.below_headline("Decisions", Page::beside("Steps", columns))
+        self.below_headline("Decisions", paths::HEADLINE, Page::beside("Steps", columns))
     }
 
-    /// A page below what was found of the joint.
-    fn below_headline(&self, name: &str, page: Page) -> Page {
-        let headline = self.text("What was found", paths::HEADLINE);
-        Page::stacked(name, [(1.3, headline), (8.7, page)])
+    /// A page below what was found: four lines in a small window.
+    fn below_headline(&self, name: &str, headline: &str, page: Page) -> Page {
+        let headline = self.text("What was found", headline);
+        Page::stacked(name, [(1.5, headline), (8.5, page)])
     }
 
     fn segment(&self) -> Page {
@@ -231,8 +230,7 @@ impl Tab<'_> {
     /// The decisions by doubt, in their order, and by doubt with the reasons.
     fn lists(&self) -> Page {
         let doubts = by_doubt(&[self.estimated]);
-        let open = doubts.iter().filter(|found| found.decision.reviewer_verdict.is_none());
-        let doubtful = open.filter(|found| found.doubt.is_doubtful()).count();
+        let doubtful = doubts.iter().filter(|found| found.is_open()).count();
         let limit = number(Doubt::DOUBTFUL_PERCENT);
         let doubtful = format!("{doubtful} of {} doubtful (≥ {limit} %): click", doubts.len());
         let lists = [
@@ -255,7 +253,7 @@ impl Tab<'_> {
             (5.0, self.text("Verdict", paths::VERDICT)),
         ];
         let left = Page::stacked("Steps", [(3.6, sheet), (6.4, self.segment())]);
-        Page::beside("Differences", [(6.6, left), (3.4, Page::stacked("Lists", right))])
+        Page::beside("Differences", [(6.8, left), (3.2, Page::stacked("Lists", right))])
     }
 
     /// A line that says where the cursor is, or where to click.
@@ -339,10 +337,10 @@ impl Tab<'_> {
             self.drawing("The whole record", paths::REVISION_RECORD, revision::RECORD_SIZE);
         let words = self.text("In words", paths::REVISION_WORDS);
         let parameters = self.text("Parameters", paths::REVISION_PARAMETERS);
-        let left = [(4.4, Page::tabs("Ladder", [sheet, share])), (5.6, record)];
+        let left = [(1.0, Page::tabs("Ladder", [sheet, share])), (1.0, record)];
         let right = Page::tabs("Texts", [words, parameters]);
         let columns = [(7.3, Page::stacked("Drawings", left)), (2.7, right)];
-        self.below_headline("Revisions", Page::beside("Model", columns))
+        self.below_headline("Revisions", paths::REVISION_HEADLINE, Page::beside("Model", columns))
     }
 
     /// Numbers of the models that are drawn beside the measurement: of many revisions of one model the
@@ -396,8 +394,8 @@ impl Tab<'_> {
         let tabs = if self.are_side_by_side() { [plots, map] } else { [map, plots] };
         let rows = [
             (1.3, self.place()),
-            (7.2, Page::tabs("Record", tabs)),
-            (3.5, self.residuals(&names, &shown)),
+            (6.5, Page::tabs("Record", tabs)),
+            (4.2, self.residuals(&names, &shown)),
         ];
         let texts = [
             self.text("Models", paths::MODEL_PAGE),
@@ -462,5 +460,44 @@ impl Tab<'_> {
         let candidates = candidates.with("DataframeQuery", query.with_select(select));
         let decisions = self.text("Decisions", paths::DECISION_PAGE);
         Page::beside("Table", [(1.15, decisions), (0.85, candidates)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::batch::Threads;
+    use crate::delay::{Method, Settings};
+    use crate::experiment::Trial;
+    use crate::study::estimate_joints;
+    use crate::units::SamplePeriod;
+
+    #[test]
+    fn every_drawing_has_room_for_its_texts_in_a_window_of_1280_by_720() {
+        /// What is left of the window below its title and the tabs of joints, above the time.
+        const ROOM: (f32, f32) = (1280.0, 637.0);
+        // Texts have one size on the screen: sheets are made for half of it.
+        const LEAST: f32 = 0.49;
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let input = [vec![0.0; 100], vec![1.0; 100]].concat();
+        let trial = Trial::new("1", 0.0, period, input.clone(), input).unwrap();
+        let name = "boom".to_owned();
+        let joint = Joint {
+            name,
+            input_unit: None,
+            output_unit: None,
+            covariates: Vec::new(),
+            trials: [trial].into(),
+        };
+        let settings = Settings::of(Method::TWO_LINE);
+        let estimate = estimate_joints(std::slice::from_ref(&joint), &settings, || (), &Threads);
+        let estimate = estimate.into_iter().next().unwrap().unwrap();
+        let estimated = EstimatedJoint { joint: &joint, estimate: &estimate };
+        let tab = Tab { estimated, models: Vec::new(), revisions: 2, is_compared: true };
+        let models = Page::tabs("", [tab.models()]);
+        let scales: Vec<_> = [tab.page(), models].iter().flat_map(|it| it.scales(ROOM)).collect();
+        assert!(scales.len() > 8, "{scales:?}");
+        let small: Vec<_> = scales.into_iter().filter(|(_, scale)| *scale < LEAST).collect();
+        assert!(small.is_empty(), "{small:?}");
     }
 }

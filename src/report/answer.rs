@@ -1,6 +1,7 @@
 //! The delays of a joint in a sentence or two, wherever they are told; the dead time of one whose input
 //! moves all the time.
 
+use super::decisions::{Doubted, doubted};
 use super::summary::Headline;
 use super::{DelayRange, EstimatedJoint, JointSummary};
 use crate::delay::{Bounds, Condition, DeadTime, Finding, InputMotion, Unknown};
@@ -9,18 +10,23 @@ use crate::wording::{capitalized, percent};
 /// What the delays of a joint are: by kind of step where these differ; of an input that moves all the
 /// time its dead time.
 pub(crate) fn delay_answer(estimated: EstimatedJoint<'_>) -> String {
-    let over_record: Vec<String> = dead_time_sentences(&estimated)
-        .iter()
-        .take(2)
-        .map(|words| format!("{}.", capitalized(words)))
-        .collect();
-    if !over_record.is_empty() {
-        return over_record.join(" ");
+    // What was found, then why it is one for the whole record.
+    if let [moves, found, ..] = dead_time_sentences(&estimated).as_slice() {
+        return format!("{}. {}.", capitalized(found), capitalized(moves));
     }
     let summary = JointSummary::of(estimated);
     match estimated.obstacle() {
         Some(obstacle) if summary.accepted == 0 => format!("No delay: {}.", obstacle.short),
         _ => delay_sentence(&summary, &estimated.kind_sentences(summary.headline.kinds())),
+    }
+}
+
+/// How many decisions are doubtful that no person has reviewed, where any is.
+pub(crate) fn doubtful_count(estimated: EstimatedJoint<'_>) -> Option<String> {
+    match doubted(estimated).filter(Doubted::is_open).count() {
+        0 => None,
+        1 => Some("1 decision is doubtful.".to_owned()),
+        count => Some(format!("{count} decisions are doubtful.")),
     }
 }
 
@@ -75,7 +81,7 @@ pub(crate) fn dead_time_sentences(joint: &EstimatedJoint<'_>) -> Vec<String> {
 fn moves(motion: &InputMotion) -> String {
     let changes = percent(motion.changes);
     let steps = motion.travel_in_steps.map_or_else(String::new, |share| {
-        format!("; {} of its travel is steps between levels that it holds", percent(share))
+        format!("; steps between levels that it holds make {} of its travel", percent(share))
     });
     format!(
         "the input moves all the time (it changes at {changes} of its samples{steps}): \
@@ -131,7 +137,9 @@ fn windows(found: &DeadTime) -> Option<String> {
         Some(_) => ", not differing by more than chance",
     };
     let (count, all) = (known.len(), found.windows.len());
-    Some(format!("in {count} of {all} windows {least:.3} to {most:.3} s{differ}"))
+    Some(format!(
+        "window by window {least:.3} to {most:.3} s, known in {count} of {all} windows{differ}"
+    ))
 }
 
 fn feedback(found: &DeadTime) -> Option<String> {

@@ -61,8 +61,18 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     format!("{table}\n{}\n\n{models}\n{residuals}{failures}", errors_note(&horizon))
 }
 
-/// The errors of models of one joint, a column each: beside a page of pictures there is no room for a row.
+/// The errors of models of one joint: of one or two a column each, since beside a page of pictures there
+/// is no room for a row; of more a row each with those that matter most.
 pub(crate) fn model_table(models: &[ComparedJoint<'_>]) -> TextTable {
+    if models.len() > 2 {
+        let row = |of: &ComparedJoint<'_>| {
+            let [training, validation, _, _, fit, ..] =
+                figures(of.joint, &errors_of(of.comparison));
+            [of.model.to_owned(), training, validation, fit]
+        };
+        let header = ["model", "training", "validation", "fit"];
+        return TextTable::of(header, &[], models.iter().map(row));
+    }
     let header = ["model", "training", "validation", "raw", "free run", "fit", "lack of fit"];
     let row = |of: &ComparedJoint<'_>| {
         let [training, validation, raw, free, fit, _, lack] =

@@ -231,6 +231,13 @@ pub(crate) struct Doubted<'a> {
     pub(crate) doubt: Doubt,
 }
 
+impl Doubted<'_> {
+    /// Whether it is doubtful, and no person has judged it.
+    pub(crate) fn is_open(&self) -> bool {
+        self.doubt.is_doubtful() && self.decision.reviewer_verdict.is_none()
+    }
+}
+
 /// All decisions on `joint` in their order, each with its doubt.
 pub(super) fn doubted(joint: EstimatedJoint<'_>) -> impl Iterator<Item = Doubted<'_>> {
     joint.trials().flat_map(move |(trial, found)| {
@@ -254,9 +261,7 @@ pub(crate) fn doubtful_lines(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
 
 /// A line for each decision that is doubtful and on which no reviewer has judged, of all by doubt.
 fn lines(all: &[Doubted<'_>]) -> Vec<String> {
-    let doubtful = all.iter().take_while(|found| found.doubt.is_doubtful());
-    let open = doubtful.filter(|found| found.decision.reviewer_verdict.is_none());
-    open.map(line).collect()
+    all.iter().filter(|found| found.is_open()).map(line).collect()
 }
 
 /// How many decisions are doubtful, and the most doubtful ones, a line each; nothing where none is.

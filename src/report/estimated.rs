@@ -149,7 +149,7 @@ impl EstimatedJoint<'_> {
             // What steps have in common is no noise, however small it is.
             let is_alike = responses.iter().any(|one| !one.fits);
             format!(
-                "no response shape fits: the best, `{}`, leaves {} times the sensor noise{}",
+                "no response shape fits: the residual of the best, `{}`, is {} times the sensor noise{}",
                 model.shape(),
                 rounded(model.misfit()),
                 if is_alike { ", alike at the steps of a kind" } else { "" }

@@ -102,10 +102,21 @@ pub(crate) struct Consequence<'a> {
 /// Times the noise that say nothing to a person any more.
 pub(crate) const MANY_TIMES_NOISE: f64 = 20.0;
 
+/// `5.6 times the noise`, `as large as the noise`.
+pub(crate) fn times_noise(times: f64) -> String {
+    /// A difference of the two that nobody asks about.
+    const ALIKE: f64 = 0.05;
+    if (times - 1.0).abs() < ALIKE {
+        "as large as the noise".to_owned()
+    } else {
+        format!("{} times the noise", rounded(times))
+    }
+}
+
 /// `5.6 times the noise`; far above it, or where it is not known, `a fit of 88 %`.
 pub(super) fn in_proportion(error: ErrorFigures, noise: Option<f64>) -> String {
     match noise.map(|noise| error.rmse / noise) {
-        Some(times) if times < MANY_TIMES_NOISE => format!("{} times the noise", rounded(times)),
+        Some(times) if times < MANY_TIMES_NOISE => times_noise(times),
         _ => match error.fit_percent / 100.0 {
             fit if fit > 0.0 => format!("a fit of {} to the output", percent(fit)),
             // A model that runs away, or an output that hardly moves.
@@ -163,8 +174,8 @@ impl Consequence<'_> {
         let sum: f64 = found.iter().map(|one| one.error_share).sum();
         let overlap = if sum > 1.0 { " (shares overlap and do not add up)" } else { "" };
         Some(format!(
-            "Share of each effect (what the error grows by without it, the rest fitted again, in parts \
-             of the initial misfit): {}{overlap}.",
+            "Share of each effect (growth of the error when it is left out and the others are fitted \
+             again, relative to the initial misfit): {}{overlap}.",
             shares.join(", ")
         ))
     }
@@ -185,7 +196,8 @@ impl Consequence<'_> {
         found.filter(|one| !one.hidden.is_empty()).map(|one| {
             let (effect, hidden) = (one.effect, one.hidden.join(" or "));
             format!(
-                "This record would not show {hidden} beside {effect}, whose parameters do the same."
+                "Beside {effect}, {hidden} could not be identified from this record: they act alike \
+                 on the output."
             )
         })
     }

@@ -95,7 +95,7 @@ impl<'a> ImprovedJoint<'a> {
         let mut conclusion = self.finding.conclusion();
         if self.reached_limit {
             let why =
-                "As many effects were added as `--max-effects` allows; a larger number goes on.";
+                "The search ended at the limit of `--max-effects`; a larger limit continues it.";
             conclusion.passages.extend(Passage::of(Topic::NEXT, [why.to_owned()]));
         }
         conclusion

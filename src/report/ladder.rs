@@ -98,6 +98,11 @@ pub(super) fn errors_table(
     TextTable { header, rows: rows.collect(), numbers: (2..8).collect() }
 }
 
+/// What the error is called by which revisions are judged.
+pub(crate) fn judged_error(is_validated: bool) -> &'static str {
+    if is_validated { "validation error" } else { "error" }
+}
+
 /// What a revision changed: `+ dead_band`; of the first, the effects that it has.
 pub(crate) fn change_in_words(revision: &Step) -> String {
     match revision.change {

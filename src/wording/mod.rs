@@ -26,4 +26,6 @@ pub(crate) use number::{
     bracketed, interval, measure, p_cell, p_text, percent, range_text, rounded, samples_text,
     to_place, unit_suffix, with_error, with_unit,
 };
-pub(crate) use prose::{Margins, capitalized, counted, hanging, legible, lines, listed, wrapped};
+pub(crate) use prose::{
+    Margins, capitalized, counted, hanging, legible, lines, listed, typed_parts, wrapped,
+};

@@ -61,6 +61,17 @@ pub(crate) fn capitalized(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
+/// The parts of a sentence, and whether each stands between backticks as what is typed; one part where
+/// the backticks are no pairs, as in a name from a log.
+pub(crate) fn typed_parts(sentence: &str) -> Vec<(&str, bool)> {
+    let parts: Vec<&str> = sentence.split('`').collect();
+    let is_paired = parts.len() % 2 == 1 && parts.iter().skip(1).step_by(2).all(|p| !p.is_empty());
+    if !is_paired {
+        return vec![(sentence, false)];
+    }
+    parts.into_iter().enumerate().map(|(place, part)| (part, place % 2 == 1)).collect()
+}
+
 /// `1 joint`, `2 joints`.
 pub(crate) fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }

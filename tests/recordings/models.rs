@@ -116,12 +116,17 @@ fn the_error_falls_along_the_revisions_as_in_the_report() {
     assert!(parts.iter().all(|(answer, _)| *answer == parts[0].0));
     let next = parts.iter().filter(|(_, page)| page.contains("is missing; with it"));
     assert_eq!(next.count(), revisions.len() - 1);
-    // Above them stands what was found, what is doubtful, and what is next.
-    let strip = back.fixed("/boom/headline", "TextDocument:text");
-    let strip = strip.as_string::<i32>().value(0);
-    let model = "**Model: no missing effect found.**";
-    for part in ["**boom: Delay ", model, "1 decision is doubtful", "`tauscope estimate "] {
-        assert!(strip.contains(part), "no `{part}` in {strip}");
+    // Above them stands what was found, what is doubtful, and what is next: first of what the page is on.
+    let doubtful = "1 decision is doubtful";
+    let on_model = ["**boom: no missing effect found.**", "Delay ", doubtful, "`tauscope compare "];
+    let on_delays = ["**boom: Delay ", "**", doubtful, "`tauscope estimate "];
+    for (page, parts) in [("revision/headline", on_model), ("headline", on_delays)] {
+        let strip = back.fixed(&format!("/boom/{page}"), "TextDocument:text");
+        let mut rest = strip.as_string::<i32>().value(0);
+        for part in parts {
+            let found = rest.split_once(part).unwrap_or_else(|| panic!("no `{part}` in {rest}"));
+            rest = found.1;
+        }
     }
 }
 
@@ -163,7 +168,7 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
     });
     for ((_, titles), revision) in titles.iter().skip(1).zip(improvements[0].revisions.windows(2)) {
         let title = match revision[1].change {
-            Change::Added("actuator_lag") => "over the time since a step",
+            Change::Added("actuator_lag") => "over time since the step",
             _ => "over held input",
         };
         assert!(titles.contains(title), "{titles}");

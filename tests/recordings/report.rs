@@ -125,7 +125,7 @@ fn a_model_is_reported_with_its_ladder() {
     assert_fields(&json, "schema version report recording joints failures");
     let sentence = json["joints"][0]["sentence"].as_str().unwrap();
     assert!(sentence.contains("dead_band explains"), "{sentence}");
-    assert!(sentence.ends_with("nothing more is missing."), "{sentence}");
+    assert!(sentence.contains("nothing more is missing. Delay "), "{sentence}");
     assert!(!desk.has("model.toml"), "a report changes no model");
     let page = parsed(&desk.read("report.html"));
     let text = words(page.root_element());
@@ -278,7 +278,7 @@ fn what_failed_is_told_on_the_page() {
     let desk = Desk::with(vec![joint("boom")]).with_broken_joint();
     assert_eq!(desk.run("report log.csv --no-recording -o report.html").status.code(), Some(1));
     let page = parsed(&desk.read("report.html"));
-    assert!(words(page.root_element()).contains("joint `broken` is left out"));
+    assert!(words(page.root_element()).contains("joint broken is left out"));
 }
 
 /// A browser that needs no screen, where there is one.
@@ -317,7 +317,7 @@ fn a_browser_has_nothing_to_complain_of() {
     );
     let (page, profile) = (desk.folder.path().join("r.html"), desk.folder.path().join("profile"));
     let (dom, complaints) = shown(browser, &page, &profile, &["--dump-dom"]);
-    assert!(dom.contains("Delays and models in log.csv") && dom.contains("</svg>"), "{complaints}");
+    assert!(dom.contains("Models and delays in log.csv") && dom.contains("</svg>"), "{complaints}");
     assert!(!complaints.contains("CONSOLE"), "{complaints}");
 
     // The check can fail: a page that complains is heard.

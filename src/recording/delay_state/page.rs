@@ -239,7 +239,7 @@ fn panel(quantity: &Quantity, (steps, names): (&[StepState], &[String]), scales:
         Mark::new(Role::Faint, Shape::Words(words)).part("samples")
     }));
     let name = clipped(&quantity.title);
-    let x = Axis { span: x_span, name, ticks: quantity.x_ticks(), is_logarithmic: false };
+    let x = Axis { ticks: quantity.x_ticks(), ..Axis::new(x_span, name, 1.0) };
     Panel { x, y, height: 160, marks }
 }
 

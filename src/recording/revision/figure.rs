@@ -4,9 +4,6 @@ use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span};
 use crate::recording::palette::{self, role};
 use crate::recording::panels::Placed;
 
-/// Left and right end of the plot on the sheet.
-const COLUMNS: (f32, f32) = (790.0, 1235.0);
-
 /// Points that are drawn; more hide one another.
 const POINTS: usize = 1500;
 
@@ -44,8 +41,8 @@ pub(super) struct Figure {
 }
 
 impl Figure {
-    /// On the sheet, of the revision `at` this place.
-    pub(super) fn placed(&self, at: usize) -> Placed {
+    /// Between two `columns` of the sheet, of the revision `at` this place.
+    pub(super) fn placed(&self, at: usize, columns: (f32, f32)) -> Placed {
         let own = Role::of_revision(at);
         let roles = [own, Role::of_revision(at.saturating_sub(1)), role(palette::PROPOSED)];
         let laws = self.laws.iter().zip(roles).zip(["law", "before", "proposed"]);
@@ -77,6 +74,6 @@ impl Figure {
         }
         let [across, up] = self.names.clone();
         let (x, y) = (Axis::new(self.x, across, 5.0), Axis::new(self.y, up, 4.0));
-        Placed::new(Panel { x, y, height: 200, marks }, COLUMNS, 44.0..=450.0)
+        Placed::new(Panel { x, y, height: 200, marks }, columns, 44.0..=420.0)
     }
 }

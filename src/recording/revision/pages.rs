@@ -3,7 +3,8 @@
 use rerun::TextDocument;
 
 use super::figure::Held;
-use super::{evidence, ladder, record, words};
+use super::ladder::Ladders;
+use super::{evidence, record, words};
 use crate::diagnosis::Comparison;
 use crate::explain::{Change, Revision};
 use crate::figure::Role;
@@ -16,7 +17,7 @@ use crate::recording::{error_share, panels};
 use crate::report::{ComparedJoint, ImprovedJoint};
 
 /// Width and height of the sheet with ladder, evidence and ranking.
-pub(in crate::recording) const SIZE: (f32, f32) = (1900.0, 520.0);
+pub(in crate::recording) const SIZE: (f32, f32) = (1860.0, 470.0);
 
 /// Rows of the joint that is recorded.
 struct Steps<'c> {
@@ -58,9 +59,11 @@ pub(in crate::recording) fn add(
     record::add(&mut steps.layers(paths::REVISION_RECORD), layout, &models)?;
     let evidence = evidence::evidence(improved);
     steps.evidence(&evidence)?;
+    let ladders = Ladders::new(improved);
     let rows = evidence.figures.iter().enumerate().map(|(at, figure)| {
-        let [ladder, ranking] = ladder::placed(improved, at);
-        vec![ladder, figure.placed(at), ranking]
+        let mut placed = ladders.placed(at);
+        placed.push(figure.placed(at, ladders.between()));
+        placed
     });
     panels::add(&mut steps.layers(paths::REVISION_SHEET), rows)?;
     steps.shares(&models)

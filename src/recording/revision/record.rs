@@ -3,7 +3,6 @@
 use std::ops::RangeInclusive;
 
 use crate::figure::Role;
-use crate::recording::canvas::SHEET;
 use crate::recording::error::RecordError;
 use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
@@ -14,10 +13,10 @@ use crate::report::page::simulated::{Marked, simulated_panels, worst_panel};
 use crate::report::page::timeline::Timeline;
 
 /// Width and height of the sheet.
-pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 690.0);
+pub(in crate::recording) const SIZE: (f32, f32) = (1860.0, 470.0);
 
 /// Top and bottom of the plots of the output: above them their titles.
-const ROWS: RangeInclusive<f32> = 56.0..=292.0;
+const ROWS: RangeInclusive<f32> = 56.0..=198.0;
 
 /// Adds the drawings of models, which follow one another on the timeline of `rows`.
 pub(in crate::recording) fn add(
@@ -31,11 +30,12 @@ pub(in crate::recording) fn add(
         let [output, residual] =
             simulated_panels(compared, role, &timeline, marked(compared, &timeline));
         let close_up = worst_panel(compared, role, &timeline);
-        let right = if close_up.is_some() { 900.0 } else { SHEET.0 - 15.0 };
-        let close_up = close_up.map(|panel| Placed::new(panel, (1010.0, SHEET.0 - 15.0), ROWS));
+        let end = SIZE.0 - 15.0;
+        let right = if close_up.is_some() { 1060.0 } else { end };
+        let close_up = close_up.map(|panel| Placed::new(panel, (1180.0, end), ROWS));
         let whole = [
             Placed::new(output, (120.0, right), ROWS),
-            Placed::new(residual, (120.0, SHEET.0 - 15.0), 412.0..=644.0),
+            Placed::new(residual, (120.0, end), 284.0..=426.0),
         ];
         whole.into_iter().chain(close_up).collect()
     };

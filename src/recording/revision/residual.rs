@@ -64,7 +64,7 @@ fn variables(
     own: &Evaluation,
     next: &Evaluation,
 ) -> [(&'static str, Vec<Sample>); 4] {
-    let names = ["the input", "the angle", "the time [s]", "the time since a step [s]"];
+    let names = ["input", "output", "time [s]", "time since the step [s]"];
     let mut all = names.map(|name| (name, Vec::new()));
     let trials = joint.trials.iter().zip(&own.simulated);
     let residuals = own.residuals.iter().zip(&next.residuals);

@@ -7,7 +7,7 @@ use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::report::ImprovedJoint;
 use crate::report::conclusion::Topic;
-use crate::report::finding::MANY_TIMES_NOISE;
+use crate::report::finding::{MANY_TIMES_NOISE, times_noise};
 use crate::report::ladder::change_in_words;
 use crate::report::parameters::parameter_table;
 use crate::wording::{rounded, unit_suffix};
@@ -21,13 +21,16 @@ pub(super) fn page(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>, place
     let answers = improved.finding.answers();
     let mut lines: Vec<String> =
         answers.iter().map(|(question, answer)| line(question, answer)).collect();
-    lines.extend(without_gain(improved).map(|sentence| line("No gain", &sentence)));
+    lines.extend(without_gain(improved).map(|sentence| line("Revisions without gain", &sentence)));
     lines.push(format!("## Revision {revision} of {last}: {}\n", plain(&change_in_words(step))));
     // Where nothing is missing that is said in the conclusion.
     if conclusion.passages.iter().all(|passage| passage.topic != Topic::ERROR) {
         lines.push(format!("**{}**\n", plain(&fall(improved, place))));
     }
-    lines.push(line(&format!("At revision {revision}"), &conclusion.headline));
+    // What is found at the last one is said above.
+    if place + 1 < improved.revisions.len() {
+        lines.push(line(&format!("At revision {revision}"), &conclusion.headline));
+    }
     lines.extend(conclusion.passages.iter().map(|one| line(one.topic.0, &one.text())));
     // What an earlier revision lacks is in the next one: what to do is that of the last.
     let commands = conclusion.commands.iter().filter(|_| place + 1 == improved.revisions.len());
@@ -62,7 +65,7 @@ the timeline `revision`. ";
 
 const HOW: &str = "`sample` or `time`: choose it at the bottom.";
 
-/// Which revisions did not lower the error on what was not fitted.
+/// Which revisions did not lower the validation error.
 fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
     let revisions: Vec<(u32, &Revision)> = improved.numbered().collect();
     let gained = |before: &Revision, after: &Revision| {
@@ -79,34 +82,31 @@ fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
     let numbers: Vec<String> = without.map(|(_, (number, _))| number.to_string()).collect();
     let not_fallen = match numbers.as_slice() {
         [] => None,
-        [one] => Some(format!(
-            "revision {one}, after which the error on what was not fitted is no smaller"
-        )),
-        several => Some(format!(
-            "revisions {}, after which the error on what was not fitted is no smaller",
-            several.join(", ")
-        )),
+        [one] => Some(format!("revision {one} does not lower the validation error")),
+        several => {
+            Some(format!("revisions {} do not lower the validation error", several.join(", ")))
+        }
     };
     let fits_alike = |before: &Revision, after: &Revision| {
         gained(before, after).is_none_or(|gained| gained.abs() <= GAIN)
     };
     let exchanges = pairs().filter_map(|((_, before), (number, after))| match after.change {
-        Change::Replaced { old, new } if fits_alike(before, after) => Some(format!(
-            "revision {number}, which exchanges {old} for {new}, which fits about as well"
-        )),
+        Change::Replaced { old, new } if fits_alike(before, after) => {
+            Some(format!("revision {number} exchanges {old} for {new}, which fits about as well"))
+        }
         _ => None,
     });
     let all: Vec<String> = not_fallen.into_iter().chain(exchanges).collect();
     match all.as_slice() {
         [] if has_fallen_each_time(&revisions) => {
-            Some("none: each revision lowered the error on what was not fitted".to_owned())
+            Some("none; each revision lowered the validation error".to_owned())
         }
         [] => None,
         all => Some(all.join("; ")),
     }
 }
 
-/// Whether there are several revisions, each with a smaller error on what was not fitted than the one before.
+/// Whether there are several revisions, each with a smaller validation error than the one before.
 fn has_fallen_each_time(revisions: &[(u32, &Revision)]) -> bool {
     let error = |(_, revision): &(u32, &Revision)| Some(revision.comparison.validation?.rmse);
     let falls = |pair: &[(u32, &Revision)]| match pair {
@@ -126,8 +126,7 @@ fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {
     let Some(now) = error(place) else { return String::new() };
     let floor = noise(improved);
     let times = floor.map(|noise| now / noise).filter(|times| *times < MANY_TIMES_NOISE);
-    let times =
-        times.map_or_else(String::new, |times| format!(", {} times the noise", rounded(times)));
+    let times = times.map_or_else(String::new, |times| format!(", {}", times_noise(times)));
     match place.checked_sub(1).and_then(error) {
         Some(before) => {
             format!("Error: {} → {}{unit}{times}", rounded(before), rounded(now))

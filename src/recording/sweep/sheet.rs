@@ -36,7 +36,7 @@ pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordEr
     let placed = [
         Placed::new(page.delays(), SIDES, 100.0..=390.0),
         Placed::new(page.causes(), SIDES, 466.0..=700.0),
-        Placed::new(page.map(), SIDES, 772.0..=1042.0),
+        Placed::new(page.map(), SIDES, 804.0..=1066.0),
     ];
     let plots = [0, 1, 2].map(|place: usize| placed[place].plot);
     if let Some((image, place)) = picture(swept, &plots[2]) {
@@ -191,9 +191,8 @@ impl<'s> Page<'s> {
             (self.rows.high - block.first as f64 - 0.5 * block.count as f64, block.label)
         };
         let ticks = named(self.swept.grid).into_iter().map(name).collect();
-        // An axis with a name is one of numbers, of which some may be left out.
         let name = "which settings agree; black: step not accepted".to_owned();
-        let y = Axis { span: self.rows, name, ticks, is_logarithmic: false };
+        let y = Axis { ticks, ..Axis::new(self.rows, name, 1.0) };
         Panel { x: Axis { name: "step".to_owned(), ..self.axis() }, y, height: 180, marks }
     }
 
@@ -228,7 +227,7 @@ impl<'s> Page<'s> {
         let name = |run: usize| {
             let name = self.swept.names.get(run).map_or("", String::as_str);
             let text = format!("framed: {name} ({} of {all})", run + 1);
-            let at = Vec2D::new(map.left + 0.5 * width(&text), map.top - LINE);
+            let at = Vec2D::new(map.left + 0.5 * width(&text), map.top - 2.0 * LINE);
             vec![(at, text, palette::HERE)]
         };
         layers.texts("setting/name", runs().map(name).collect())
@@ -248,7 +247,7 @@ impl<'s> Page<'s> {
         let map = plots[2];
         let name = |(_, step): (f64, &SweptStep)| {
             let text = format!("framed: step {} at {:.2} s", step.number, step.time_s);
-            let at = Vec2D::new(map.right - 0.5 * width(&text), map.top - LINE);
+            let at = Vec2D::new(map.right - 0.5 * width(&text), map.top - 2.0 * LINE);
             vec![(at, text, palette::HERE)]
         };
         layers.texts("step/name", self.steps().map(name).collect())

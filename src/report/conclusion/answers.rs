@@ -46,7 +46,8 @@ impl Finding<'_> {
     /// What no effect accounts for.
     fn left(&self) -> String {
         match self.verdict {
-            Verdict::Adequate => format!("nothing: {}", self.test()),
+            Verdict::Adequate if self.is_lack_shown() => self.test(),
+            Verdict::Adequate => format!("nothing. {}", self.test()),
             _ if self.is_down_to_noise() => "no more than the sensor's noise".to_owned(),
             Verdict::Unexplained => {
                 format!("{}; {}", self.consequence().remains(), self.why_no_more())

@@ -93,7 +93,9 @@ impl Finding<'_> {
         let mut words: Vec<&str> = of.map(|of| of.word).collect();
         words.sort_unstable();
         words.dedup();
-        let acts = |word: &&str| format!("`[{word}]`: in trials with `{word}` in their label.");
+        let acts = |word: &&str| {
+            format!("Effects with `[{word}]` act only in trials whose label contains `{word}`.")
+        };
         (!words.is_empty()).then(|| words.iter().map(acts).collect::<Vec<_>>().join(" "))
     }
 

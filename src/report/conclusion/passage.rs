@@ -141,11 +141,12 @@ impl Finding<'_> {
         let speed = joint.output_unit.as_deref().map(|unit| format!("{unit}/s"));
         let input = unit_suffix(joint.input_unit.as_deref());
         let between = |what: &str| {
-            let (y, model) = (rounded(y), measure(model, speed.as_deref()));
+            let speed = |value: f64| measure(value, speed.as_deref());
+            let (band, model) = (speed(band), speed(model));
             format!(
-                "At {what} {}{input} the measured speed is {y} ± {}, the model's {model}.",
+                "At {what} {}{input} the measured speed is {} ± {band}, the model's {model}.",
                 rounded(x),
-                rounded(band)
+                rounded(y)
             )
         };
         let gain = |place: String| {

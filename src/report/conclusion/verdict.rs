@@ -24,12 +24,16 @@ const USUAL: f64 = 0.05;
 
 impl Finding<'_> {
     pub(super) fn adequate_headline(&self) -> String {
-        let is_shown = self.comparison().lack_of_fit.is_some_and(|test| !test.adequate);
-        let of_consequence = if is_shown { " of consequence" } else { "" };
+        let of_consequence = if self.is_lack_shown() { " of consequence" } else { "" };
         match self.explained() {
             None => format!("no missing effect{of_consequence} found"),
             Some(explained) => format!("{explained}; nothing more{of_consequence} is missing"),
         }
+    }
+
+    /// Whether the residual is no noise, though no effect is named for it.
+    pub(super) fn is_lack_shown(&self) -> bool {
+        self.comparison().lack_of_fit.is_some_and(|test| !test.adequate)
     }
 
     pub(super) fn adequate(&self) -> Vec<Passage> {
@@ -173,13 +177,12 @@ impl Finding<'_> {
 
     /// What the error becomes.
     fn improvement(&self, best: &Candidate) -> String {
-        let part = if best.validation.is_some() { "not fitted" } else { "fitted" };
+        let part = if best.validation.is_some() { "validation" } else { "training" };
         let (before, after) = (self.output(self.error()), self.output(best.rmse()));
         let reduction = rounded(best.error_reduction_percent);
         let p_value = p_text(best.p_value);
         let falls = format!(
-            "With it the error on data that were {part} falls from {before} to {after}, by \
-             {reduction} % ({p_value})"
+            "With it the {part} error falls from {before} to {after}, by {reduction} % ({p_value})"
         );
         let Some(noise) = self.noise() else { return format!("{falls}.") };
         if best.rmse() > ABOVE_NOISE * noise {

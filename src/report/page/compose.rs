@@ -45,7 +45,7 @@ impl Report<'_> {
         if let Some(title) = self.heading.title {
             return title.to_owned();
         }
-        let what = if self.models.is_empty() { "Delays" } else { "Delays and models" };
+        let what = if self.models.is_empty() { "Delays" } else { "Models and delays" };
         let files = self.experiment.sources.as_slice();
         let name = |path: &std::path::Path| {
             path.file_name().unwrap_or_default().to_string_lossy().into_owned()

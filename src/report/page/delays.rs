@@ -29,16 +29,18 @@ pub(crate) fn record_panels(estimated: EstimatedJoint<'_>, timeline: &Timeline<'
     let joint = estimated.joint;
     let (accepted, rejected) = breakpoints(estimated, timeline);
     let span = |values: fn(&Trial) -> &[f64]| Span::around(values_of(joint, values), 0.06);
+    let measured = Mark::lines(Role::Measured, 1.3, timeline.lines(|_, t| t.output()));
+    let mut marks = vec![timeline.borders(), measured.named("output")];
+    // An input that moves all the time has no breakpoints.
+    if !(accepted.is_empty() && rejected.is_empty()) {
+        marks.push(Mark::dots(Role::Accepted, accepted).named("breakpoint, accepted"));
+        marks.push(Mark::new(Role::Rejected, Shape::Crosses(rejected)).named("rejected"));
+    }
     let output = Panel {
         x: timeline.axis().bare(),
         y: Axis::new(span(Trial::output), bracketed("output", joint.output_unit.as_deref()), 5.0),
         height: 170,
-        marks: vec![
-            timeline.borders(),
-            Mark::lines(Role::Measured, 1.3, timeline.lines(|_, t| t.output())).named("output"),
-            Mark::dots(Role::Accepted, accepted).named("breakpoint, accepted"),
-            Mark::new(Role::Rejected, Shape::Crosses(rejected)).named("rejected"),
-        ],
+        marks,
     };
     let input = Panel {
         x: timeline.axis(),

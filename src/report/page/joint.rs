@@ -6,7 +6,7 @@ use super::report::Report;
 use super::{delays, model, segment};
 use crate::delay::{AgainstState, Condition, DelayTable};
 use crate::report::against::{AGAINST_HEADER, CORRECTED, against_rows, confounded_sentences};
-use crate::report::answer::delay_answer;
+use crate::report::answer::{delay_answer, doubtful_count};
 use crate::report::decisions::{by_doubt, decision_names, decision_text, doubted};
 use crate::report::delays::{levels_text, neutral_sentence};
 use crate::report::difference::difference_table;
@@ -22,6 +22,10 @@ const MOST_ROWS: usize = 2000;
 /// All that is said of a joint, but for its [`sentences`], which stand at the head of the page.
 pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
     let mut blocks = vec![Block::Figures(vec![record_figure(estimated, format!("{file}-record"))])];
+    // Where there is a model, the delays are what it is made from.
+    if let Some(improved) = report.model_of(estimated.joint) {
+        blocks.extend(model::blocks(report, improved, file));
+    }
     blocks.extend(dead_time_blocks(estimated, file));
     let segments = segment::figures(estimated, &format!("{file}-segment"));
     if !segments.is_empty() {
@@ -40,18 +44,20 @@ pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>, file: &
     if estimated.estimate.dead_time.is_none() {
         blocks.push(decisions(estimated));
     }
-    if let Some(improved) = report.model_of(estimated.joint) {
-        blocks.extend(model::blocks(report, improved, file));
-    }
     blocks
 }
 
-/// Delays, steps and model of a joint, in a sentence each.
+/// Model, delays and decisions of a joint, in a sentence each.
 pub(super) fn sentences(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> String {
-    let delay = delay_answer(estimated);
     let model = report.model_of(estimated.joint).map(model::sentence);
     let reviewed = ReviewCount::on(estimated).map(|count| format!("{}.", count.sentence()));
-    [delay].into_iter().chain(reviewed).chain(model).collect::<Vec<_>>().join(" ")
+    let mut sentences: Vec<String> = model.into_iter().chain([delay_answer(estimated)]).collect();
+    if estimated.obstacle().is_some() {
+        // A model of columns that do not belong together says nothing.
+        sentences.reverse();
+    }
+    sentences.extend(doubtful_count(estimated).into_iter().chain(reviewed));
+    sentences.join(" ")
 }
 
 /// `words` with a capital letter and a full stop.

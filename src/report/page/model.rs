@@ -14,7 +14,7 @@ use crate::fit::{Split, Termination};
 use crate::model::Component;
 use crate::report::compare::errors_note;
 use crate::report::conclusion::Topic;
-use crate::report::ladder::{LadderRow, ladder_table};
+use crate::report::ladder::{LadderRow, judged_error, ladder_table};
 use crate::report::parameters::{delay_of_steps, filled_in, parameter_table};
 use crate::report::ranking::ranking_table;
 use crate::report::{ComparedJoint, ImprovedJoint};
@@ -35,6 +35,10 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
         passages.map(|passage| Block::Passage { question: passage.topic.0, text: passage.text() }),
     );
     blocks.extend(conclusion.commands.into_iter().map(Block::Code));
+    blocks.extend(errors(improved, file));
+    blocks.extend(beside_the_measurement(report, improved, file));
+    blocks.extend(failures(improved, file));
+    blocks.push(Block::part("Equations and parameters"));
     blocks.push(Block::Code(equations(compared)));
     blocks.push(Block::Table(parameter_table(compared.joint, &compared.comparison.fit)));
     blocks.push(Block::text(match compared.comparison.termination {
@@ -43,9 +47,6 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
         }
         termination => format!("The fit: {termination}."),
     }));
-    blocks.extend(errors(improved, file));
-    blocks.extend(beside_the_measurement(report, improved, file));
-    blocks.extend(failures(improved, file));
     blocks.extend(rankings(improved));
     blocks
 }
@@ -211,16 +212,12 @@ pub(super) fn ladder(improved: &ImprovedJoint<'_>, file: String) -> Figure {
     let name = (bracketed("root-mean-square error", unit), "ladder");
     let mut panel = panel(name, &rungs, (sensor_noise(&joint.trials), unit), 1.2);
     if let Some(first) = panel.marks.first_mut() {
-        first.name = Some(judged_on(&rows).to_owned());
+        let is_validated = rows.iter().all(|row| row.errors.validation_rmse.is_some());
+        first.name = Some(judged_error(is_validated).to_owned());
     }
     let name = format!("Errors of the revisions of {}", joint.name);
     let caption = "How the error falls from revision to revision.".to_owned();
     Figure { file, name, width: WIDTH, panels: vec![panel], caption }
-}
-
-fn judged_on(rungs: &[LadderRow]) -> &'static str {
-    let validated = rungs.iter().all(|row| row.errors.validation_rmse.is_some());
-    if validated { "error on data that were not fitted" } else { "error" }
 }
 
 /// Shares of the squared error and of the time in each part of the feature whose parts
@@ -276,7 +273,7 @@ fn curve(joint: &Joint, curves: &[&Curve], file: String) -> Figure {
     let speed = of_output.map(|unit| format!("{unit}/s"));
     let is_of = |of: CurveOf| curves.iter().all(|curve| curve.of == of);
     let (across, up, caption) = if is_of(CurveOf::Angle) {
-        (bracketed("angle", of_output), "relative speed".to_owned(), "against the angle")
+        (bracketed("output", of_output), "relative speed".to_owned(), "against the output")
     } else if is_of(CurveOf::Time) {
         ("time [s]".to_owned(), "relative speed".to_owned(), "against the time")
     } else {

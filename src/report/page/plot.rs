@@ -65,7 +65,7 @@ impl Axis {
     fn width(&self) -> u32 {
         let longest = self.ticks.iter().map(|(_, text)| text.chars().count()).max().unwrap_or(0);
         // The name stands upright beside the numbers.
-        let name = if self.has_names() { 12 } else { 30 };
+        let name = if self.has_names { 12 } else { 30 };
         LEFT.max(text_width(longest) + name)
     }
 }
@@ -190,7 +190,7 @@ impl Panel {
             let names: Vec<_> = axis.ticks.iter().map(|(_, name)| name.clone()).collect();
             format!("There is a row for each of {}", listed(&names, "and"))
         };
-        let upward = if self.y.has_names() {
+        let upward = if self.y.has_names {
             names(&self.y)
         } else {
             capitalized(&format!("{} runs {}", self.y.name, range(&self.y)))
@@ -260,7 +260,7 @@ impl Panel {
             .bold_line_style(stroke(Role::Grid, 1.0))
             .light_line_style(ShapeStyle::from(&TRANSPARENT))
             .set_all_tick_mark_size(fine(3));
-        if self.y.has_names() {
+        if self.y.has_names {
             mesh.disable_y_mesh();
         }
         if !self.x.name.is_empty() {

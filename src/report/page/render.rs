@@ -9,7 +9,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::document::{Attachment, Block, Document, Entry, Figure};
 use super::plot::{PlotError, draw, figure_style};
 use crate::report::TextTable;
-use crate::wording::legible;
+use crate::wording::{legible, typed_parts};
 
 /// How the page looks, but for the shades of figures.
 const STYLE: &str = include_str!("style.css");
@@ -49,10 +49,10 @@ impl Document {
 fn written(block: &Block) -> Result<Markup, PlotError> {
     Ok(match block {
         Block::Heading { depth, text, anchor } => heading(*depth, text, anchor.as_deref()),
-        Block::Text(text) => html! { p { (text) } },
-        Block::Passage { question, text } => html! { p { b { (question) ":" } " " (text) } },
+        Block::Text(text) => html! { p { (prose(text)) } },
+        Block::Passage { question, text } => html! { p { b { (question) ":" } " " (prose(text)) } },
         Block::Lead(text) => html! { p.lead { (text) } },
-        Block::List(entries) => html! { ul { @for entry in entries { li { (entry) } } } },
+        Block::List(entries) => html! { ul { @for entry in entries { li { (prose(entry)) } } } },
         Block::Contents(entries) => contents(entries),
         Block::Code(text) => html! { pre { code { (text) } } },
         Block::Figures(figures) => drawn(figures)?,
@@ -67,6 +67,15 @@ fn written(block: &Block) -> Result<Markup, PlotError> {
     })
 }
 
+/// A sentence in which what is typed looks so.
+fn prose(sentence: &str) -> Markup {
+    html! {
+        @for (part, is_typed) in typed_parts(sentence) {
+            @if is_typed { code { (part) } } @else { (part) }
+        }
+    }
+}
+
 fn heading(depth: u8, text: &str, anchor: Option<&str>) -> Markup {
     if depth == 2 {
         html! { h2 id=[anchor] { (text) } }
@@ -79,7 +88,7 @@ fn contents(entries: &[Entry]) -> Markup {
     html! {
         ul.contents {
             @for Entry { name, anchor, text } in entries {
-                li { a href={ "#" (anchor) } { (name) } " " (text) }
+                li { a href={ "#" (anchor) } { (name) } " " (prose(text)) }
             }
         }
     }
@@ -90,7 +99,7 @@ fn drawn(figures: &[Figure]) -> Result<Markup, PlotError> {
     Ok(html! {
         div class=(class) {
             @for one in figures {
-                figure { (PreEscaped(draw(one)?)) figcaption { (one.caption) } }
+                figure { (PreEscaped(draw(one)?)) figcaption { (prose(&one.caption)) } }
             }
         }
     })
@@ -162,13 +171,13 @@ impl Markdown {
                 }
                 self.line(&format!("{marks} {}", escaped(text)));
             }
-            Block::Text(text) => self.line(&escaped(text)),
+            Block::Text(text) => self.line(&prose_escaped(text)),
             Block::Passage { question, text } => {
-                self.line(&format!("**{question}:** {}", escaped(text)));
+                self.line(&format!("**{question}:** {}", prose_escaped(text)));
             }
             Block::Lead(text) => self.line(&format!("**{}**", escaped(text))),
             Block::List(entries) => {
-                let lines = entries.iter().map(|entry| format!("- {}", escaped(entry)));
+                let lines = entries.iter().map(|entry| format!("- {}", prose_escaped(entry)));
                 self.line(&lines.collect::<Vec<_>>().join("\n"));
             }
             Block::Contents(entries) => {
@@ -206,7 +215,15 @@ impl Markdown {
 }
 
 fn entry(Entry { name, anchor, text }: &Entry) -> String {
-    format!("- [{}](#{anchor}) {}", escaped(name), escaped(text))
+    format!("- [{}](#{anchor}) {}", escaped(name), prose_escaped(text))
+}
+
+/// A sentence as Markdown, in which what is typed stays between backticks.
+fn prose_escaped(sentence: &str) -> String {
+    let part = |(part, is_typed): (&str, bool)| {
+        if is_typed { format!("`{part}`") } else { escaped(part) }
+    };
+    typed_parts(sentence).into_iter().map(part).collect()
 }
 
 /// A drawing with the shades of either ground in it.
