@@ -39,8 +39,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS)]
     max_effects: usize,
 
-    /// Keep effects that are significant and have no practical consequence: without them
-    /// the error grows by less than 1 % of the first
+    /// Keep effects that are significant but have no practical consequence: without them the error
+    /// grows by less than 3 % of the initial error beyond the noise
     #[arg(long)]
     refine: bool,
 

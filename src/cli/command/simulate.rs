@@ -14,7 +14,7 @@ use crate::cli::exit::Completion;
 use crate::cli::output::{OutputFile, OutputKind, Outputs, filled_file};
 use crate::experiment::read_text;
 
-/// Make a log of joints whose truth is known
+/// Simulate a log of joints with known delays and effects
 ///
 /// A plant file states each joint's gain, delay law, effects and noise, and what drives it;
 /// `data/manipulator.plant.toml` is an example. Without one, a joint of random gain, delay
@@ -43,8 +43,8 @@ pub(crate) struct Args {
     #[arg(short, long = "output", value_name = "LOG.csv")]
     output: PathBuf,
 
-    /// Where the truth goes: the true delay of every step, or the whole plant where the name
-    /// ends in `.toml`. May be repeated
+    /// A file for the truth: the true delay of every step, or the whole plant if the name ends in
+    /// `.toml`. May be repeated
     #[arg(long, value_name = "TRUTH.csv|TRUTH.toml")]
     truth: Vec<PathBuf>,
 
