@@ -333,7 +333,8 @@ pub(super) fn read_log(
         let Some((first, others)) = joints.split_first() else { return Err(error) };
         let as_first = |joint: &JointLayout| {
             let text = format!(
-                "it cannot be read, as joint `{}`, whose output has the same clock",
+                "it is left out, too, because it has the same time column as joint `{}`, whose \
+                 rows cannot be read",
                 first.name
             );
             failed((joint.name.clone(), ReadError::new(ReadErrorKind::Content, text)))

@@ -310,8 +310,9 @@ impl fmt::Display for BadCell {
             ),
             Self::Thousands(text) => write!(
                 f,
-                "`{}` may be a thousand and more, beside whole numbers without such a mark, or have three \
-                 decimals; write decimals with a point, and nothing between thousands",
+                "`{}` may mean a number with three decimals or one in the thousands, since other \
+                 cells of the column are whole numbers; write decimals with a point, and nothing \
+                 between thousands",
                 shown(text)
             ),
             Self::Infinite => {
@@ -319,8 +320,8 @@ impl fmt::Display for BadCell {
             }
             Self::TooLarge(value) => write!(
                 f,
-                "{value:e} is beyond what double precision can square; write it in a larger unit, or leave \
-                 the cell empty where it stands for nothing"
+                "{value:e} is too large: its square is beyond double precision; write it in a \
+                 larger unit, or leave the cell empty if the number marks a missing value"
             ),
         }
     }

@@ -120,12 +120,11 @@ impl EstimatedJoint<'_> {
 pub(super) fn neutral_sentence(found: &DelayTable, unit: Option<&str>) -> String {
     match found.neutral {
         Some(neutral) => format!(
-            "the input is neutral at {}{}; a start leaves it, a stop leads to it",
+            "the neutral level of the input is {}{}: a start leaves it, a stop returns to it",
             number(neutral.level),
             unit_suffix(unit)
         ),
-        None => "the record does not show at which level the input is neutral: every step is a \
-                 change"
+        None => "the record does not show a neutral level of the input, so every step is a change"
             .to_owned(),
     }
 }

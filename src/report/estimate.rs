@@ -149,8 +149,8 @@ pub(crate) fn onset_sentence(model: &OnsetModel) -> String {
     let others = model.responses().into_iter().filter(|one| one.shape != model.shape());
     let others = others.map(|one| format!(", {}s `{}`", one.transition.id(), one.shape));
     format!(
-        "after the delay {response} (`{}`{}); residual {} times the sensor's noise; the input explains \
-         {} of the changes of motion",
+        "after the delay {response} (`{}`{}); residual {} times the sensor noise; the input steps \
+         explain {} of the changes of speed or level (R²)",
         model.shape(),
         others.collect::<String>(),
         rounded(model.misfit()),
@@ -163,8 +163,8 @@ pub(super) fn tracking_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     let tracking = joint.tracking()?;
     let sign = if tracking.gain() < 0.0 { '−' } else { '+' };
     Some(format!(
-        "{}: the output tracks the input, as a servo's position does (at rest {} {sign} {}·u): its \
-         arrival there is not taken for a reaction\n",
+        "{}: the output tracks the input like the position of a servo (at rest y = {} {sign} \
+         {}·u): the bend where it arrives at its new position is not counted as a reaction\n",
         joint.joint.name,
         rounded(tracking.offset()),
         rounded(tracking.gain().abs())

@@ -163,8 +163,8 @@ impl Consequence<'_> {
         let sum: f64 = found.iter().map(|one| one.error_share).sum();
         let overlap = if sum > 1.0 { " (shares overlap and do not add up)" } else { "" };
         Some(format!(
-            "Share of each effect (what the error grows by without it, the rest fitted again, in parts \
-             of the initial misfit): {}{overlap}.",
+            "Share of the initial error beyond the noise that each effect explains (growth of the \
+             error when it is left out and the rest is refitted): {}{overlap}.",
             shares.join(", ")
         ))
     }
@@ -184,7 +184,8 @@ impl Consequence<'_> {
         found.filter(|one| !one.hidden.is_empty()).map(|one| {
             let (effect, hidden) = (one.effect, one.hidden.join(" or "));
             format!(
-                "This record would not show {hidden} beside {effect}, whose parameters do the same."
+                "This record cannot show {hidden} beside {effect}: a change of the parameters of \
+                 {effect} has the same influence on the output."
             )
         })
     }
@@ -196,8 +197,9 @@ impl Consequence<'_> {
         let shares: Vec<String> = doubtful.iter().map(share).collect();
         (!shares.is_empty()).then(|| {
             format!(
-                "Doubtful: {}. Each explains less than half of the squared error beyond the noise that \
-                 is there without it, and may stand for an effect outside the catalogue.",
+                "Doubtful: {}. Each removes less than half of the squared error beyond the noise \
+                 that the model has without it, so it may only imitate an effect outside the \
+                 catalogue.",
                 shares.join(", ")
             )
         })

@@ -104,9 +104,9 @@ pub(super) fn separation_sentence(joint: &Joint, separation: &Separation) -> Str
         return format!("To distinguish it from {other}: {}.", experiment(joint, separation));
     }
     let why = if separation.times_noise < UNSEEN {
-        "with these numbers the two do the same"
+        "with these parameters both give the same output"
     } else {
-        "what the two differ by is noise, or another gain"
+        "their outputs differ by less than the noise, or by a change of gain"
     };
     format!(
         "No input that was tried at the angles of this record distinguishes it from {other}: {why}."
@@ -133,7 +133,7 @@ fn input(joint: &Joint, proposal: &Proposal) -> String {
     let (levels, hold) = (levels_text(levels, joint.input_unit.as_deref()), rounded(*hold_s));
     let order = match pattern {
         Pattern::Ladder => "rising and then falling, in one direction and then in the other",
-        Pattern::Pulses => "each in both directions, with a rest as long behind it",
+        Pattern::Pulses => "each in both directions, followed by a rest of the same length",
         Pattern::Reversals => "each in both directions, without a rest",
     };
     format!("hold {levels} for {hold} s each, {order}")

@@ -151,7 +151,7 @@ impl Row {
             return Err(wrong(format!("there is no verdict `{}`", self.verdict)));
         };
         if let Some(got) = self.delta_s.filter(|delay| !DELAYS_S.contains(delay)) {
-            let problem = format!("a delay of {got:e} s is none; expected at most 1e8 s");
+            let problem = format!("{got:e} s is not a delay; expected at most 1e8 s");
             return Err(wrong(problem));
         }
         let line = |slope: Option<f64>, intercept: Option<f64>| {

@@ -271,7 +271,7 @@ fn what_is_wrong_with_a_definition_is_said() {
         ),
         (
             joint_text(&own("mine", "input", "signal + k", "k = { value = 1, neutral = 1 }")),
-            "at its neutral values the effect makes 1 of 0",
+            "at its neutral values the effect changes 0 to 1",
         ),
         (
             joint_text(

@@ -124,7 +124,7 @@ fn a_step_that_changed_is_said_and_a_review_that_is_none_names_its_place() {
     desk.write("moved.csv", moved);
     let output = desk.run("estimate log.csv --review moved.csv");
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("the review is ignored, review it again"), "{said}");
+    assert!(said.contains("the review is ignored, so review the step again"), "{said}");
     desk.write("wrong.csv", "joint,trial,i,verdict,delay_s,note,reviewer\nboom,1,2,maybe,,,\n");
     let output = desk.run("estimate log.csv --review wrong.csv");
     let said = String::from_utf8(output.stderr).unwrap();

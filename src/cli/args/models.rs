@@ -153,7 +153,10 @@ pub(crate) fn check_models(
         let is_in_log = |name: &str| joints.iter().any(|joint| joint.name == name);
         let near = nearest_name(name, file.names().filter(|name| !is_in_log(name)));
         let near = near.map_or_else(String::new, |near| format!(", which has `{near}`"));
-        let missing = format!("joint `{name}`: not in the model file{near}; a plain integrator");
+        let missing = format!(
+            "joint `{name}`: not in the model file{near}; it starts as a plain \
+                               integrator"
+        );
         verbosity.say("note", missing);
     }
     Ok(())

@@ -100,8 +100,8 @@ impl Log<'_> {
             let column = self.header(column);
             if period > most {
                 let text = format!(
-                    "its times would be {period} s apart, so that their unit must be another; name it in \
-                     the header, as in `{column} [ms]`, `[us]` or `[ns]`"
+                    "its times would be {period} s apart, so they are probably not in seconds; \
+                     name their unit in the header, as in `{column} [ms]`, `[us]` or `[ns]`"
                 );
                 return Err(ReadError::new(ReadErrorKind::Times, text).in_column(column));
             }
@@ -166,8 +166,8 @@ impl Log<'_> {
         let [before, time] =
             [index - 1, index].map(|at| values.get(at).copied().unwrap_or(f64::NAN));
         let text = format!(
-            "from here on the times are in another unit: `{time}` behind `{before}`, and the steps \
-             between them are as many times as large; write all times in one unit"
+            "from here on the times are in another unit: `{time}` follows `{before}`, and the \
+             steps between rows change by the same factor; write all times in one unit"
         );
         Err(self.clock_error(text, index).in_column(self.header(column)))
     }
@@ -228,8 +228,9 @@ impl Log<'_> {
             }
             Fault::FewStamps { stamps, grain_s } => {
                 let text = format!(
-                    "the {} rows of this trial have only {stamps} different times, {grain_s} s apart, \
-                     from which no sample period follows; write times as 64-bit numbers or with more digits",
+                    "the {} rows of this trial have only {stamps} different times, {grain_s} s \
+                     apart: too few to determine the sample period; write times as 64-bit numbers \
+                     or with more digits",
                     times.len()
                 );
                 (ReadErrorKind::Times, number(0), text)

@@ -20,7 +20,7 @@ pub(super) fn first_readings(log: &Log<'_>, joint: &JointLayout) -> Option<Mende
     let mut values = values.clone();
     keep_first(&mut values, &spans, rows);
     let note = format!(
-        "each reading of the output stands in {rows} rows, and counts in the first of them"
+        "each reading of the output is repeated in {rows} rows; only the first of them is used"
     );
     Some(Mended { values, note: Some(note) })
 }

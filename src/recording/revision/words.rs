@@ -79,11 +79,9 @@ fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
     let numbers: Vec<String> = without.map(|(_, (number, _))| number.to_string()).collect();
     let not_fallen = match numbers.as_slice() {
         [] => None,
-        [one] => Some(format!(
-            "revision {one}, after which the error on what was not fitted is no smaller"
-        )),
+        [one] => Some(format!("revision {one}, which did not lower the validation error")),
         several => Some(format!(
-            "revisions {}, after which the error on what was not fitted is no smaller",
+            "revisions {}, which did not lower the validation error",
             several.join(", ")
         )),
     };
@@ -92,14 +90,14 @@ fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
     };
     let exchanges = pairs().filter_map(|((_, before), (number, after))| match after.change {
         Change::Replaced { old, new } if fits_alike(before, after) => Some(format!(
-            "revision {number}, which exchanges {old} for {new}, which fits about as well"
+            "revision {number}, which replaces {old} by {new} with about the same error"
         )),
         _ => None,
     });
     let all: Vec<String> = not_fallen.into_iter().chain(exchanges).collect();
     match all.as_slice() {
         [] if has_fallen_each_time(&revisions) => {
-            Some("none: each revision lowered the error on what was not fitted".to_owned())
+            Some("none: each revision lowered the validation error".to_owned())
         }
         [] => None,
         all => Some(all.join("; ")),

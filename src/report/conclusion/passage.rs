@@ -25,7 +25,7 @@ impl Topic {
     /// What comes next in a search.
     pub(crate) const NEXT: Self = Self("What comes next");
     /// What the residual follows.
-    pub(crate) const RESIDUAL: Self = Self("What the residual follows");
+    pub(crate) const RESIDUAL: Self = Self("What the residual depends on");
     /// The measured curves that the model does not follow.
     pub(crate) const CURVES: Self = Self("Measured curves");
     /// The part of the error that each effect explains.
@@ -86,13 +86,13 @@ impl Finding<'_> {
         match test.shown_by? {
             ShownBy::UnseenPart => {
                 let times = times_as_large(test.times_training?);
-                Some(format!("On the part that was not fitted it is {times}."))
+                Some(format!("On the validation part it is {times}."))
             }
             ShownBy::FewWindows => {
                 let times = rounded(test.local?.times_noise?);
                 Some(format!(
-                    "It is not spread as noise would be: in one window the motion that is \
-                     missed is {times} times the noise."
+                    "It is not spread evenly, as noise is: in one window the simulated motion is \
+                     wrong by {times} times the noise."
                 ))
             }
             ShownBy::Shapes | ShownBy::Size => None,

@@ -107,7 +107,7 @@ pub(super) fn earlier(improved: &ImprovedJoint<'_>, file: String) -> Option<Figu
     }
     let panels = before.iter().enumerate().map(panel).collect();
     let name = format!("Residual of the earlier revisions of {}", last.joint.name);
-    let caption = "What the earlier revisions left, each at its own scale.".to_owned();
+    let caption = "Residuals of the earlier revisions, each at its own scale.".to_owned();
     Some(Figure { file, name, width: WIDTH, panels, caption })
 }
 

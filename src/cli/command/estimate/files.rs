@@ -70,10 +70,7 @@ impl<'a> Files<'a> {
     pub(crate) fn left_out(&self, result: &Estimated<'_>) -> Vec<String> {
         let path = self.args.export.as_ref().filter(|_| lookup(result).is_empty());
         let why = |path: &PathBuf| {
-            format!(
-                "{}: not written: no joint has a delay that a controller could look up",
-                path.display()
-            )
+            format!("{}: not written: no joint has an accepted delay to look up", path.display())
         };
         path.map(why).into_iter().collect()
     }

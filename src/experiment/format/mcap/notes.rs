@@ -61,7 +61,7 @@ fn missing(messages: &Messages, topic: usize, end: i64, name: &str) -> Option<St
         1 => said.push("has 1 message without a value".to_owned()),
         count => said.push(format!("has {count} messages without a value")),
     }
-    let held = "the last value is held, so that a step in between is seen late or not at all";
+    let held = "the last value is held, so a step in such a pause is seen late or not at all";
     (!said.is_empty()).then(|| format!("`{name}` {}: {held}", said.join(" and ")))
 }
 
