@@ -137,7 +137,7 @@ fn kind_sentence(kind: &KindDelay) -> String {
             format!("; {count} rejected: {}; {}", condition.meaning(), help(condition, *transition))
         });
         return format!(
-            "{transition}: no typical delay, {accepted} of {steps} steps accepted{why}"
+            "{transition}: no typical delay: too few accepted steps ({accepted} of {steps}){why}"
         );
     };
     let TypicalDelay { median_s, interval_s, .. } = typical;
@@ -262,8 +262,8 @@ mod tests {
         assert_eq!(
             kind_sentence(&kind(None, 1)).split("; `").next(),
             Some(
-                "stop: no typical delay, 1 of 26 steps accepted; 25 rejected: first or last step \
-                 of the trial"
+                "stop: no typical delay: too few accepted steps (1 of 26); 25 rejected: first or \
+                 last step of the trial"
             )
         );
     }
