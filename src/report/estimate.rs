@@ -46,7 +46,7 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
     let own: String = own.collect();
     let automatic = joints.iter().find_map(|joint| joint.estimate.chosen);
     let automatic = automatic.map(|chosen| chosen.automatic).unwrap_or_default();
-    let settings = format!("{}\n", settings_line(settings, automatic));
+    let settings = format!("settings: {}\n", settings_line(settings, automatic));
     // Nothing of it is used where all inputs move all the time.
     let is_used = |joint: &EstimatedJoint<'_>| joint.estimate.dead_time.is_none();
     let settings = if joints.iter().any(is_used) { settings } else { String::new() };
