@@ -1,7 +1,7 @@
 //! A log as columns of numbers, whatever the format of its file.
 //!
-//! Knows nothing of joints beyond "this column is wanted": what the columns mean is
-//! decided in [`super::layout`].
+//! It does not know what the columns mean, only which are wanted: [`super::layout`] assigns them to
+//! joints.
 
 use std::collections::HashSet;
 use std::fmt;

@@ -349,8 +349,8 @@ impl Search {
         self.restarted_at_best(all)
     }
 
-    /// Each candidate also from where the best has its onsets: which reaction is whose does not hang on
-    /// the shape.
+    /// Each candidate started again from the onsets of the best: which reaction belongs to which
+    /// step does not depend on the shape.
     fn restarted_at_best(&self, mut all: Vec<Candidate>) -> Vec<Candidate> {
         let Some(best) = all.first().cloned() else { return all };
         for other in &mut all[1..] {

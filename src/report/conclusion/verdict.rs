@@ -72,10 +72,12 @@ impl Finding<'_> {
                     );
                 }
                 let p_value = p_text(test.p_value);
-                let rest = if test.adequate {
-                    "which as a whole is close to the noise"
-                } else {
-                    "and no tried effect explains a relevant part of it"
+                let rest = match test.times_noise.filter(|_| test.adequate) {
+                    Some(times) => format!(
+                        "but on the training part the error is only {} times the noise",
+                        rounded(times)
+                    ),
+                    None => "and no tried effect explains a relevant part of it".to_owned(),
                 };
                 format!(
                     "{share} % of the squared residual still follows a pattern ({p_value}), \
