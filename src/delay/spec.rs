@@ -56,7 +56,7 @@ impl Method {
     /// The onset model of a speed that changes at once, or behind a lag or an oscillation.
     pub const LAG_AWARE: Self = Self(&MethodSpec {
         id: "lag-aware",
-        fits: "two lines that meet, behind a lag or an oscillation",
+        fits: "two lines that meet, seen through a lag or an oscillation",
         summary: "`auto` with responses of an integrating output alone: a bend, a lag, or an \
                   oscillation",
         ..ONSET

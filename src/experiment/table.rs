@@ -74,7 +74,7 @@ impl Head {
         if self.headers.len() < 2 || !self.headers.iter().all(is_number) {
             return Ok(());
         }
-        let text = "the first row holds numbers, and no names of columns; write a header above it, as in \
+        let text = "the first row has numbers instead of names of columns; write a header above it, as in \
                     `time_s,boom.input,boom.output`";
         Err(ReadError::new(ReadErrorKind::Content, text).in_row(self.header_row))
     }

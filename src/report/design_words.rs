@@ -118,8 +118,8 @@ fn explanation(joint: &DesignedJoint, found: &Discrimination) -> Vec<String> {
     let Discrimination { ids, design, wanted, noise, .. } = found;
     let noise = measure(*noise, joint.rig.output_unit.as_deref());
     let mut sentences = vec![format!(
-        "Power: the probability that explain names the effect that is there and excludes the \
-         other, with noise of {noise}; {wanted} was wanted. λ: squared distance to the best fit \
+        "Power: the probability that `explain` names the effect that the joint has and excludes \
+         the other, with noise of {noise}; {wanted} was required. λ: squared distance to the best fit \
          with the other effect and with neither, in variances of the noise."
     )];
     for (index, side) in design.sides.iter().enumerate().filter(|(_, side)| !side.is_target) {

@@ -133,7 +133,7 @@ pub(crate) fn onset_sentence(model: &OnsetModel) -> String {
             let behind = if lag.is_empty() {
                 lag
             } else {
-                format!(", behind a lag with time constant {lag} s")
+                format!(", after a lag with time constant {lag} s")
             };
             format!(
                 "the speed follows with an oscillation, period {} s and damping {}{behind}",

@@ -131,8 +131,8 @@ fn without_steps(EstimatedJoint { joint, estimate }: EstimatedJoint<'_>) -> Stri
         return "the input changes only between trials".to_owned();
     };
     format!(
-        "the input changes only between trials or in gaps of up to {gap_s} s, which \
-         `tauscope estimate --fill {gap_s}` bridges"
+        "the input changes only between trials or in gaps of up to {gap_s} s; `tauscope estimate \
+         --fill {gap_s}` fills these gaps"
     )
 }
 

@@ -215,7 +215,7 @@ fn an_output_has_no_name_of_a_part_of_a_recording() {
     let command = "estimate log.csv -o many.rrd --decisions many_3.rrd";
     let ended = tauscope(folder.path()).args(command.split(' ')).output().unwrap();
     assert_eq!(ended.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&ended.stderr).contains("has files of this name"));
+    assert!(String::from_utf8_lossy(&ended.stderr).contains("needs files of this name"));
 }
 
 #[test]

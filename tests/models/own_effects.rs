@@ -321,6 +321,6 @@ fn what_is_wrong_with_the_use_of_one_is_said() {
             knee.clone() + &joint_text(&own("knee", "input", "signal", "")),
             "effect `knee` is a candidate; write kind = \"knee\"",
         ),
-        (candidate("kind = \"dead_band\""), "effect `dead_band` is not of this file"),
+        (candidate("kind = \"dead_band\""), "effect `dead_band` must have kind ="),
     ]);
 }

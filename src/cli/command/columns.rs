@@ -73,7 +73,7 @@ fn write(survey: &Survey, path: &Path, verbosity: Verbosity) -> anyhow::Result<(
     let is_mapping = path.is_file() && ColumnMap::read(path).is_ok();
     if is_mapping && std::fs::read_to_string(path).is_ok_and(|text| text != mapping) {
         bail!(
-            "--write {name}: is there already and says something else; remove it, or name another file"
+            "--write {name}: exists already with another mapping; remove it, or name another file"
         );
     }
     write_bytes(path, mapping)?;

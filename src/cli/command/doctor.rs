@@ -134,8 +134,8 @@ fn screen() -> Finding {
     }
     missing(
         "neither WAYLAND_DISPLAY nor DISPLAY is set: the viewer has no screen here",
-        "copy recordings to a machine with a screen, or run `rerun --web-viewer FILE.rrd` and \
-         look from there",
+        "copy recordings to a machine with a screen, or run `rerun --web-viewer FILE.rrd` here \
+         and open its address there",
     )
 }
 

@@ -60,7 +60,7 @@ fn install(folder: Option<&Path>) -> anyhow::Result<PathBuf> {
     let program = env::current_exe().context("it is not known where this program is")?;
     // A file that is no link was put there by somebody.
     if link.exists() && !link.is_symlink() && cfg!(unix) {
-        bail!("{}: is there already, and is no link; remove it first", link.display());
+        bail!("{}: exists already and is not a link; remove it first", link.display());
     }
     if link.is_symlink() || link.exists() {
         fs::remove_file(&link)

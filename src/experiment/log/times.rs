@@ -215,8 +215,8 @@ impl Log<'_> {
             Fault::NotIncreasing { row } => {
                 let (before, time) = (row.checked_sub(1).map_or(f64::NAN, at), at(row));
                 let text = format!(
-                    "time goes from {before} s to {time} s, but it must increase; remove the row if it \
-                     is there twice, or mark a new trial in a `trial` column"
+                    "time goes from {before} s to {time} s, but must increase; remove the row if \
+                     it is a copy, or mark a new trial in a `trial` column"
                 );
                 (ReadErrorKind::Content, number(row), text)
             }
@@ -237,8 +237,9 @@ impl Log<'_> {
             }
             Fault::Coarse { row, grain_s, period } => {
                 let text = format!(
-                    "the times are rounded to {grain_s} s, in which some {:.0} samples come, but not \
-                     evenly: when each was measured is not known; write times with more digits",
+                    "the times are rounded to {grain_s} s, with an uneven number of samples \
+                     (about {:.0}) at each, so the time of a sample is not known; write times \
+                     with more digits",
                     grain_s / period
                 );
                 (ReadErrorKind::Times, number(row), text)
@@ -287,8 +288,9 @@ impl Log<'_> {
         };
         if usual(1) > APART * usual(size) {
             let text = format!(
-                "each time stands in {size} rows, whose values in `{column}` lie far apart, as in a table \
-                 with a row for each joint; give each joint an input and an output column of its own"
+                "each time is repeated in {size} rows with very different values in `{column}`, \
+                 as in a table with a row for each joint; give each joint an input and an output \
+                 column of its own"
             );
             return Err(ReadError::new(ReadErrorKind::Content, text).about(column));
         }

@@ -95,7 +95,7 @@ struct Delays {
 pub(super) fn over_time(estimated: EstimatedJoint<'_>, file: String) -> Option<Figure> {
     let panels = vec![delay_panel(estimated, &Timeline::of(estimated.joint))?];
     let name = format!("Delay of {} over time", estimated.joint.name);
-    let caption = "The delay of each step, at the time of the step; rejected steps stand at \
+    let caption = "Delay of each step against the time of the step; rejected steps are marked at \
                    the bottom."
         .to_owned();
     Some(Figure { file, name, width: WIDTH, panels, caption })

@@ -136,7 +136,7 @@ pub(super) fn worst(compared: &ComparedJoint<'_>, place: usize, file: String) ->
         format!(" The largest residual of all, {height}, {place}.")
     });
     let caption = format!(
-        "The worst segment: it holds {share} of the squared error, more than any other.{spike}"
+        "The worst segment: it contains {share} of the squared error, more than any other.{spike}"
     );
     Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
 }

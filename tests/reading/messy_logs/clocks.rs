@@ -160,7 +160,7 @@ pub(crate) fn repeated_times() -> Vec<Messy> {
         messy(
             "row_for_each_joint.csv",
             plain(&doubled(&|row| Row { input: -row.input, output: 90.0 - row.output, ..row })),
-            Expected::Refused(&["each time stands in 2 rows", "`boom.output`"]),
+            Expected::Refused(&["each time is repeated in 2 rows", "`boom.output`"]),
         ),
         messy(
             "both_levels.csv",

@@ -63,7 +63,7 @@ fn effects(args: &Args, known: &Known) -> anyhow::Result<[&'static dyn Effect; 2
     let named = |id: &str| find(id.trim(), known).context("--separate");
     let (one, other) = (named(one)?, named(other)?);
     if one.spec().id == other.spec().id {
-        bail!("--separate: `{}` is there twice; name two different effects", one.spec().id);
+        bail!("--separate: `{}` is named twice; name two different effects", one.spec().id);
     }
     Ok([one, other])
 }

@@ -152,8 +152,8 @@ fn check_sheet(sheet: &Path) -> anyhow::Result<()> {
     if is_filled_in {
         let sheet = sheet.display();
         bail!(
-            "--review-sheet {sheet}: holds reviews already, which would be lost; write another file, \
-             and `--review {sheet}` takes them over"
+            "--review-sheet {sheet}: contains reviews already, which would be lost; write another \
+             file, and give `--review {sheet}` to copy them"
         );
     }
     Ok(())

@@ -101,8 +101,9 @@ pub(super) fn clocks_differ<'a>(
     let apart = most.saturating_sub(least);
     (apart > USUAL).then(|| {
         format!(
-            "the {clock} of `{}` is {:.3} s behind that of `{}`, by the time of recording: if these are \
-             the clocks of two computers, delays are off by that; `--time log_time` has one clock",
+            "compared with the time of recording, the {clock} of `{}` is {:.3} s behind that of \
+             `{}`: if these are the clocks of two computers, delays are wrong by this time; \
+             `--time log_time` uses one clock for both",
             name(of_most),
             apart as f64 * 1e-9,
             name(of_least)
