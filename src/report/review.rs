@@ -94,7 +94,7 @@ impl ReviewCount {
         let steps = counted(accepted + rejected, "step");
         format!(
             "{steps} reviewed by a person: {accepted} accepted, {rejected} rejected; {overruled} \
-             of these differ from the program"
+             differing from the program"
         )
     }
 }

@@ -262,7 +262,7 @@ fn what_a_person_filled_in_or_corrected_is_not_replaced() {
     };
     let cases = [
         ("estimate log.csv --quiet --review-sheet sheet.csv", "sheet.csv", "--review sheet.csv"),
-        ("columns log.csv --quiet -w columns.toml", "columns.toml", "is there already"),
+        ("columns log.csv --quiet -w columns.toml", "columns.toml", "exists already"),
     ];
     for (words, name, says) in cases {
         // As it was written it may be written again.

@@ -467,7 +467,7 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
         ("--hold 5,6 --duration 3", "too short for a rest and a hold of 5 s"),
         ("--model boom.toml --joint bucket", "not in the model file, which has boom"),
         ("--separate dead_band --model boom.toml", "expected two effects"),
-        ("--separate dead_band,dead_band --model boom.toml", "there twice"),
+        ("--separate dead_band,dead_band --model boom.toml", "named twice"),
         ("--separate dead_band,stictoin --model boom.toml", "did you mean `stiction`?"),
         ("--separate dead_band,stiction", "give a log, or --model"),
         ("--separate dead_band,stiction --model plain.toml", "has neither dead_band nor stiction"),

@@ -107,7 +107,7 @@ fn a_word_stands_above_the_program_and_is_kept_through_runs() {
     let text = desk.run("estimate log.csv --review review.csv").stdout;
     let text = String::from_utf8(text).unwrap();
     let sentence =
-        "boom: 2 steps reviewed by a person: 1 accepted, 1 rejected; 1 of these differ from the program";
+        "boom: 2 steps reviewed by a person: 1 accepted, 1 rejected; 1 differing from the program";
     assert!(text.contains(sentence), "{text}");
 }
 
