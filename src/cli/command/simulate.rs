@@ -8,7 +8,7 @@ use crate::synthetic::{PlantSpec, Synthetic, simulate, write_log, write_truth};
 use anyhow::{Context as _, bail};
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{Choices, one_of};
+use crate::cli::args::{Choices, number, one_of};
 use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
 use crate::cli::output::{OutputFile, OutputKind, Outputs, filled_file};
@@ -49,7 +49,7 @@ pub(crate) struct Args {
     truth: Vec<PathBuf>,
 
     /// Seed of everything random [default: the plant file's, or 1]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = number::seed)]
     seed: Option<u64>,
 
     /// Standard deviation of the noise of every joint [default: the plant file's, or 0.05]

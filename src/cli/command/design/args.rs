@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 
-use crate::cli::args::number::at_least_one;
+use crate::cli::args::number::{self, at_least_one};
 use crate::cli::args::{ReadingArgs, RunArgs};
 use crate::design::Band;
 use crate::experiment::format_names;
@@ -61,7 +61,7 @@ pub(crate) struct Args {
     pub(super) rate: Option<f64>,
 
     /// Seed of everything random
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = number::seed)]
     pub(super) seed: u64,
 
     /// Lowest and highest output allowed; needs a model or a log. The design keeps this range with

@@ -134,8 +134,8 @@ fn named_lookup(path: &Path) -> anyhow::Result<(Language, &str)> {
     let is_function = name.starts_with(|c: char| c.is_ascii_alphabetic());
     if language == Language::Matlab && !(is_function && name.chars().all(is_letter)) {
         bail!(
-            "{shown}: MATLAB calls a function as its file, and `{name}` is no name of a function; \
-               use letters, digits and underscores"
+            "{shown}: MATLAB calls a function by the name of its file, and `{name}` is not a \
+               valid name; use letters, digits and underscores, a letter first"
         );
     }
     Ok((language, name))
