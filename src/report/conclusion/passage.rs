@@ -140,19 +140,22 @@ impl Finding<'_> {
         let joint = self.joint();
         let speed = joint.output_unit.as_deref().map(|unit| format!("{unit}/s"));
         let input = unit_suffix(joint.input_unit.as_deref());
+        // Not with ±, which is one standard error everywhere else.
+        let interval = || format!("95 %: {} to {}", rounded(y - band), rounded(y + band));
         let between = |what: &str| {
-            let (y, model) = (rounded(y), measure(model, speed.as_deref()));
+            let model = measure(model, speed.as_deref());
             format!(
-                "At {what} {}{input} the measured speed is {y} ± {}, the model's {model}.",
+                "At {what} {}{input} the measured speed is {} ({}), the model's {model}.",
                 rounded(x),
-                rounded(band)
+                rounded(y),
+                interval()
             )
         };
         let gain = |place: String| {
             format!(
-                "{place} the measured speed is {} ± {} times that of the whole record, the model's {}.",
+                "{place} the measured speed is {} ({}) times that of the whole record, the model's {}.",
                 rounded(y),
-                rounded(band),
+                interval(),
                 rounded(model)
             )
         };
