@@ -66,7 +66,7 @@ fn next(data: &str, improved: Option<&ImprovedJoint<'_>>) -> String {
         (None, Verdict::Adequate) => {
             "To check it on another log: `tauscope compare LOG --model MODEL.toml`".to_owned()
         }
-        (None, _) => "The tab behind the ladder shows where the remaining error arises.".to_owned(),
+        (None, _) => "The tab beside the ladder shows where the remaining error arises.".to_owned(),
     }
 }
 

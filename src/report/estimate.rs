@@ -72,7 +72,7 @@ pub(crate) fn chosen_line(joint: &EstimatedJoint<'_>) -> Option<String> {
                 settings.alpha,
                 rounded(delay)
             ),
-            None => format!("α = {} (as usual: no delay is known)", settings.alpha),
+            None => format!("α = {} (the default, since no delay is known)", settings.alpha),
         });
     }
     if automatic.beta {
@@ -80,7 +80,7 @@ pub(crate) fn chosen_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     }
     if automatic.passband {
         let noise = statistics.noise.map_or_else(
-            || "nothing known of the noise".to_owned(),
+            || "noise not known".to_owned(),
             |noise| format!("noise {}", measure(noise, unit)),
         );
         parts.push(format!("{} ({noise})", low_pass_text(settings)));

@@ -123,9 +123,9 @@ impl<'a> ImprovedJoint<'a> {
             commands: Vec::new(),
         };
         match next {
-            Change::Removed(id) => made_useless(format!("{id} has become useless")),
+            Change::Removed(id) => made_useless(format!("{id} is superfluous now")),
             Change::Replaced { old, new } if ranking.is_empty() && !is_finer(new, old) => {
-                made_useless(format!("{old} gives way to {new}"))
+                made_useless(format!("{new} replaces {old}"))
             }
             Change::Added(id) | Change::Replaced { new: id, .. } if ranking.is_empty() => {
                 self.added_unranked(index, id, &finding)

@@ -16,7 +16,7 @@ pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
         return near.map_or_else(
             || "no number is near its limit".to_owned(),
             |(condition, margin)| {
-                let far = if margin < LITTLE { "by little" } else { "though not by far" };
+                let far = if margin < LITTLE { "by little" } else { "but not by much" };
                 format!("{condition} fails {far}")
             },
         );

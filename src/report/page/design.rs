@@ -119,7 +119,15 @@ fn over_noise(joint: &DesignedJoint, found: &Apart, x: &Axis) -> Panel {
 
 /// A row per level: when and how long, and how far the suspects are apart.
 fn hold_table(joint: &DesignedJoint, difference: Option<&Apart>) -> TextTable {
-    let header = ["trial", "from [s]", "level", "held [s]", "apart by [noise]", "of all squares"];
+    let header = [
+        "trial",
+        "from [s]",
+        "level",
+        "held [s]",
+        "difference [noise]",
+        "of the squared \
+                                                                                   difference",
+    ];
     let unit = joint.rig.input_unit.as_deref();
     let row = |(place, hold): (usize, Held)| {
         let own = difference.and_then(|found| found.holds.get(place));

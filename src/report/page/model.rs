@@ -220,7 +220,7 @@ pub(super) fn ladder(improved: &ImprovedJoint<'_>, file: String) -> Figure {
 
 fn judged_on(rungs: &[LadderRow]) -> &'static str {
     let validated = rungs.iter().all(|row| row.errors.validation_rmse.is_some());
-    if validated { "error on data that were not fitted" } else { "error" }
+    if validated { "validation error" } else { "error" }
 }
 
 /// Shares of the squared error and of the time in each part of the feature whose parts
