@@ -32,7 +32,7 @@ pub enum Refusal {
     Undetermined,
     /// A parameter has a value that physics does not allow: its name.
     Implausible(String),
-    /// Beside an effect of the model that looks like it, it is not told from doing nothing.
+    /// Beside an effect of the model that looks like it, it is not distinguished from doing nothing.
     LikeAnother,
     /// The record shows no more than its simpler limiting case.
     LimitingCase(LimitingCase),

@@ -51,7 +51,7 @@ impl Headline {
         }
     }
 
-    /// The kinds of steps that have to be told apart, or of which nothing is typical.
+    /// The kinds of steps that have to be distinguished, or of which nothing is typical.
     pub(crate) fn kinds(&self) -> &[KindDelay] {
         match self {
             Self::All => &[],

@@ -58,7 +58,7 @@ pub(crate) struct ConditionArgs {
     #[arg(long, conflicts_with_all = ["first_last", "keep_first_last"])]
     pub(crate) paper: bool,
 
-    /// Accept delays although the output leads its input, does not follow it, or answers later than the
+    /// Accept delays although the output leads its input, does not follow it, or reacts later than the
     /// next step
     #[arg(long)]
     accept_anyway: bool,

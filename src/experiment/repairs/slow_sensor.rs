@@ -1,4 +1,4 @@
-//! Outputs of a sensor that is slower than its log: each reading stands in several rows.
+//! Outputs of a sensor that is slower than its log: each reading is repeated in several rows.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use crate::experiment::layout::JointLayout;
 use crate::experiment::log::Log;
 use crate::numerics::quantile;
 
-/// Rows that a reading stands in, at least.
+/// Rows in which a reading is repeated, at least.
 const FEWEST_ROWS: usize = 3;
 
 /// Readings that show it.
@@ -44,7 +44,7 @@ fn keep_first(values: &mut [f64], trials: &[Range<usize>], rows: usize) {
     }
 }
 
-/// The rows that a reading stands in, where a sensor is read anew every so many rows.
+/// The rows in which a reading is repeated, where a sensor is read anew every so many rows.
 ///
 /// That is seen by changes that come at one interval or at multiples of it, each by as much as the output
 /// moved meanwhile: an output that is rounded coarsely changes by one step at a time.
