@@ -336,7 +336,7 @@ mod tests {
         for (row, said, applied) in [
             ("boom,1,1,rejected,,,Ann,101,accepted,", "", 1),
             ("boom,1,1,rejected,,,Ann,99,accepted,", "at sample 99 and is at 101", 0),
-            ("boom,1,1,rejected,,,Ann,101,sse,", "said `sse` then and says `accepted`", 1),
+            ("boom,1,1,rejected,,,Ann,101,sse,", "was `sse` and is `accepted` now", 1),
             ("boom,1,1,rejected,,,Ann,101,,0.9", "delay was 0.9000 s and is 0.1", 1),
             ("boom,1,1,accepted,-0.1,,Ann,101,,", "lies outside", 0),
             ("boom,1,1,accepted,500,,Ann,101,,", "lies outside", 0),
