@@ -187,7 +187,7 @@ fn two_time_steps_are_put_on_one_grid_with_a_note() {
     let outcome = Workspace::new().with_log(&boom().column("time_s", time)).estimate("log.csv");
     outcome.is_whole();
     assert!(
-        outcome.stderr.contains("the output is interpolated and the input held"),
+        outcome.stderr.contains("the output interpolated and the input held"),
         "{}",
         outcome.stderr
     );
