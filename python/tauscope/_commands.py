@@ -106,10 +106,11 @@ def estimate(
     ``sample_period`` in seconds. ``settings`` are the options of ``tauscope estimate``:
     ``alpha`` and ``beta`` in samples, ``passband`` in Hz or ``"none"``, ``method``…
 
-    Raises :class:`TauscopeError` where the log cannot be used; its ``row`` and ``column`` say
-    where. Raises ``TypeError`` for a setting that there is not, and names those that there are.
+    Raises :class:`TauscopeError` if the log cannot be used; its ``row`` and ``column`` say
+    where. Raises ``TypeError`` for an unknown setting, and names the known ones.
 
-    Albrecht and Taylor, Algorithm 1.
+    The default method fits a response common to all steps of a joint; ``method="two-line"`` is
+    Albrecht and Taylor's Algorithm 1.
 
     >>> import numpy as np
     >>> u = np.tile(np.repeat([0.0, 1.0, -1.0], 60), 4)
@@ -124,10 +125,10 @@ def estimate(
 def sweep(
     data: Any, *, progress: Progress = None, **settings: Unpack[SweepOptions]
 ) -> _results.Sweep:
-    """How every delay moves with α, β, passband and method.
+    """Which delays depend on α, β, passband and method, and by how much.
 
-    ``data`` as for :func:`estimate`, which raises the same; ``alpha`` and ``beta`` in samples
-    and ``passband`` in Hz are lists.
+    ``data`` and errors as for :func:`estimate`; ``alpha`` and ``beta`` (samples) and
+    ``passband`` (Hz) are lists.
     """
     return _run(_results.Sweep, ["sweep"], data, settings, progress=progress)
 
@@ -139,12 +140,12 @@ def compare(
     progress: Progress = None,
     **settings: Unpack[CompareOptions],
 ) -> _results.Comparison:
-    """A model beside the measurement: error figures, and where it fails.
+    """Compares a model with the measurement: its errors, and where it fails.
 
     Without a model each joint is compared with a plain integrator, which is fitted; with
     ``fit=True`` the model is fitted from its values. Errors are in output units, and
     ``fit_percent`` is 100 (1 − ‖y − ŷ‖ / ‖y − mean y‖) (Ljung, System Identification, 1999).
-    ``data`` as for :func:`estimate`, which raises the same.
+    ``data`` and errors as for :func:`estimate`.
     """
     return _run(_results.Comparison, ["compare"], data, settings, progress=progress, model=model)
 
@@ -158,9 +159,9 @@ def explain(
 ) -> _results.Explanation:
     """Which physical effect a model lacks: the ranking, and its evidence.
 
-    ``ranking`` is a DataFrame: a row for each effect that was tried, with the error in output
-    units that it leaves on data that were not fitted. ``verdicts`` says of each joint whether
-    anything is missing. ``data`` as for :func:`estimate`, which raises the same.
+    ``ranking`` is a DataFrame with a row for each effect that was tried and its validation
+    error in output units. ``verdicts`` says for each joint whether anything is missing.
+    ``data`` and errors as for :func:`estimate`.
     """
     return _run(_results.Explanation, ["explain"], data, settings, progress=progress, model=model)
 
@@ -173,9 +174,9 @@ def add(
     progress: Progress = None,
     **settings: Unpack[AddOptions],
 ) -> _results.Comparison:
-    """That effect in the model, refitted: ``.model`` is the new revision.
+    """Adds an effect to a model and fits it: ``.model`` is the new revision.
 
-    Raises :class:`TauscopeError` where there is no such effect, and names the nearest.
+    Raises :class:`TauscopeError` if there is no such effect, and names the nearest one.
     """
     return _run(
         _results.Comparison,
@@ -195,10 +196,10 @@ def improve(
     progress: Progress = None,
     **settings: Unpack[ImproveOptions],
 ) -> _results.Improvement:
-    """Adds to a model what it lacks, effect by effect: ``.model`` is what came of it.
+    """Adds to a model the effects that it lacks: ``.model`` is the last revision.
 
-    Ctrl-C stops it after the revision at hand: the result holds what was reached, and its
-    ``stopped`` is true. Ctrl-C again raises ``KeyboardInterrupt`` at once.
+    Ctrl-C stops it after the current revision: the result has what was found until then, and
+    its ``stopped`` is true. Ctrl-C again raises ``KeyboardInterrupt`` at once.
     """
     return _run(
         _results.Improvement,
@@ -242,7 +243,7 @@ def design(
     progress: Progress = None,
     **settings: Unpack[DesignOptions],
 ) -> _results.Design:
-    """The next experiment: an input in steps, or one that tells two effects apart.
+    """The next experiment: an input in steps, or one that distinguishes two effects.
 
     ``input`` of the result is a DataFrame.
     """

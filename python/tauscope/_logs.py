@@ -61,7 +61,7 @@ class Joint:
 
 
 class Logs(dict[str, Joint]):
-    """Joints by their names; ``notes`` says what a person should know of the logs."""
+    """Joints by name; ``notes`` has the notes on how the logs were read."""
 
     notes: list[str]
 

@@ -82,7 +82,7 @@ class Model:
     def load(
         cls, path: str | os.PathLike[str], functions: Sequence[_tauscope.Function] = ()
     ) -> Model:
-        """Reads a model file; ``functions`` are those that it names, of another model."""
+        """Reads a model file; ``functions`` are the Python functions whose names are in it."""
         return cls(Path(path).read_text(encoding="utf-8"), Path(path).name, functions)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
@@ -113,7 +113,7 @@ class Model:
 
     @property
     def effects(self) -> list[Effect]:
-        """The effects of the only joint; of several, ask ``model["boom"].effects``."""
+        """The effects of a model of one joint; of several joints use ``model["boom"].effects``."""
         return self[self._joint(None)].effects
 
     def with_effect(

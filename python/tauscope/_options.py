@@ -32,8 +32,8 @@ class ReadOptions(TypedDict, total=False):
     """Fill gaps of the output up to this long; longer ones split the trial in two. An input that is
     missing is held."""
     max_memory: int | str | None
-    """The most memory that reading logs may take, in bytes or as `500MB` or `4GB`: a log that needs
-    more is refused [default: half of the machine's]."""
+    """Limit of the memory for reading logs, in bytes or as `500MB` or `4GB`: a log that needs more
+    is refused [default: half of the machine's]."""
     input_unit: str | None
     """Of arrays: the unit, as in a log."""
     output_unit: str | None
@@ -51,16 +51,17 @@ class EstimateOptions(ReadOptions, total=False):
     """How a delay is found. May be a list: the first one is the answer, the others are reported
     beside it [default: auto; two-line with `paper=True` and `--follow`]."""
     alpha: float | str | Literal["auto"] | None
-    """Samples that a segment reaches beyond its input steps, or seconds as in `0.1s`; `auto`
-    chooses this and the next two from the record of each joint [default: 10]."""
+    """How far a segment extends before its input step and after the next one, in samples or in
+    seconds as in `0.1s`; `auto` chooses this and the next two from the record of each joint
+    [default: 10]."""
     beta: float | str | Literal["auto"] | None
     """Samples, or seconds, between two candidate breakpoints [default: 5]."""
     passband: float | Literal["none", "auto"] | None
     """Zero-phase low-pass on the output that Algorithm 1's lines are fitted to: its cutoff, or
     `none` [default: 5]."""
     confidence: float | Literal["none"] | None
-    """Reject a step as `nothing_happened` unless its change of slope is this unlikely to be noise,
-    or `none` [default: 0.99; `none` for two-line]."""
+    """Reject a step as `nothing_happened` unless a reaction is significant at this confidence
+    level; `none`: no test [default: 0.99; `none` for two-line]."""
     interval: float | None
     """Confidence level of the interval of a delay [default: 0.95]."""
     filter_order: int | None
@@ -69,8 +70,8 @@ class EstimateOptions(ReadOptions, total=False):
     """Reject a step that is held for fewer samples (`τ_min`), or seconds as in `0.2s` [default:
     0]."""
     max_delay: float | str | None
-    """Look for delays up to this many samples only, or seconds as in `0.5s`: for holds so long that
-    the output meets an end stop on its way."""
+    """Longest delay that is searched, in samples or in seconds as in `0.5s`: useful where the
+    output reaches an end stop within a hold."""
     output_limits: tuple[float, float] | str | None
     """Reject a step when the output touches a limit."""
     min_slope_change: float | None
@@ -85,7 +86,7 @@ class EstimateOptions(ReadOptions, total=False):
     """Algorithm 1 of Albrecht and Taylor to the letter, on any log: no rest or stop of the joint is
     looked for, and the first and the last step are rejected."""
     accept_anyway: bool
-    """Accept delays although the output leads its input, does not follow it, or answers later than
+    """Accept delays although the output leads its input, does not follow it, or reacts later than
     the next step."""
     min_step: float | None
     """Count a change of the input as a step when it is more than this: for an input that was
@@ -96,7 +97,7 @@ class EstimateOptions(ReadOptions, total=False):
     interpolate: Literal["hold", "linear"] | None
     """The delay between two steps [default: hold]."""
     review: File | None
-    """Put a person's word above the conditions: a table with the columns
+    """Apply a person's review, which overrides the conditions: a table with the columns
     `joint,trial,i,verdict,delay_s,note,reviewer`, as `tauscope.estimate(review_sheet=)` writes it
     and `tauscope.report(interactive=True)` saves it."""
     against: File | Sequence[File] | None
@@ -128,8 +129,8 @@ class EstimateOptions(ReadOptions, total=False):
     threads: int | None
     """Threads to use [default: all processors]."""
     safe_csv: bool
-    """Write texts in CSV so that a spreadsheet program computes nothing: an apostrophe stands
-    before what it would take for a formula."""
+    """Make texts in CSV safe for spreadsheet programs: an apostrophe is put before what they would
+    take for a formula."""
 
 
 class SweepOptions(ReadOptions, total=False):
@@ -138,19 +139,19 @@ class SweepOptions(ReadOptions, total=False):
     method: str | Sequence[str] | None
     """How a breakpoint is found [default: two-line,hinge,lag-aware]."""
     alpha: float | str | Sequence[float | str] | None
-    """Samples that a segment reaches beyond its input steps, or seconds as in `0.05s,0.1s`
-    [default: 5,10,20]."""
+    """How far a segment extends before its input step and after the next one, in samples or in
+    seconds as in `0.05s,0.1s` [default: 5,10,20]."""
     beta: float | str | Sequence[float | str] | None
     """Samples, or seconds, between two candidate breakpoints; for `two-line` alone [default:
     1,2,5,10]."""
     passband: float | str | Sequence[float | str] | None
     """Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none]; for `two-line` alone."""
     tolerance: float | None
-    """Delays that differ by so many samples more than β or their intervals allow still agree
-    [default: 2]."""
+    """Two delays agree if they differ by no more than this, beyond the resolution of each (± β/2,
+    or its interval) [default: 2]."""
     confidence: float | Literal["none"] | None
-    """Reject a step as `nothing_happened` unless its change of slope is this unlikely to be noise,
-    or `none` [default: 0.99; `none` for two-line]."""
+    """Reject a step as `nothing_happened` unless a reaction is significant at this confidence
+    level; `none`: no test [default: 0.99; `none` for two-line]."""
     interval: float | None
     """Confidence level of the interval of a delay [default: 0.95]."""
     filter_order: int | None
@@ -159,8 +160,8 @@ class SweepOptions(ReadOptions, total=False):
     """Reject a step that is held for fewer samples (`τ_min`), or seconds as in `0.2s` [default:
     0]."""
     max_delay: float | str | None
-    """Look for delays up to this many samples only, or seconds as in `0.5s`: for holds so long that
-    the output meets an end stop on its way."""
+    """Longest delay that is searched, in samples or in seconds as in `0.5s`: useful where the
+    output reaches an end stop within a hold."""
     output_limits: tuple[float, float] | str | None
     """Reject a step when the output touches a limit."""
     min_slope_change: float | None
@@ -175,7 +176,7 @@ class SweepOptions(ReadOptions, total=False):
     """Algorithm 1 of Albrecht and Taylor to the letter, on any log: no rest or stop of the joint is
     looked for, and the first and the last step are rejected."""
     accept_anyway: bool
-    """Accept delays although the output leads its input, does not follow it, or answers later than
+    """Accept delays although the output leads its input, does not follow it, or reacts later than
     the next step."""
     min_step: float | None
     """Count a change of the input as a step when it is more than this: for an input that was
@@ -184,7 +185,7 @@ class SweepOptions(ReadOptions, total=False):
     """Take the input as steps, each of which has a delay, or as moving all the time, with one dead
     time over the record; `auto` decides it for each joint from the record [default: auto]."""
     output: File | None
-    """Record how every delay moves with the settings, for the Rerun viewer."""
+    """Record how every delay depends on the settings, for the Rerun viewer."""
     steps: bool
     """Show all steps that depend on a setting, not only those that do most."""
     threads: int | None
@@ -260,8 +261,8 @@ class ImproveOptions(ReadOptions, total=False):
     max_effects: int | None
     """How many effects are added at most [default: 8]."""
     refine: bool
-    """Keep effects that are significant and have no practical consequence: without them the error
-    grows by less than 1 % of the first."""
+    """Keep effects that are significant but have no practical consequence: without them the error
+    grows by less than 3 % of the initial error beyond the noise."""
     horizon: float | Literal["auto", "free", "steps"] | None
     """How long a simulation runs before its angle is set to the measured one: `free` (never),
     `steps` (at every step of the input, in long holds every 2 s), seconds, or `auto`: free where
@@ -275,8 +276,8 @@ class ImproveOptions(ReadOptions, total=False):
     threads: int | None
     """Threads to use [default: all processors]."""
     safe_csv: bool
-    """Write texts in CSV so that a spreadsheet program computes nothing: an apostrophe stands
-    before what it would take for a formula."""
+    """Make texts in CSV safe for spreadsheet programs: an apostrophe is put before what they would
+    take for a formula."""
 
 
 class ReportOptions(ReadOptions, total=False):
@@ -290,16 +291,17 @@ class ReportOptions(ReadOptions, total=False):
     """How a delay is found. May be a list: the first one is the answer, the others are reported
     beside it [default: auto; two-line with `paper=True` and `--follow`]."""
     alpha: float | str | Literal["auto"] | None
-    """Samples that a segment reaches beyond its input steps, or seconds as in `0.1s`; `auto`
-    chooses this and the next two from the record of each joint [default: 10]."""
+    """How far a segment extends before its input step and after the next one, in samples or in
+    seconds as in `0.1s`; `auto` chooses this and the next two from the record of each joint
+    [default: 10]."""
     beta: float | str | Literal["auto"] | None
     """Samples, or seconds, between two candidate breakpoints [default: 5]."""
     passband: float | Literal["none", "auto"] | None
     """Zero-phase low-pass on the output that Algorithm 1's lines are fitted to: its cutoff, or
     `none` [default: 5]."""
     confidence: float | Literal["none"] | None
-    """Reject a step as `nothing_happened` unless its change of slope is this unlikely to be noise,
-    or `none` [default: 0.99; `none` for two-line]."""
+    """Reject a step as `nothing_happened` unless a reaction is significant at this confidence
+    level; `none`: no test [default: 0.99; `none` for two-line]."""
     interval: float | None
     """Confidence level of the interval of a delay [default: 0.95]."""
     filter_order: int | None
@@ -308,8 +310,8 @@ class ReportOptions(ReadOptions, total=False):
     """Reject a step that is held for fewer samples (`τ_min`), or seconds as in `0.2s` [default:
     0]."""
     max_delay: float | str | None
-    """Look for delays up to this many samples only, or seconds as in `0.5s`: for holds so long that
-    the output meets an end stop on its way."""
+    """Longest delay that is searched, in samples or in seconds as in `0.5s`: useful where the
+    output reaches an end stop within a hold."""
     output_limits: tuple[float, float] | str | None
     """Reject a step when the output touches a limit."""
     min_slope_change: float | None
@@ -324,7 +326,7 @@ class ReportOptions(ReadOptions, total=False):
     """Algorithm 1 of Albrecht and Taylor to the letter, on any log: no rest or stop of the joint is
     looked for, and the first and the last step are rejected."""
     accept_anyway: bool
-    """Accept delays although the output leads its input, does not follow it, or answers later than
+    """Accept delays although the output leads its input, does not follow it, or reacts later than
     the next step."""
     min_step: float | None
     """Count a change of the input as a step when it is more than this: for an input that was
@@ -335,7 +337,7 @@ class ReportOptions(ReadOptions, total=False):
     interpolate: Literal["hold", "linear"] | None
     """The delay between two steps [default: hold]."""
     review: File | None
-    """Put a person's word above the conditions: a table with the columns
+    """Apply a person's review, which overrides the conditions: a table with the columns
     `joint,trial,i,verdict,delay_s,note,reviewer`, as `tauscope.estimate(review_sheet=)` writes it
     and `tauscope.report(interactive=True)` saves it."""
     against: File | Sequence[File] | None
@@ -379,7 +381,8 @@ class DesignOptions(ReadOptions, total=False):
     """The settings of :func:`tauscope.design`."""
 
     uncertainty: float | None
-    """How far the numbers of a model may be off that no log confirms, in parts [default: 0.1]."""
+    """Relative standard deviation of the parameters of a model given without a log [default:
+    0.1]."""
     levels: float | str | Sequence[float | str] | None
     """The levels: a list, or a range with its step, as in -2,-1,0,1,2 or -2..2:0.5."""
     largest: float | None
@@ -392,22 +395,22 @@ class DesignOptions(ReadOptions, total=False):
     """Length in seconds; with `separate=` the longest that is tried [default: 120, or less where
     the range cannot be kept as long; with `separate=` 60]."""
     trials: int | None
-    """Most trials, before each of which the joint is brought back to its start: 1 for an input
-    without a break [default: as many as the range needs]."""
+    """Largest number of trials; before each the joint is brought back to its start. 1: an
+    uninterrupted input [default: as many as the range needs]."""
     rate: float | None
     """Samples per second [default: as the logs, but no more than 100 without `separate=`]."""
     seed: int | None
     """Seed of everything random [default: 1]."""
     output_range: tuple[float, float] | str | None
-    """Lowest and highest output that the joint may come to; needs a model or a log. It is kept, by
-    as much as predictions of the joint were off on parts of the log, or refused [default with
+    """Lowest and highest output allowed; needs a model or a log. The design keeps this range with a
+    margin for the error of its predictions, measured on the log, or is refused [default with
     `separate=` and a log: where the log has been]."""
     start: float | None
     """The output at which it starts [default: the middle of the range; without one, of the log, or
     0]."""
     dead_band: tuple[float, float] | str | Literal["cross", "avoid"] | None
-    """`cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a band in
-    which none is to lie."""
+    """`cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a band
+    that must contain no level."""
     separate: str | Sequence[str] | None
     """Two effects to separate. The model has one of them, or a log is given."""
     power: float | None
@@ -416,11 +419,11 @@ class DesignOptions(ReadOptions, total=False):
     """Standard deviation of the measurement noise [default: that of the log, else the error in the
     model file's history]."""
     rehearsals: int | None
-    """How often the experiment is rehearsed with either effect, in simulation [default: 40]."""
+    """Number of simulated experiments (rehearsals) with each of the two effects [default: 40]."""
     output: File | None
-    """Where the input goes: `time_s`, and `<joint>.input` of each joint."""
+    """The file of the input: `time_s`, and `<joint>.input` of each joint."""
     preview: File | None
-    """Where the input goes with what is expected of it: a table (.csv), or a page with figures
+    """Also write the input with the expected output: a table (.csv), or a page with figures
     (.html)."""
     threads: int | None
     """Threads to use [default: all processors]."""

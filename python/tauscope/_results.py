@@ -203,11 +203,11 @@ class Estimate(Result):
 
 
 class Comparison(Result):
-    """A model beside the measurement."""
+    """A model compared with the measurement."""
 
     @cached_property
     def fails_where(self) -> pd.DataFrame:
-        """Under which conditions it fails, by their share of the squared error."""
+        """The conditions under which it fails, with their shares of the squared error."""
         return self._rows("fails_where")
 
 
@@ -216,7 +216,7 @@ class Explanation(Comparison):
 
     @cached_property
     def ranking(self) -> pd.DataFrame:
-        """The effects by the error that they leave on data that were not fitted."""
+        """The effects that were tried, the one with the least validation error first."""
         return self._rows("ranking")
 
     @cached_property
@@ -252,7 +252,7 @@ class Explanation(Comparison):
 
 
 class Improvement(Explanation):
-    """A model that what it lacks was added to, effect by effect."""
+    """A model to which missing effects were added one by one."""
 
     @cached_property
     def revisions(self) -> pd.DataFrame:
@@ -280,16 +280,16 @@ class Improvement(Explanation):
 
 
 class Sweep(Result):
-    """How the delays move with the settings."""
+    """How the delays depend on the settings."""
 
     @cached_property
     def decisions(self) -> pd.DataFrame:
-        """Every step: by how many settings it is accepted, and how far its delays are apart."""
+        """Every step: how many settings accept it, and the range of its delays."""
         return self._rows("decisions")
 
     @cached_property
     def combinations(self) -> pd.DataFrame:
-        """Every combination of settings of each joint: how many steps it accepts, its delay."""
+        """Every combination of settings of each joint: accepted steps and median delay."""
         rows = [
             {"joint": joint["joint"], **settings, **found}
             for joint in self.joints
@@ -305,7 +305,7 @@ class Report(Result):
 
 
 class Design(Result):
-    """The next experiment; ``input`` is what drives it, a DataFrame."""
+    """The next experiment; ``input`` is the input to apply, a DataFrame."""
 
     input: pd.DataFrame
 

@@ -48,13 +48,14 @@ fn on_reading(error: &ReadError) -> String {
                 |joints: &Vec<_>| format!("`{}`", mapping_options([time.as_deref(), None], joints));
             let options: Vec<String> = mappings.iter().map(options).collect();
             return format!(
-                "; what the columns hold suggests {}; `tauscope columns` says why, and its `-w` keeps it",
+                "; the data suggest {}; `tauscope columns` says why, and `tauscope columns -w` \
+                 saves it",
                 options.join(" or ")
             );
         }
         ReadErrorKind::NoJoints(_) => {
-            "; `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN` says which are those of a joint, and \
-             `tauscope columns` which they may be"
+            "; name those of a joint with `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN`; `tauscope \
+             columns` shows which they may be"
         }
         ReadErrorKind::NoTime(Some(index)) => {
             return format!(
@@ -131,8 +132,8 @@ fn on_range(NotKept { shorter_s, wider, .. }: &NotKept) -> String {
         }
         (Some(shorter), None) => format!("; give {shorter}, or go without `--trials`"),
         (None, Some(wider)) => format!("; give {wider}"),
-        (None, None) => ": give a log in which the joint is driven for longer without a break, or \
-                         smaller levels (`--largest`)"
+        (None, None) => ": give a log in which the joint is driven for longer without \
+                         interruption, or smaller levels (`--largest`)"
             .to_owned(),
     }
 }

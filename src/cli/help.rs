@@ -20,9 +20,9 @@ const FIRST: [(&str, &str); 9] = [
 const QUESTIONS: [(&str, &str); 13] = [
     ("The columns are not recognised", "joint time trial columns"),
     ("The clock is uneven, or samples are missing", "sample-period resample fill"),
-    ("The input is not what was sent", "min-step input"),
+    ("The input is noisy, or moves all the time", "min-step input"),
     (
-        "Delays are to be found in another way",
+        "How delays are found",
         "method alpha beta passband filter-order max-delay interval interpolate paper \
          tolerance",
     ),
@@ -35,20 +35,20 @@ const QUESTIONS: [(&str, &str); 13] = [
         "Which model, and how it is fitted",
         "model write improve fit effects max-effects refine horizon split uncertainty",
     ),
-    ("Beside another result", "against"),
+    ("Compare with another result", "against"),
     (
         "Which input is designed",
         "output-range duration trials levels largest hold rate start dead-band seed \
          separate power noise rehearsals",
     ),
-    ("The log still grows", "follow idle"),
+    ("The log is still being written", "follow idle"),
     (
         "What is written",
         "output decisions delays table export preview embed no-recording interactive \
          title author date detail safe-csv",
     ),
     ("What is printed", "steps against-state format quiet"),
-    ("A viewer shows it at once", "connect spawn serve"),
+    ("Show it in a viewer while the command runs", "connect spawn serve"),
     ("Many logs, memory and processors", "results shard summary threads max-memory"),
 ];
 

@@ -1,6 +1,6 @@
 //! Delays that are longer than the holds of the input, seen over the whole record.
 //!
-//! The search for a breakpoint looks at one step at a time. Where a joint answers later than the
+//! The search for a breakpoint looks at one step at a time. Where a joint reacts later than the
 //! next step, what moves in a segment answers an earlier step, and its delay to the step of the
 //! segment is a number without meaning. Over the record the two are separable: with the increments
 //! of the output over blocks of a tenth of a hold, regressed on the input of `lag` blocks before,
@@ -115,7 +115,7 @@ mod tests {
     use crate::numerics::testing::uniform;
     use crate::units::SamplePeriod;
 
-    /// An integrator that answers `delay` samples late, through a lag of `lag` samples, to levels
+    /// An integrator that reacts `delay` samples late, through a lag of `lag` samples, to levels
     /// that are held for 100 to 200 samples.
     fn trial(delay: usize, lag: f64) -> Trial {
         // From -0.5 to 0.5.

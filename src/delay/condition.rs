@@ -97,19 +97,16 @@ impl Condition {
             Self::OutputLimit => "no sample of the segment touches a limit of the output",
             Self::BeforeInput => "the breakpoint q is not before the input step p",
             Self::SlopeChange => {
-                "the slopes of the lines before and after q differ by no less than the limit"
+                "the slopes of the lines before and after q differ by at least the limit"
             }
             Self::ShortHold => {
-                "the input keeps its new level, until the next step, for no fewer samples than the \
-                 limit"
+                "the input is held at its new level for at least as many samples as the limit"
             }
-            Self::Sse => "the squared errors of both lines add up to less than the limit",
+            Self::Sse => "the sum of squared errors of both lines is below the limit",
             Self::TooShort => "the segment has two rows of β samples, one for each line",
-            Self::AtRest => {
-                "the joint moves, and does not stand still or at its stop before and after the step"
-            }
+            Self::AtRest => "the joint moves after the step, and is not at rest or at its stop",
             Self::NothingHappened => {
-                "the slope changes more than noise makes it: the p-value is not above the limit"
+                "the slope changes by more than noise explains: the p-value is not above the limit"
             }
             Self::Reviewer => "no person rejected the step",
         }

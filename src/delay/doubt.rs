@@ -53,7 +53,7 @@ impl Flag {
         match self {
             Self::Edge => "breakpoint at the edge of the segment",
             Self::Jump => "lines jump apart at the breakpoint",
-            Self::Stop => "output at an end of its range behind the breakpoint",
+            Self::Stop => "output at an end of its range after the breakpoint",
         }
     }
 }

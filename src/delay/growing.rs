@@ -14,7 +14,7 @@ use crate::numerics::FilterError;
 #[non_exhaustive]
 pub enum Growing {
     /// The method looks at the whole record before it decides on any step.
-    #[error("`{method}` looks at the whole record before it decides on any step")]
+    #[error("`{method}` needs the whole record before it can decide on a step")]
     Method {
         /// Its id.
         method: &'static str,

@@ -2,7 +2,7 @@
 //!
 //! An actuator that rests until the input steps, moves, and stands at its stop long before the
 //! input steps again says two things that hold for every method. It cannot have begun to react
-//! later than it has plainly left its rest; and what it does at its stop answers no step.
+//! later than it has plainly left its rest; and what it does at its stop is no reaction to a step.
 //!
 //! A joint *rests* over `n` samples when the line through them, of slope `v` with the standard
 //! error `e = s·√(12/n³)` and residuals of standard deviation `s`, is shown to be slower than the

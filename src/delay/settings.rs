@@ -118,7 +118,7 @@ pub struct Settings {
     /// from step to step whatever the output does, and no step is `at_rest`.
     pub paper: bool,
     /// Whether delays are accepted although the onsets of a joint are no delays: its output leads the
-    /// input, does not follow it, or answers later than the next step.
+    /// input, does not follow it, or reacts later than the next step.
     pub accept_anyway: bool,
     /// Smallest change of the input that is a step, input units; 0 for any change.
     pub min_step: f64,

@@ -49,15 +49,16 @@ impl Method {
     pub const HINGE: Self = Self(&MethodSpec {
         id: "hinge",
         fits: "two lines that meet",
-        summary: "`auto` of a joint whose speed changes at once",
+        summary: "`auto` with the response `bend` alone: the speed changes at once",
         ..ONSET
     });
 
     /// The onset model of a speed that changes at once, or behind a lag or an oscillation.
     pub const LAG_AWARE: Self = Self(&MethodSpec {
         id: "lag-aware",
-        fits: "two lines that meet, behind a lag or an oscillation",
-        summary: "`auto` of a joint whose speed changes at once, or behind a lag or an oscillation",
+        fits: "two lines that meet, seen through a lag or an oscillation",
+        summary: "`auto` with responses of an integrating output alone: a bend, a lag, or an \
+                  oscillation",
         ..ONSET
     });
 

@@ -2,7 +2,7 @@
 //! its rate.
 //!
 //! Behind its dead time such an output goes to `y = a + b·u` and stays there. Its arrival bends it
-//! as much as its departure does, and answers no step of the input. What says anything of a step
+//! as much as its departure does, and is no reaction to a step of the input. What says anything of a step
 //! lies between the arrival of the step before and its own.
 
 use std::ops::Range;

@@ -8,7 +8,7 @@ use crate::model::JointModel;
 /// How much farther off a prediction may be than the farthest so far. A few parts of one record
 /// stand for all that is to come: the farthest of five normal errors is 1.2 standard deviations
 /// on average, and 2.6 are to be kept for a hundredth. Chosen; `examples/statistics/design_validation.rs`
-/// shows what comes of it.
+/// shows the result.
 pub const RESERVE: f64 = 2.0;
 
 /// How much farther still where the log shows motions from stop to stop alone: no rest on the way,

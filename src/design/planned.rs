@@ -1,4 +1,4 @@
-//! What is asked of random steps, and what comes of it.
+//! What is asked of random steps, and the result.
 
 use super::levels::Band;
 use super::predict::Prediction;

@@ -19,9 +19,7 @@ pub enum PlanError {
         has_model: bool,
     },
     /// No hold fits behind the rest with which an input begins.
-    #[error(
-        "an input of {duration_s} s has no room for a hold of {hold_s} s behind the rest before it"
-    )]
+    #[error("an input of {duration_s} s is too short for a rest and a hold of {hold_s} s after it")]
     HoldTooLong {
         /// The shortest hold, seconds.
         hold_s: f64,
@@ -59,8 +57,8 @@ pub enum PlanError {
     },
     /// The log has inputs of one sign only, and no model of it leads back.
     #[error(
-        "no input is planned from {} to {}: the log has {} inputs only, and does not show what \
-         leads the joint back",
+        "no input is planned from {} to {}: the log has {} inputs only, so it does not show how \
+         to drive the joint back",
         rounded(.range.0), rounded(.range.1), if *.is_positive { "positive" } else { "negative" }
     )]
     OneSign {
@@ -118,7 +116,7 @@ impl std::fmt::Display for NotKept {
             write!(f, ": a prediction of this joint may be off by {margin} after that time")?;
         }
         match (shorter_s, wider) {
-            (None, None) => f.write_str("; no shorter input and no wider range will do"),
+            (None, None) => f.write_str("; neither a shorter input nor a wider range helps"),
             _ => Ok(()),
         }
     }

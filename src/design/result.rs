@@ -84,8 +84,8 @@ pub enum DesignError {
     },
     /// One suspect can do what the other does, whatever the input.
     #[error(
-        "no input of {longest_s} s or less separates them: as far as is known, one of them can \
-         do all that the other does"
+        "no input of {longest_s} s or less distinguishes them: with the parameters known so far, \
+         one of them gives the same output as the other"
     )]
     Imitated {
         /// Longest input that was tried, seconds.
@@ -93,7 +93,7 @@ pub enum DesignError {
     },
     /// None of the inputs that were tried is good enough.
     #[error(
-        "no input of {longest_s} s or less separates them with power {wanted}; the best that was \
+        "no input of {longest_s} s or less distinguishes them with power {wanted}; the best one \
          found has {best:.2}: give more time, larger levels or a wider range"
     )]
     NotApart {

@@ -24,7 +24,7 @@ pub struct AccumulatorDroop;
 static SPEC: Spec = Spec::new(
     "accumulator_droop",
     Stage::Load,
-    "accumulator: the gain falls with what the joint has lately consumed",
+    "accumulator: the gain falls with the joint's own recent consumption of oil",
 )
 .equation(
     "out = in sqrt(p), p = (1 + droop w / 0.7)^-1.4, dw/dt = abs(out) - (1 - p) / (2 droop recovery_time)",
@@ -33,7 +33,7 @@ static SPEC: Spec = Spec::new(
 .parameters(&[
     Parameter::new(
         "droop",
-        "part of the speed lost per way lately gone, near full charge",
+        "part of the speed lost per unit of recent travel, near full charge",
         Dimension::PerOutput,
     )
     .between(0.0, UNLIMITED),

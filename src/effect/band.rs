@@ -7,7 +7,7 @@ use super::RecordRange;
 const FLAT: usize = 2;
 
 /// Whether the input of `record` is held at levels within the band, at which the joint stands still:
-/// from those outside alone a band is not told from a curve that rises slowly at first.
+/// from those outside alone a band is not distinguished from a curve that rises slowly at first.
 pub(super) fn is_seen(lower: f64, upper: f64, record: &RecordRange<'_>) -> bool {
     let is_within = |level: &&f64| 0.0 < **level && **level < upper.max(-lower);
     record.input_levels.iter().filter(is_within).count() >= FLAT

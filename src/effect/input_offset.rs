@@ -20,7 +20,7 @@ pub struct InputOffset;
 static SPEC: Spec = Spec::new(
     "input_offset",
     Stage::Input,
-    "null offset: the joint stands still at another input than zero",
+    "null offset: the joint stands still at an input other than zero",
 )
 .equation("out = in + offset")
 .source("Merritt, 1967, Hydraulic Control Systems")

@@ -36,7 +36,7 @@ static SPEC: Spec = Spec::new(
 /// than a fortieth of the largest.
 const FINEST: f64 = 20.0;
 
-/// Levels whose jumps are told apart: where more are met, the error hardly jumps at any one.
+/// Levels whose jumps are distinguished: where more are met, the error hardly jumps at any one.
 const TOLD_APART: usize = 100;
 
 /// Neighbouring levels with the same multiple that show a step: one pair may be a flat piece of a

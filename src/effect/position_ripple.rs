@@ -23,7 +23,7 @@ pub struct PositionRipple;
 static SPEC: Spec = Spec::new(
     "position_ripple",
     Stage::Load,
-    "the gain ripples with the angle, as of a piston motor or a gear",
+    "the gain ripples with the angle, as with a piston motor or a gear",
 )
 .equation("out = in (1 + amplitude sin(2 pi y / period + phase))")
 .source("Ivantysyn and Ivantysynova, 2001, Hydrostatic Pumps and Motors")

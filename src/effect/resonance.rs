@@ -19,29 +19,32 @@ use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, 
 #[derive(Clone, Copy, Debug)]
 pub struct Resonance;
 
-static SPEC: Spec =
-    Spec::new("resonance", Stage::Dynamics, "compressible oil: a poorly damped swing of the speed")
-        .equation("d2 out/dt2 + 2 damping w d out/dt + w^2 out = w^2 in, w = 2 pi / period")
-        .source("Merritt, 1967, Hydraulic Control Systems")
-        .parameters(&[
-            Parameter::new("period", "period without damping", Dimension::Seconds)
-                .between(0.0, UNLIMITED),
-            Parameter::new("damping", "damping ratio; 1 is critical", Dimension::One)
-                .between(0.0, 10.0)
-                .neutral(1.0),
-        ])
-        .memory(2 + SWING_MEMORY)
-        .starting_at_signal()
-        .confused_with(&["actuator_lag"])
-        .equations(
-            Equations::new(&[
-                "at_once = period < 1e-9
+static SPEC: Spec = Spec::new(
+    "resonance",
+    Stage::Dynamics,
+    "compressible oil: a poorly damped oscillation of the \
+                                             speed",
+)
+.equation("d2 out/dt2 + 2 damping w d out/dt + w^2 out = w^2 in, w = 2 pi / period")
+.source("Merritt, 1967, Hydraulic Control Systems")
+.parameters(&[
+    Parameter::new("period", "period without damping", Dimension::Seconds).between(0.0, UNLIMITED),
+    Parameter::new("damping", "damping ratio; 1 is critical", Dimension::One)
+        .between(0.0, 10.0)
+        .neutral(1.0),
+])
+.memory(2 + SWING_MEMORY)
+.starting_at_signal()
+.confused_with(&["actuator_lag"])
+.equations(
+    Equations::new(&[
+        "at_once = period < 1e-9
              omega = 2 * pi / max(period, 1e-9)
              ratio = damping\n",
-                SWING,
-            ])
-            .remembering(&["state", "rate"], "state = signal\nrate = 0"),
-        );
+        SWING,
+    ])
+    .remembering(&["state", "rate"], "state = signal\nrate = 0"),
+);
 
 /// Period below which the output is the input: it is then over before anything moves,
 /// and its square is still far from the ends of what a number can hold.

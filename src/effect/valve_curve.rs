@@ -38,7 +38,7 @@ pub struct ValveCurve;
 static SPEC: Spec = Spec::new(
     "valve_curve",
     Stage::Input,
-    "static curve of the valve without a law, by monotone cubics between knots",
+    "static curve of the valve of any monotone form, by cubics between knots",
 )
 .equation(
     "out = 0 at in = 0, share_1 share_2 share_3 share_4 share_5 reach at in = reach/6, \

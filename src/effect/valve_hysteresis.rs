@@ -23,7 +23,8 @@ pub struct ValveHysteresis;
 static SPEC: Spec = Spec::new(
     "valve_hysteresis",
     Stage::Spool,
-    "play of the spool: at one level the valve opens less from below than from above",
+    "play of the spool: at the same input the valve opens less when it is reached from below than \
+     from above",
 )
 .equation("out stays until abs(in - out) > width / 2, then follows at that distance")
 .source(

@@ -52,7 +52,7 @@ fn check_length(bytes: usize, most: u64) -> std::io::Result<()> {
     if bytes as u64 <= most {
         return Ok(());
     }
-    let reason = format!("it holds more than {} MB, so it is no such file", most >> 20);
+    let reason = format!("it has more than {} MB, which no file of this kind has", most >> 20);
     Err(Error::new(ErrorKind::InvalidData, reason))
 }
 

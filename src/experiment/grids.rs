@@ -175,7 +175,7 @@ impl Findings<'_> {
         const KINDS: [(Count, &str); 3] = [
             (
                 |clock| clock.found.twice,
-                "at the time of the row before, and one of the two is left out",
+                "at the same time as the row before; one of the two is left out",
             ),
             (|clock| clock.found.disordered, "out of order and sorted by time"),
             (|clock| clock.found.alone, "alone between gaps and left out"),
@@ -241,7 +241,7 @@ impl Findings<'_> {
         let what = if !self.is_resampled && evenness == Evenness::Jitters {
             "samples are placed on a grid of"
         } else {
-            "samples are interpolated, the input held, on a grid of"
+            "the output is interpolated and the input held on a grid of"
         };
         let clocks = trials.iter().map(|trial| (*trial, &self.trials[*trial].clock));
         let worst = clocks.max_by(|(_, a), (_, b)| a.largest.0.total_cmp(&b.largest.0));
@@ -271,8 +271,9 @@ impl Findings<'_> {
         let longest = gaps.iter().map(|(_, (_, periods, _))| *periods).max()?;
         let gaps = if many == 1 { "gap" } else { "gaps" };
         Some(format!(
-            "{many} {gaps} of up to {longest} periods (first before row {row}), where rows are lost or the \
-             logger is slower: they are filled, the output interpolated, the input held"
+            "{many} {gaps} of up to {longest} periods (first before row {row}), where rows are \
+             lost or the logger is slower: they are filled, the output interpolated and the input \
+             held"
         ))
     }
 }

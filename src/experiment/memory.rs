@@ -100,8 +100,8 @@ impl Budget {
         }
         let [needed, limit] = [needed, self.limit].map(in_words);
         let text = format!(
-            "it would take {needed} of memory to read it, and {limit} are allowed; check that the file is \
-             what it should be"
+            "reading it would need {needed} of memory, and {limit} are allowed; check that the \
+             file is a log"
         );
         Err(ReadError::new(ReadErrorKind::TooLarge, text))
     }
@@ -127,7 +127,10 @@ mod tests {
         budget.rest().take(40).unwrap();
         assert!(budget.take_values(usize::MAX, 8).is_err());
         let refused = budget.take(41).unwrap_err().to_string();
-        assert!(refused.contains("101 bytes of memory to read it, and 100 bytes"), "{refused}");
+        assert!(
+            refused.contains("reading it would need 101 bytes of memory, and 100 bytes"),
+            "{refused}"
+        );
         budget.take(40).unwrap();
     }
 

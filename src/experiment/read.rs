@@ -328,12 +328,13 @@ pub(super) fn read_log(
     if found.joints.is_empty() && !failed_clocks.is_empty() {
         return Err(failed_clocks.swap_remove(0).1);
     }
-    // What is wrong with the rows of one clock costs the joints of no other theirs.
+    // An error in one time column fails the joints that use it; joints with another one are read.
     for (joints, error) in failed_clocks {
         let Some((first, others)) = joints.split_first() else { return Err(error) };
         let as_first = |joint: &JointLayout| {
             let text = format!(
-                "it cannot be read, as joint `{}`, whose output has the same clock",
+                "it is left out, too, because it has the same time column as joint `{}`, whose \
+                 rows cannot be read",
                 first.name
             );
             failed((joint.name.clone(), ReadError::new(ReadErrorKind::Content, text)))

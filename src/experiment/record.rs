@@ -33,7 +33,7 @@ pub struct Record {
 type Found = Arc<OnceLock<Arc<dyn Any + Send + Sync>>>;
 
 impl Record {
-    /// A property of these trials: found by whoever asks first, while others wait for it.
+    /// A property of these trials: computed by the first thread that asks, while others wait for it.
     pub fn property<T: Property>(&self) -> Arc<T> {
         let place = {
             let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);

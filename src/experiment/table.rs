@@ -1,7 +1,7 @@
 //! A log as columns of numbers, whatever the format of its file.
 //!
-//! Knows nothing of joints beyond "this column is wanted": what the columns mean is
-//! decided in [`super::layout`].
+//! It does not know what the columns mean, only which are wanted: [`super::layout`] assigns them to
+//! joints.
 
 use std::collections::HashSet;
 use std::fmt;
@@ -74,7 +74,7 @@ impl Head {
         if self.headers.len() < 2 || !self.headers.iter().all(is_number) {
             return Ok(());
         }
-        let text = "the first row holds numbers, and no names of columns; write a header above it, as in \
+        let text = "the first row has numbers instead of names of columns; write a header above it, as in \
                     `time_s,boom.input,boom.output`";
         Err(ReadError::new(ReadErrorKind::Content, text).in_row(self.header_row))
     }
@@ -310,8 +310,9 @@ impl fmt::Display for BadCell {
             ),
             Self::Thousands(text) => write!(
                 f,
-                "`{}` may be a thousand and more, beside whole numbers without such a mark, or have three \
-                 decimals; write decimals with a point, and nothing between thousands",
+                "`{}` may mean a number with three decimals or one in the thousands, since other \
+                 cells of the column are whole numbers; write decimals with a point, and nothing \
+                 between thousands",
                 shown(text)
             ),
             Self::Infinite => {
@@ -319,8 +320,8 @@ impl fmt::Display for BadCell {
             }
             Self::TooLarge(value) => write!(
                 f,
-                "{value:e} is beyond what double precision can square; write it in a larger unit, or leave \
-                 the cell empty where it stands for nothing"
+                "{value:e} is too large: its square is beyond double precision; write it in a \
+                 larger unit, or leave the cell empty if the number marks a missing value"
             ),
         }
     }

@@ -1,8 +1,8 @@
-//! Whether an effect is worth adding: one decision, whoever asks.
+//! Whether an effect is worth adding: one decision, for all who ask.
 //!
 //! An effect is added where the record shows it, determines it, and physics allows its values; where
 //! nothing that is there already looks the same; where what was not fitted is predicted as well; and
-//! where the error that it takes away is of consequence. The first of these that fails is the reason
+//! where the error that it takes away has a practical consequence. The first of these that fails is the reason
 //! for which it is refused.
 
 use super::candidate::Candidate;
@@ -99,7 +99,7 @@ impl<'a, 'r> Judge<'a, 'r> {
     }
 }
 
-/// What the effects `new` of a fitted model are not told from, where there is any such: an effect beside
+/// What the effects `new` of a fitted model are not distinguished from, where there is any such: an effect beside
 /// them, or a simpler one in their place.
 fn like_another(
     record: &FitRecord<'_>,
@@ -197,7 +197,7 @@ mod tests {
         let implausible = Refusal::Implausible("factor".to_owned());
         assert_eq!(with(|_| (), Some("factor")), Some(implausible));
         assert_eq!(with(|_| (), None), None);
-        // Beside a limit that lies beyond the record, a curve that bends is not told from it.
+        // Beside a limit that lies beyond the record, a curve that bends is not distinguished from it.
         let mut alike = candidate.clone();
         let limit = Component::new(&InputSaturation, [5.0, 0.2].map(Value::from).to_vec()).unwrap();
         alike.effects = vec!["flow_curve"];

@@ -32,7 +32,7 @@ pub enum Refusal {
     Undetermined,
     /// A parameter has a value that physics does not allow: its name.
     Implausible(String),
-    /// Beside an effect of the model that looks like it, it is not told from doing nothing.
+    /// Beside an effect of the model that looks like it, it is not distinguished from doing nothing.
     LikeAnother,
     /// The record shows no more than its simpler limiting case.
     LimitingCase(LimitingCase),
@@ -75,7 +75,9 @@ impl Judgement {
             Some(Refusal::NotSignificant) => {
                 "the reduction is not significant, or too small".to_owned()
             }
-            Some(Refusal::Undetermined) => "the record does not determine it".to_owned(),
+            Some(Refusal::Undetermined) => {
+                "this record does not determine its parameters".to_owned()
+            }
             Some(Refusal::Implausible(name)) => format!("the value of {name} is not plausible"),
             Some(Refusal::LikeAnother) => {
                 "not distinguishable from a similar effect of the model".to_owned()
@@ -89,7 +91,7 @@ impl Judgement {
             }
             Some(Refusal::Behind(name)) => format!("{name} is more likely"),
             Some(Refusal::NotTheWhole) => {
-                "with it, and with further effects, the model still fails".to_owned()
+                "the model still fails with it, also with further effects".to_owned()
             }
             Some(Refusal::NothingMissing) => "nothing is missing from the model".to_owned(),
         }

@@ -1,4 +1,4 @@
-//! How much of what a model lacked an effect explains, and when that is of consequence.
+//! How much of what a model lacked an effect explains, and when that has a practical consequence.
 
 use std::sync::Arc;
 

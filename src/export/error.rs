@@ -14,8 +14,8 @@ pub enum ExportError {
     },
     /// An effect takes delays from a log.
     #[error(
-        "effect `{effect}` cannot be exported: it takes each step's delay from a log, which a \
-         model that stands alone does not have"
+        "effect `{effect}` cannot be exported: it takes the delay of each step from a log, which \
+         an exported model does not have"
     )]
     MeasuredDelays {
         /// Id of the effect.

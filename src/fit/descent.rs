@@ -8,10 +8,9 @@
 //!
 //! for the values that are free to move; one at a bound beyond which the error falls stays, and
 //! one that a step would take beyond its bound goes to it, while the others are solved for
-//! anew. `λ` follows from how much of the predicted gain a step makes (Nielsen). A simulation
-//! is dear and `J` takes one for each value: from step to step `J` is mended by what the step
-//! has shown (Broyden), and differenced again only where a step disappoints, or before a
-//! descent ends.
+//! anew. `λ` follows from how much of the predicted gain a step makes (Nielsen). Simulations are
+//! expensive and `J` takes one for each value, so from step to step `J` is updated (Broyden), and
+//! differenced again only where a step gains less than predicted, or before a descent ends.
 //!
 //! It has converged when the part of the sum of squares that a linear step could still take,
 //! `gᵀ(JᵀJ)⁻¹g / rᵀr` with `g = Jᵀr` of the values that can move, is below a limit: the gradient,

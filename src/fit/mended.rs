@@ -1,9 +1,9 @@
-//! What models are held against: a record without what its sensors added.
+//! What models are compared with: a record without what its sensors added.
 
 use crate::delay::held_inputs;
 use crate::experiment::{Property, Record, Spikes, Trial};
 
-/// What models are held against in a record.
+/// What models are compared with in a record.
 #[derive(Debug)]
 pub(crate) struct Mended {
     /// The record with lines in the place of the spikes of its output, and with the levels that its

@@ -109,9 +109,9 @@ impl fmt::Display for Termination {
         f.write_str(match self {
             Self::Converged => "converged",
             Self::NoDescent => {
-                "stopped where no step lowers the error, which is not smooth there; another start may \
-                 end lower"
-            },
+                "stopped: the error is not smooth there, and no step lowers it; other initial \
+                 values may lead to a smaller one"
+            }
             Self::NothingToFit => "nothing to fit",
             Self::OutOfPatience => "stopped after too many simulations",
             Self::Numerical => "the simulation gave no numbers",
@@ -124,7 +124,7 @@ impl fmt::Display for Termination {
 #[non_exhaustive]
 pub enum FitError {
     /// There are fewer samples for training than parameters.
-    #[error("{samples} samples for training are too few for {parameters} parameters")]
+    #[error("{samples} training samples are too few for {parameters} parameters")]
     TooFewSamples {
         /// Samples there are.
         samples: usize,
@@ -139,13 +139,14 @@ pub enum FitError {
     },
     /// What the model says is no number, or beyond what double precision can square.
     #[error(
-        "its model gives outputs that are no numbers, or beyond what double precision can square; \
+        "the outputs of its model are not finite, or their squares are beyond double precision; \
          check its parameters and the unit of the log"
     )]
     NotFinite,
     /// Outputs beyond the largest value that a parameter may have.
     #[error(
-        "its outputs go beyond {UNLIMITED:e}, where parameters of models end; log it in a larger unit"
+        "its outputs go beyond {UNLIMITED:e}, the largest value of a model parameter; log it in a \
+         larger unit"
     )]
     BeyondParameters,
 }

@@ -121,7 +121,7 @@ impl Space {
 }
 
 /// The values of a parameter of `model` that the record reaches: a level beyond all of the input,
-/// or a limit of the output where it never comes, changes at most what cannot be told from it.
+/// or a limit of the output where it never comes, changes at most what cannot be distinguished from it.
 fn reach(model: &JointModel, index: usize, range: &RecordRange<'_>) -> Bounds {
     /// What noise may have put the output beyond its limit by, in parts of its span.
     const NOISE: f64 = 0.01;

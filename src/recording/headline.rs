@@ -74,9 +74,9 @@ fn on_model(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>) -> String {
         (None, None, Verdict::Adequate) => {
             Some("To check it on another log: `tauscope compare LOG --model MODEL.toml`".to_owned())
         }
-        (None, None, _) => {
-            Some("Where the remaining error arises: the second tab above the drawing.".to_owned())
-        }
+        (None, None, _) => Some(
+            "The second tab above the drawing shows where the remaining error arises.".to_owned(),
+        ),
     });
     format!("**{}.**  \n{}", prose(&conclusion.headline), sentences.join(" "))
 }

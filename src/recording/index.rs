@@ -89,7 +89,7 @@ impl Content for IndexRecording<'_> {
 
     fn blueprint(&self, _: Growth) -> Blueprint {
         let path = |path: &str| at(&EntityPath::from(ROOT), path);
-        let name = "The segment, the chosen lines, what they leave, the squared errors";
+        let name = "The segment, the chosen lines, their residual, the squared errors";
         let list = "Most doubtful of all joints first: click a number";
         let left = [
             (3.2, Page::list(list, path("log"), "doubt")),

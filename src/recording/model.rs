@@ -220,9 +220,10 @@ fn reconciled(models: &[&ComparedJoint<'_>]) -> Option<String> {
     let odd: Vec<String> = models.iter().filter(is_odd).map(|it| plain(it.model)).collect();
     (!odd.is_empty()).then(|| {
         format!(
-            "{}: adequate and yet not white, since whiteness asks whether any memory is left in the \
-             residual, as noise may have it and the smallest misfit makes it in a long record; the lack \
-             of fit asks whether motion of a size that matters is left.\n",
+            "{}: adequate although the residual is not white. The whiteness test finds any \
+             autocorrelation, which coloured noise has, and in a long record even a negligible \
+             misfit; the test for lack of fit asks whether the residual contains motion of \
+             relevant size.\n",
             odd.join(", ")
         )
     })
@@ -252,8 +253,8 @@ fn worst_segments(layout: &JointLayout<'_>, judged: &ComparedJoint<'_>) -> Strin
     let horizon = judged.comparison.fit.evaluation.horizon;
     format!(
         "Where the output of {} is farthest off, {horizon}: the segments with the largest sums of \
-         squares, and the one with the largest residual of all. The output keeps each error \
-         of the speed until the next restart, so that this need not be where it arises:\n\n{table}",
+         squares, and the one with the largest residual of all. The simulated output keeps an \
+         error of the speed until the next restart, so the cause may lie earlier:\n\n{table}",
         plain(judged.model)
     )
 }
@@ -271,8 +272,12 @@ fn headline(judged: &ComparedJoint<'_>) -> String {
     let comparison = judged.comparison;
     let times = comparison.validation.zip(sensor_noise(&judged.joint.trials));
     let followed = comparison.validation.map(|error| error.fit_percent).filter(|part| *part > 0.0);
-    let followed = followed
-        .map_or_else(String::new, |part| format!("the model follows {part:.0} % of the motion; "));
+    let followed = followed.map_or_else(String::new, |part| {
+        format!(
+            "the model explains {part:.0} % of the motion; \
+                                                  "
+        )
+    });
     let times = times.map(|(error, noise)| error.rmse / noise.max(f64::MIN_POSITIVE));
     let unit = judged.joint.output_unit.as_deref();
     let error = comparison.validation.map(|error| measure(error.rmse, unit)).unwrap_or_default();
@@ -285,7 +290,7 @@ fn headline(judged: &ComparedJoint<'_>) -> String {
             format!("{followed}the error is {error}, {}", times_noise(times))
         }
         (_, Some(_)) if followed.is_empty() => {
-            format!("the model follows nothing of the motion; the error is {error}")
+            format!("the model explains nothing of the motion; the error is {error}")
         }
         (_, Some(_)) => format!("{followed}the error is {error}"),
         _ => "there is an error that is no noise".to_owned(),

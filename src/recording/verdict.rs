@@ -304,7 +304,7 @@ impl Facts<'_, '_> {
             }
         }
         if let Some(model) = self.trial.estimate.onset_model.as_deref() {
-            row("response behind the delay", &plain(&onset_sentence(model)));
+            row("response after the delay", &plain(&onset_sentence(model)));
         }
         if let Some(tracking) = &self.trial.estimate.tracking {
             let (offset, gain) = (number(tracking.offset()), number(tracking.gain()));

@@ -102,7 +102,7 @@ fn has_decisions(joint: &EstimatedJoint<'_>) -> bool {
 
 /// What the lanes of the model that is judged are called.
 const LANES: &str =
-    "Where the error of its speed arises; what was not fitted; worst segments (1 first)";
+    "Where the error of its speed arises; validation part; worst segments (1 first)";
 
 /// What plots along the record are called: they are empty on timelines that have no samples.
 const ALONG: &str = "Along sample, time or decision";
@@ -115,7 +115,7 @@ type Drawing = (&'static str, &'static str, &'static [&'static str], (f32, f32))
 const DRAWINGS: [Drawing; 3] = [
     ("Residual against four quantities: points, and their mean", paths::SCATTER, &["lines"], scatter::SIZE),
     ("Share of the error: bars; of the time: white", paths::ERROR_SHARE, &["squared_error"], error_share::SIZE),
-    ("Correlation: that of noise stays between the lines (99 %)", paths::CORRELATION, &["band", "lines"], correlogram::SIZE),
+    ("Correlation: 99 % of noise lies between the lines", paths::CORRELATION, &["band", "lines"], correlogram::SIZE),
 ];
 
 /// Where a plot says what its curves are: a legend covers data.
@@ -437,7 +437,7 @@ impl Tab<'_> {
             let root = self.at(paths::MODEL_DIFFERENCE);
             let others: Vec<_> = others.iter().map(|name| child(root.clone(), name)).collect();
             let name = format!(
-                "Squared error so far less that of {first}: it rises where {first} is better"
+                "Cumulative squared error less that of {first}: it rises where {first} is better"
             );
             plot(name, &others, Legend::Apart)
         });

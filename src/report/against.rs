@@ -25,8 +25,8 @@ pub(super) fn confounded_sentences(found: &AgainstState) -> Vec<String> {
         let transition = kind.transition;
         let sentence = move |[one, other]: &[String; 2]| {
             format!(
-                "in steps of the kind `{transition}` {} and {} go together: the record does not \
-                 tell on which of them the delay depends",
+                "in steps of the kind `{transition}` {} and {} are correlated, so the record does \
+                 not show on which of them the delay depends",
                 variable_text(one, None),
                 variable_text(other, None)
             )

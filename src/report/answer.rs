@@ -63,8 +63,8 @@ pub(crate) fn input_note(joint: &EstimatedJoint<'_>) -> Option<String> {
     let name = &joint.joint.name;
     let changes = percent(joint.estimate.motion.changes);
     Some(format!(
-        "joint `{name}`: the input moves all the time (it changes at {changes} of its samples): \
-         one dead time over the record instead of one per step"
+        "joint `{name}`: the input moves all the time (it changes at {changes} of its samples), \
+         so one dead time is estimated for the record instead of one per step"
     ))
 }
 
@@ -81,11 +81,11 @@ pub(crate) fn dead_time_sentences(joint: &EstimatedJoint<'_>) -> Vec<String> {
 fn moves(motion: &InputMotion) -> String {
     let changes = percent(motion.changes);
     let steps = motion.travel_in_steps.map_or_else(String::new, |share| {
-        format!("; steps between levels that it holds make {} of its travel", percent(share))
+        format!("; steps between held levels make up {} of its travel", percent(share))
     });
     format!(
-        "the input moves all the time (it changes at {changes} of its samples{steps}): \
-         one dead time over the record instead of one per step"
+        "the input moves all the time (it changes at {changes} of its samples{steps}), so one \
+         dead time is estimated for the record instead of one per step"
     )
 }
 
@@ -99,8 +99,8 @@ fn finding(found: &DeadTime) -> String {
     let confidence = percent(found.confidence);
     match found.finding {
         Finding::Known(bounds) if found.varies() => format!(
-            "the dead time varies: {} over the record at {confidence}, then {what} follows with a lag \
-             of {lag:.3} s",
+            "the dead time varies: {} for the record at {confidence} confidence, then {what} \
+             follows with a lag of {lag:.3} s",
             seconds(bounds)
         ),
         Finding::Known(bounds) => format!(
@@ -108,21 +108,22 @@ fn finding(found: &DeadTime) -> String {
             seconds(bounds)
         ),
         Finding::LagOnly(Bounds { high_s, .. }) => format!(
-            "no dead time (at most {high_s:.3} s at {confidence}), but {what} follows with a lag of \
-             {lag:.3} s"
+            "no dead time is shown (at {confidence} confidence it is at most {high_s:.3} s); \
+             {what} follows with a lag of {lag:.3} s"
         ),
         Finding::Unknown(Unknown::TooShort) => {
             "no dead time: the record is too short, or the input hardly moves".to_owned()
         }
         Finding::Unknown(Unknown::NotExplained) => {
-            "no dead time: the input does not explain what the output does".to_owned()
+            "no dead time: the output does not follow the input".to_owned()
         }
         Finding::Unknown(Unknown::OneFrequency(hz)) => format!(
-            "no dead time: the input is a sine of {hz:.3} Hz alone, whose phase a lag explains as well as \
-             a dead time does; drive the joint at several frequencies, or in steps"
+            "no dead time: the input is a sine of a single frequency, {hz:.3} Hz, at which a lag \
+             and a dead time have the same phase; drive the joint at several frequencies, or in \
+             steps"
         ),
         Finding::Unknown(Unknown::TooLong(longest_s)) => {
-            format!("no dead time up to {longest_s:.3} s; search further with `--max-delay`")
+            format!("no dead time found up to {longest_s:.3} s; search further with `--max-delay`")
         }
     }
 }
@@ -143,6 +144,6 @@ fn windows(found: &DeadTime) -> Option<String> {
 }
 
 fn feedback(found: &DeadTime) -> Option<String> {
-    let bias = "the input follows the output (feedback), so that the dead time may be biased";
+    let bias = "the input follows the output, as in closed loop, so the dead time may be biased";
     found.feedback.is_present().then(|| bias.to_owned())
 }

@@ -106,7 +106,7 @@ impl ComparedModels<'_> {
         );
         let better = if found.rmse < found.other_rmse { model } else { other };
         let test = found.test.map_or_else(
-            || "too few steps, or no difference, to ask whether it is more than chance".to_owned(),
+            || "too few steps, or no difference, to test whether it is more than chance".to_owned(),
             |test| {
                 let p = p_text(test.p_value);
                 let said = if found.is_significant() == Some(true) {
@@ -202,9 +202,10 @@ fn failure_sentences(compared: &ComparedJoint<'_>) -> Vec<String> {
 /// What the errors of a table are.
 pub(crate) fn errors_note(horizon: &str) -> String {
     format!(
-        "root-mean-square errors, {horizon}; training and validation without the mean of each run, \
-         raw with it (validation, from the measured output), free run from the start of each trial; \
-         a parameter is given ± its standard error"
+        "root-mean-square errors, {horizon}; training, validation: on the fitted and on the other \
+         part of the record, less the mean of each run between restarts; raw: validation, nothing \
+         subtracted; free run: each trial simulated from its start; fit: 100 % is a perfect match \
+         of the validation part; noise: of the sensor; ± is one standard error"
     )
 }
 

@@ -120,12 +120,11 @@ impl EstimatedJoint<'_> {
 pub(super) fn neutral_sentence(found: &DelayTable, unit: Option<&str>) -> String {
     match found.neutral {
         Some(neutral) => format!(
-            "the input is neutral at {}{}; a start leaves it, a stop leads to it",
+            "the neutral level of the input is {}{}: a start leaves it, a stop returns to it",
             number(neutral.level),
             unit_suffix(unit)
         ),
-        None => "the record does not show at which level the input is neutral: every step is a \
-                 change"
+        None => "the record does not show a neutral level of the input, so every step is a change"
             .to_owned(),
     }
 }
@@ -138,7 +137,7 @@ fn kind_sentence(kind: &KindDelay) -> String {
             format!("; {count} rejected: {}; {}", condition.meaning(), help(condition, *transition))
         });
         return format!(
-            "{transition}: no typical delay, {accepted} of {steps} steps accepted{why}"
+            "{transition}: no typical delay: too few accepted steps ({accepted} of {steps}){why}"
         );
     };
     let TypicalDelay { median_s, interval_s, .. } = typical;
@@ -263,8 +262,8 @@ mod tests {
         assert_eq!(
             kind_sentence(&kind(None, 1)).split("; `").next(),
             Some(
-                "stop: no typical delay, 1 of 26 steps accepted; 25 rejected: first or last step \
-                 of the trial"
+                "stop: no typical delay: too few accepted steps (1 of 26); 25 rejected: first or \
+                 last step of the trial"
             )
         );
     }

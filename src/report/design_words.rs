@@ -118,22 +118,22 @@ fn explanation(joint: &DesignedJoint, found: &Discrimination) -> Vec<String> {
     let Discrimination { ids, design, wanted, noise, .. } = found;
     let noise = measure(*noise, joint.rig.output_unit.as_deref());
     let mut sentences = vec![format!(
-        "Power: the probability that explain names the effect that is there and excludes the \
-         other, with noise of {noise}; {wanted} was wanted. λ: squared distance to the best fit \
+        "Power: the probability that `explain` names the effect that the joint has and excludes \
+         the other, with noise of {noise}; {wanted} was required. λ: squared distance to the best fit \
          with the other effect and with neither, in variances of the noise."
     )];
     for (index, side) in design.sides.iter().enumerate().filter(|(_, side)| !side.is_target) {
         let (is, other) = (ids.get(index), ids.get(1 - index));
         if let (Some(is), Some(other), true) = (is, other, side.is_excluded) {
             sentences.push(format!(
-                "The log already contradicts {is}: the input is made for the case that it is \
-                 {other}."
+                "The log already contradicts {is}: the input is designed for the case that the \
+                 joint has {other}."
             ));
         } else if let (Some(is), Some(other)) = (is, other) {
             let lambda = rounded(side.expected.rival.noncentrality());
             sentences.push(format!(
-                "If it is {is}, {other} can do the same (λ = {lambda}), and stays possible \
-                 whatever is played."
+                "If the joint has {is}, {other} gives the same output (λ = {lambda}), so no input \
+                 can exclude {other}."
             ));
         }
     }
@@ -143,8 +143,8 @@ fn explanation(joint: &DesignedJoint, found: &Discrimination) -> Vec<String> {
             format!("{effect}.{parameter} from {} to {}", rounded(*low), measure(*high, unit))
         });
         sentences.push(format!(
-            "No input passed its rehearsals, since it is open where the levels lie at which the \
-             joint starts or stops: {}. This input finds them.",
+            "No input passed its rehearsals, because the log does not show at which levels the \
+             joint starts or stops: {}. This input finds these levels.",
             open.collect::<Vec<_>>().join(", ")
         ));
     }
@@ -183,7 +183,7 @@ fn promise(joint: &DesignedJoint, prediction: &Prediction, basis: &Basis) -> [St
         Some(range) => {
             let known = basis.within.filter(|within| *within != range).map(|known| {
                 let known = from_to(known);
-                format!(" Only {known} is used, about where the log has been.")
+                format!(" Only {known} is used, which is about the range of the log.")
             });
             format!("Range: {} is kept: {expected}.{}", from_to(range), known.unwrap_or_default())
         }
@@ -231,16 +231,17 @@ fn margin_text(
     let margin = measure(prediction.largest_margin(), unit);
     let Some(free_run) = free_run else {
         return format!(
-            "Margin: up to {margin}, two standard deviations of what the parameters of the model, \
-             {model}, may be off (--uncertainty)."
+            "Margin: up to {margin}: two standard deviations of the prediction, from the \
+             uncertainty of the parameters (--uncertainty) of the model, {model}."
         );
     };
     let (largest, longest) = (measure(free_run.largest(), unit), free_run.longest_s());
     let beyond = if is_bounded { "no more" } else { "in proportion" };
     let within = if joint.schedule.trial_count() > 1 { " within a trial" } else { "" };
     format!(
-        "Margin: grows to {margin}{within}. It is {} times the most by which the model, {model}, was off on \
-         parts of the log that its fit did not see: {largest} within {}, and {beyond} beyond.",
+        "Margin: grows to {margin}{within}. It is {} times the largest error of the model, \
+         {model}, on parts of the log that were left out of its fit: {largest} within {}, and \
+         {beyond} beyond.",
         rounded(free_run.reserve()),
         measure(longest, Some("s"))
     )
@@ -250,7 +251,7 @@ fn margin_text(
 pub(crate) fn hold_note(shortest_s: f64, response_s: f64) -> String {
     format!(
         "Holds from {shortest_s} s are shorter than the {response_s:.2} s in which the model \
-         responds: a level may be over before it shows."
+         responds: a level may end before the output shows it."
     )
 }
 
@@ -265,22 +266,23 @@ pub(crate) fn shortened_note(schedule: &Schedule, usual_s: f64) -> String {
     let duration_s = schedule.duration_s();
     if schedule.trial_count() > 1 {
         return format!(
-            "Length: {duration_s:.0} s instead of {usual_s:.0} s, since the trials are short. For more \
-             data, play another (--seed 2), or give --duration {usual_s:.0}."
+            "Length: {duration_s:.0} s instead of {usual_s:.0} s, since the trials are short. For \
+             more data, apply another input (--seed 2), or give --duration {usual_s:.0}."
         );
     }
     format!(
-        "Length: {duration_s:.0} s instead of {usual_s:.0} s, since the range cannot be promised for \
-         longer. For more data, go back to the start and play another (--seed 2)."
+        "Length: {duration_s:.0} s instead of {usual_s:.0} s, since it is not certain that the \
+         range is kept for longer. For more data, go back to the start and apply another input \
+         (--seed 2)."
     )
 }
 
 /// Why there are several trials.
 pub(crate) fn trials_note(trials: usize) -> String {
     format!(
-        "Trials: what a prediction is off by adds up, and the range cannot be promised without a \
-         break. The {trials} trials start anew, so that it does not; --trials 1 makes one input, as \
-         long as it can be."
+        "Trials: the error of a prediction accumulates, so it is not certain that one input of \
+         this length keeps the range. Each of the {trials} trials begins at the start again; \
+         --trials 1 makes one input, as long as the range allows."
     )
 }
 

@@ -46,7 +46,7 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
     let own: String = own.collect();
     let automatic = joints.iter().find_map(|joint| joint.estimate.chosen);
     let automatic = automatic.map(|chosen| chosen.automatic).unwrap_or_default();
-    let settings = format!("{}\n", settings_line(settings, automatic));
+    let settings = format!("settings: {}\n", settings_line(settings, automatic));
     // Nothing of it is used where all inputs move all the time.
     let is_used = |joint: &EstimatedJoint<'_>| joint.estimate.dead_time.is_none();
     let settings = if joints.iter().any(is_used) { settings } else { String::new() };
@@ -72,7 +72,7 @@ pub(crate) fn chosen_line(joint: &EstimatedJoint<'_>) -> Option<String> {
                 settings.alpha,
                 rounded(delay)
             ),
-            None => format!("α = {} (as usual: no delay is known)", settings.alpha),
+            None => format!("α = {} (the default, since no delay is known)", settings.alpha),
         });
     }
     if automatic.beta {
@@ -80,7 +80,7 @@ pub(crate) fn chosen_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     }
     if automatic.passband {
         let noise = statistics.noise.map_or_else(
-            || "nothing known of the noise".to_owned(),
+            || "noise not known".to_owned(),
             |noise| format!("noise {}", measure(noise, unit)),
         );
         parts.push(format!("{} ({noise})", low_pass_text(settings)));
@@ -133,7 +133,7 @@ pub(crate) fn onset_sentence(model: &OnsetModel) -> String {
             let behind = if lag.is_empty() {
                 lag
             } else {
-                format!(", behind a lag with time constant {lag} s")
+                format!(", after a lag with time constant {lag} s")
             };
             format!(
                 "the speed follows with an oscillation, period {} s and damping {}{behind}",
@@ -149,8 +149,8 @@ pub(crate) fn onset_sentence(model: &OnsetModel) -> String {
     let others = model.responses().into_iter().filter(|one| one.shape != model.shape());
     let others = others.map(|one| format!(", {}s `{}`", one.transition.id(), one.shape));
     format!(
-        "after the delay {response} (`{}`{}); residual {} times the sensor's noise; the input explains \
-         {} of the changes of motion",
+        "after the delay {response} (`{}`{}); residual {} times the sensor noise; the input steps \
+         explain {} of the changes of speed or level (R²)",
         model.shape(),
         others.collect::<String>(),
         rounded(model.misfit()),
@@ -163,8 +163,8 @@ pub(super) fn tracking_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     let tracking = joint.tracking()?;
     let sign = if tracking.gain() < 0.0 { '−' } else { '+' };
     Some(format!(
-        "{}: the output tracks the input, as a servo's position does (at rest {} {sign} {}·u): its \
-         arrival there is not taken for a reaction\n",
+        "{}: the output tracks the input like the position of a servo (at rest y = {} {sign} \
+         {}·u): the bend where it arrives at its new position is not counted as a reaction\n",
         joint.joint.name,
         rounded(tracking.offset()),
         rounded(tracking.gain().abs())

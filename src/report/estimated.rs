@@ -104,8 +104,8 @@ impl EstimatedJoint<'_> {
             Obstacle::Unrelated => Warning::new(
                 "output_unrelated_to_input",
                 format!(
-                    "the output does not follow its input, whose steps explain {} of the changes in \
-                     its motion ({} for no relation)",
+                    "the output does not follow its input: the input steps explain {} of its \
+                     changes of speed or level (R²; {} of the test that there is no relation)",
                     percent(model.follows_input_r2()),
                     p_text(model.follows_input_p_value())
                 ),
@@ -152,11 +152,11 @@ impl EstimatedJoint<'_> {
                 "no response shape fits: the residual of the best, `{}`, is {} times the sensor noise{}",
                 model.shape(),
                 rounded(model.misfit()),
-                if is_alike { ", alike at the steps of a kind" } else { "" }
+                if is_alike { " and similar at all steps of a kind" } else { "" }
             )
         };
-        let rest = ", so delays may be off by more than their intervals. `tauscope improve` looks for \
-                    the missing effect";
+        let rest = ", so delays may be off by more than their intervals. Look for the missing \
+                    effect with `tauscope improve`";
         Some(Warning::new("shape_misfit", short, rest))
     }
 

@@ -27,7 +27,8 @@ pub(crate) fn explain_text(findings: &[Finding<'_>]) -> String {
     let joints: Vec<String> = findings.iter().map(joint).collect();
     let horizon = horizons(findings.iter().map(|finding| finding.compared));
     format!(
-        "{}\nroot-mean-square errors without the mean of each run, {horizon}\n",
+        "{}\nroot-mean-square errors, less the mean of each run between restarts, {horizon}; ± is \
+         one standard error\n",
         joints.join("\n\n")
     )
 }

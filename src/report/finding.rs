@@ -174,8 +174,8 @@ impl Consequence<'_> {
         let sum: f64 = found.iter().map(|one| one.error_share).sum();
         let overlap = if sum > 1.0 { " (shares overlap and do not add up)" } else { "" };
         Some(format!(
-            "Share of each effect (growth of the error when it is left out and the others are fitted \
-             again, relative to the initial misfit): {}{overlap}.",
+            "Share of the initial error beyond the noise that each effect explains (growth of the \
+             error when it is left out and the rest is refitted): {}{overlap}.",
             shares.join(", ")
         ))
     }
@@ -209,8 +209,9 @@ impl Consequence<'_> {
         let shares: Vec<String> = doubtful.iter().map(share).collect();
         (!shares.is_empty()).then(|| {
             format!(
-                "Doubtful: {}. Each explains less than half of the squared error beyond the noise that \
-                 is there without it, and may stand for an effect outside the catalogue.",
+                "Doubtful: {}. Each removes less than half of the squared error beyond the noise \
+                 that the model has without it, so it may only imitate an effect outside the \
+                 catalogue.",
                 shares.join(", ")
             )
         })

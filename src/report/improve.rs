@@ -116,16 +116,16 @@ impl<'a> ImprovedJoint<'a> {
             headline: format!("{}: {why}", compared.joint.name),
             passages: Vec::from_iter(Passage::of(
                 Topic::NEXT,
-                ["The effects that came after it do its part, so that it no longer earns its \
-                  parameters."
+                ["The effects added after it explain the same part of the error, so its \
+                  parameters are no longer justified."
                     .to_owned()],
             )),
             commands: Vec::new(),
         };
         match next {
-            Change::Removed(id) => made_useless(format!("{id} has become useless")),
+            Change::Removed(id) => made_useless(format!("{id} is superfluous now")),
             Change::Replaced { old, new } if ranking.is_empty() && !is_finer(new, old) => {
-                made_useless(format!("{old} gives way to {new}"))
+                made_useless(format!("{new} replaces {old}"))
             }
             Change::Added(id) | Change::Replaced { new: id, .. } if ranking.is_empty() => {
                 self.added_unranked(index, id, &finding)
@@ -151,8 +151,8 @@ impl<'a> ImprovedJoint<'a> {
         let why = if index.checked_sub(1).is_some_and(pair) {
             "It is the second of a pair that was found together."
         } else {
-            "It is one of the usual effects of a valve and its joint: these are added in their order \
-             before all others are compared, and go at the end where they explain nothing."
+            "It is one of the usual effects of a valve and its joint: these are added first, in a \
+             fixed order, and are removed at the end if they explain nothing."
         };
         let mut passages = finding.fails();
         passages.extend(Passage::of(Topic::NEXT, [format!("{id} ({summary}). {why}")]));

@@ -20,10 +20,12 @@ fn why_shorter(of: &AssessedModel) -> String {
     };
     match of.model.components().iter().find(is_lag) {
         Some(lag) => {
-            format!("those include the lag that the model describes by {}", lag.effect().spec().id)
+            format!(
+                "the measured delays include the lag that the model describes by {}",
+                lag.effect().spec().id
+            )
         }
-        None => "with it the fit makes up for a motion that the model has too slow after a step"
-            .to_owned(),
+        None => "it compensates for a simulated motion that is too slow after a step".to_owned(),
     }
 }
 
@@ -63,8 +65,8 @@ fn apart(delay: &Parameter, measured: EstimatedJoint<'_>) -> Option<String> {
     let other: Vec<String> = other.collect();
     (!other.is_empty()).then(|| {
         format!(
-            "The model has one delay, {:.3} s; measured at the steps alone: {}. Where the model \
-             explains the record, its delay is the better one.",
+            "The model has one delay, {:.3} s, which differs from those measured at the steps: \
+             {}. If no lack of fit is shown, use the delay of the model.",
             delay.value,
             other.join(", ")
         )
@@ -91,8 +93,9 @@ fn held_law(
         format!("{least:.3} to {most:.3} s")
     };
     Some(format!(
-        "The delay of the model is held at the law of the step that fits the measured ones: {} \
-         where those are {}, half of them within {:.3} s of it.",
+        "The delay of the model is not fitted: it is a function of the step, fitted to the \
+         measured delays before. It is {} at the steps where {} were measured; half of these \
+         differ from it by at most {:.3} s.",
         ends(&law_s),
         ends(&measured_s),
         median(&off_s)?
@@ -131,7 +134,8 @@ fn outside(of: &AssessedModel, delay: &Parameter, measured: DelayRange) -> Optio
     if delay.status == Status::Fixed {
         let value = delay.value;
         return Some(format!(
-            "The delay of the model is held at {value:.3} s; those measured at the steps are {range}."
+            "The delay of the model is fixed at {value:.3} s; those measured at the steps are \
+             {range}."
         ));
     }
     let all = format!("all that were measured ({range})");
@@ -149,7 +153,7 @@ fn beyond(
     let (side, why) = if value + leeway < low {
         ("below", why_shorter(of))
     } else if value - leeway > high {
-        ("above", format!("with it the fit makes up for a motion that the model has {too_fast}"))
+        ("above", format!("it compensates for a simulated motion that is {too_fast}"))
     } else {
         return None;
     };

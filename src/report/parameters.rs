@@ -27,10 +27,9 @@ pub(super) fn model_text(joint: &Joint, comparison: &Comparison, called: Option<
         let value = parameter_value(parameter, &unit);
         match (parameter.name.rsplit_once('.'), &of_steps) {
             (Some((effect, name)), _) => (format!("{effect}: "), format!("{name} {value}")),
-            (None, Some(of_steps)) if parameter.name == "delay" => (
-                String::new(),
-                format!("delay of the steps {of_steps} (constant of its law {value})"),
-            ),
+            (None, Some(of_steps)) if parameter.name == "delay" => {
+                (String::new(), format!("delay of the steps {of_steps} (constant part {value})"))
+            }
             (None, _) => (String::new(), format!("{} {value}", parameter.name)),
         }
     };
@@ -121,7 +120,7 @@ fn neutrals(model: &JointModel) -> impl Iterator<Item = Option<f64>> + '_ {
 /// measured delays.
 pub(super) fn filled_in(component: &Component) -> String {
     if component.takes_measured_delays() {
-        return "each step has the delay that was measured of it".to_owned();
+        return "each step has its measured delay".to_owned();
     }
     let spec = component.effect().spec();
     let value = |word: &str| {

@@ -104,9 +104,9 @@ pub(super) fn separation_sentence(joint: &Joint, separation: &Separation) -> Str
         return format!("To distinguish it from {other}: {}.", experiment(joint, separation));
     }
     let why = if separation.times_noise < UNSEEN {
-        "with these numbers the two do the same"
+        "with these parameters both give the same output"
     } else {
-        "what the two differ by is noise, or another gain"
+        "their outputs differ by less than the noise, or by a change of gain"
     };
     format!(
         "No input that was tried at the angles of this record distinguishes it from {other}: {why}."
@@ -133,7 +133,7 @@ fn input(joint: &Joint, proposal: &Proposal) -> String {
     let (levels, hold) = (levels_text(levels, joint.input_unit.as_deref()), rounded(*hold_s));
     let order = match pattern {
         Pattern::Ladder => "rising and then falling, in one direction and then in the other",
-        Pattern::Pulses => "each in both directions, with a rest as long behind it",
+        Pattern::Pulses => "each in both directions, followed by a rest of the same length",
         Pattern::Reversals => "each in both directions, without a rest",
     };
     format!("hold {levels} for {hold} s each, {order}")
@@ -224,9 +224,9 @@ mod tests {
     fn that_no_input_distinguishes_them_is_said_too() {
         let separation = Separation { is_clear: false, ..separation(&[1.0]) };
         let said = separation_sentence(&joint(), &separation);
-        assert!(said.starts_with("No input that was tried") && said.ends_with("another gain."));
+        assert!(said.starts_with("No input that was tried") && said.ends_with("a change of gain."));
         let same = Separation { times_noise: 0.0, ..separation.clone() };
-        assert!(separation_sentence(&joint(), &same).ends_with("the two do the same."));
+        assert!(separation_sentence(&joint(), &same).ends_with("the same output."));
     }
 
     #[test]

@@ -93,8 +93,8 @@ impl ReviewCount {
         let Self { accepted, rejected, overruled } = self;
         let steps = counted(accepted + rejected, "step");
         format!(
-            "{steps} reviewed by a person: {accepted} accepted, {rejected} rejected, {overruled} \
-             against the program"
+            "{steps} reviewed by a person: {accepted} accepted, {rejected} rejected; {overruled} \
+             differing from the program"
         )
     }
 }

@@ -113,7 +113,7 @@ pub(super) fn settings_line(settings: &Settings, automatic: Automatic) -> String
     let said = telling(settings, always).map(|(name, value)| {
         if is_chosen(name) { format!("{name} as above") } else { format!("{name} {value}") }
     });
-    format!("{}: {}", spec.fits, said.collect::<Vec<_>>().join("; "))
+    format!("{}; {}", spec.fits, said.collect::<Vec<_>>().join("; "))
 }
 
 /// The settings as a name: the method with its lengths and its low-pass, and what is not as the

@@ -51,7 +51,7 @@ impl Headline {
         }
     }
 
-    /// The kinds of steps that have to be told apart, or of which nothing is typical.
+    /// The kinds of steps that have to be distinguished, or of which nothing is typical.
     pub(crate) fn kinds(&self) -> &[KindDelay] {
         match self {
             Self::All => &[],
@@ -131,8 +131,8 @@ fn without_steps(EstimatedJoint { joint, estimate }: EstimatedJoint<'_>) -> Stri
         return "the input changes only between trials".to_owned();
     };
     format!(
-        "the input changes only between trials or in gaps of up to {gap_s} s, which \
-         `tauscope estimate --fill {gap_s}` bridges"
+        "the input changes only between trials or in gaps of up to {gap_s} s; `tauscope estimate \
+         --fill {gap_s}` fills these gaps"
     )
 }
 

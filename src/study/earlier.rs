@@ -151,7 +151,7 @@ impl Row {
             return Err(wrong(format!("there is no verdict `{}`", self.verdict)));
         };
         if let Some(got) = self.delta_s.filter(|delay| !DELAYS_S.contains(delay)) {
-            let problem = format!("a delay of {got:e} s is none; expected at most 1e8 s");
+            let problem = format!("{got:e} s is not a delay; expected at most 1e8 s");
             return Err(wrong(problem));
         }
         let line = |slope: Option<f64>, intercept: Option<f64>| {
@@ -224,7 +224,7 @@ mod tests {
         assert!(unknown.ends_with("step 1: there is no verdict `perhaps`"), "{unknown}");
         let endless = "boom,1,1,89,79,126,8,5,104,15,1e308,1.5,0,2,0.1,-8,accepted,\n";
         let endless = said(&format!("{HEADER}\n{endless}"));
-        assert!(endless.contains("step 1: a delay of 1e308 s"), "{endless}");
+        assert!(endless.contains("step 1: 1e308 s is not a delay"), "{endless}");
         let ragged = parse(&format!("{HEADER}\nboom,1\n"));
         assert!(matches!(ragged, Err(FileError::Unreadable { .. })));
     }

@@ -269,7 +269,7 @@ pub(crate) fn others_of<'a>(
     joints.iter().zip(estimates).map(other).collect()
 }
 
-/// Prepares the model of each joint from its starts, and does `work` with what comes of it.
+/// Prepares the model of each joint from its starts, and does `work` with the result.
 fn for_each_joint<P, T: Send>(
     (joints, estimates): (&[Joint], &[Result<JointEstimate, EstimateError>]),
     models: impl Fn(&Joint) -> Option<JointModel> + Sync,

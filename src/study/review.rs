@@ -210,7 +210,8 @@ impl Reviewed {
         let is = decision.input_step.sample;
         if let Some(was) = self.shown.p.filter(|was| *was != is) {
             return Some(self.note(&format!(
-                "the step was at sample {was} and is at {is} now; the review is ignored, review it again"
+                "the step was at sample {was} and is at {is} now; the review is ignored, so \
+                 review the step again"
             )));
         }
         let left_s = (trial.len() - is) as f64 * trial.period().seconds();
@@ -237,7 +238,8 @@ impl Reviewed {
         let is = decision.program_verdict().to_string();
         if let Some(was) = self.shown.verdict.as_ref().filter(|was| **was != is) {
             return Some(format!(
-                "the program said `{was}` then and says `{is}` now; the review still applies, look again"
+                "the program's verdict was `{was}` and is `{is}` now; the review still applies, \
+                 check it again"
             ));
         }
         let is = decision.program_delay().map(|delay| delay * trial.period().seconds());
@@ -334,7 +336,7 @@ mod tests {
         for (row, said, applied) in [
             ("boom,1,1,rejected,,,Ann,101,accepted,", "", 1),
             ("boom,1,1,rejected,,,Ann,99,accepted,", "at sample 99 and is at 101", 0),
-            ("boom,1,1,rejected,,,Ann,101,sse,", "said `sse` then and says `accepted`", 1),
+            ("boom,1,1,rejected,,,Ann,101,sse,", "was `sse` and is `accepted` now", 1),
             ("boom,1,1,rejected,,,Ann,101,,0.9", "delay was 0.9000 s and is 0.1", 1),
             ("boom,1,1,accepted,-0.1,,Ann,101,,", "lies outside", 0),
             ("boom,1,1,accepted,500,,Ann,101,,", "lies outside", 0),

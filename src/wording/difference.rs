@@ -70,7 +70,7 @@ pub(crate) fn difference_sentences(found: &JointDifferences) -> Vec<String> {
     sentences.extend(missing_sentences(found));
     if !found.by_number.is_empty() {
         sentences.push(format!(
-            "the steps of trial {} lie at other samples there: those of the same number are \
+            "the steps of trial {} are at other samples there, so steps of the same number are \
              compared",
             found.by_number.join(", ")
         ));

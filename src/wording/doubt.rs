@@ -16,7 +16,7 @@ pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
         return near.map_or_else(
             || "no number is near its limit".to_owned(),
             |(condition, margin)| {
-                let far = if margin < LITTLE { "by little" } else { "though not by far" };
+                let far = if margin < LITTLE { "by little" } else { "but not by much" };
                 format!("{condition} fails {far}")
             },
         );
@@ -38,7 +38,7 @@ fn least(doubt: &Doubt, period_s: f64) -> Option<[String; 2]> {
         (
             explained,
             [
-                format!("the {what} leaves {left} % of the squared error of {of}"),
+                format!("with a {what} the squared error is still {left} % of that with {of}"),
                 format!("error left {}", percent(1.0 - explained)),
             ],
         ),
@@ -92,7 +92,7 @@ fn by_little(condition: Condition) -> String {
         Condition::ShortHold => "the hold is close to the shortest allowed",
         Condition::OutputLimit => "the output is near its limit",
         Condition::Sse => "the squared error is near its limit",
-        Condition::AtRest => "the motion is close to that of a joint at rest",
+        Condition::AtRest => "the joint hardly moves",
         Condition::NothingHappened => "noise alone could explain it",
         Condition::FirstOrLast | Condition::TooShort | Condition::Reviewer => {
             return format!("{condition} is near its limit");
@@ -115,8 +115,8 @@ pub(crate) fn doubtful_sentence<'d>(all: impl Iterator<Item = &'d Doubt>) -> Str
 /// What the number says.
 #[cfg(feature = "rrd")]
 pub(crate) const DOUBT_MEANS: &str = "\
-A doubt of 0 % says that nothing speaks against the decision, one of 100 % that the least change \
-would turn it; it is no probability.";
+Doubt is 0 % where nothing speaks against a decision and 100 % where the smallest change of the \
+data would reverse it; it is not a probability.";
 
 /// The doubt in percent.
 pub(crate) fn doubt_percent(doubt: &Doubt) -> String {

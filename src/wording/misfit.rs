@@ -17,7 +17,12 @@ pub(crate) fn lack_of_fit(test: LackOfFit) -> String {
         None if test.misfit_share < NEGLIGIBLE => {
             format!("negligible ({} % of the squared error)", rounded(100.0 * test.misfit_share))
         }
-        None => format!("close to the noise ({p_value})"),
+        None => {
+            let times = test.times_noise.map_or_else(String::new, |times| {
+                format!(": training error {} times the noise", rounded(times))
+            });
+            format!("small{times} ({p_value})")
+        }
         _ if test.p_value < SIGNIFICANCE => format!("shown ({p_value})"),
         Some(ShownBy::FewWindows) => "shown (in few windows)".to_owned(),
         Some(ShownBy::UnseenPart) => "shown (on unseen data)".to_owned(),

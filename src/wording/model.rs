@@ -19,10 +19,14 @@ fn remark(status: Status) -> Option<&'static str> {
 /// A parameter to the digits that its standard error leaves, with its unit and what is remarkable
 /// about it: `0.612 ± 0.021 V`, `2.3 s (fixed)`, `none` for a limit that there is not.
 pub(crate) fn parameter_value(parameter: &Parameter, unit: &str) -> String {
+    /// A smaller value at a bound is the bound 0 but for rounding.
+    const NONE: f64 = 1e-12;
     let Parameter { value, std_error, status, .. } = parameter;
     if is_unlimited(*value) {
         return "none".to_owned();
     }
+    let is_zero = *status == Status::AtBound && value.abs() < NONE;
+    let value = if is_zero { &0.0 } else { value };
     let known = std_error.map_or_else(|| number(*value), |error| with_error(*value, error));
     let remark = remark(*status).map_or_else(String::new, |remark| format!(" ({remark})"));
     format!("{}{remark}", format!("{known} {unit}").trim_end())

@@ -53,7 +53,7 @@ fn commands_in_the_documents_print_what_is_printed() {
 
 #[test]
 fn the_effect_shown_is_the_one_that_is_run() {
-    let shown = blocks(&fs::read_to_string("docs/models.md").unwrap(), "toml");
+    let shown = blocks(&fs::read_to_string("docs/model_files.md").unwrap(), "toml");
     let run = fs::read_to_string("tests/cli/own_effect.toml").unwrap();
     assert!(shown.iter().any(|shown| run.ends_with(shown)));
 }

@@ -122,7 +122,7 @@ fn a_model_that_gives_no_finite_numbers_is_refused_and_nothing_is_written() {
         fs::write(folder.path().join("model.toml"), model).unwrap();
         for arguments in [&add[..], &compare] {
             let said = refused(folder.path(), arguments);
-            assert!(said.contains("beyond what double precision can square"), "{said}");
+            assert!(said.contains("their squares are beyond double precision"), "{said}");
         }
         let levels = "--levels=-1,0,1";
         let said = refused(folder.path(), &["design", "-m", "model.toml", levels]);

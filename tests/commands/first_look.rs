@@ -115,7 +115,7 @@ fn that_an_output_does_not_follow_its_input_is_said_first() {
     desk.write("crossed.csv", &crossed.replacen("x.output", "arm.output", 1));
     let text = printed(&desk, "crossed.csv --joint boom --effects dead_band -q -o", 0);
     let reason = "boom: the output does not follow its input";
-    assert!(text.contains(&format!("{reason}, whose steps explain")), "{text}");
+    assert!(text.contains(&format!("{reason}: the input steps explain")), "{text}");
     assert!(text.contains("check the columns first"), "{text}");
     let page = desk.read("crossed.html");
     let at = |part: &str| page.find(part).unwrap_or_else(|| panic!("no {part}"));

@@ -123,9 +123,7 @@ fn what_is_done_and_unchanged_is_not_done_again() {
     workspace.write_log("logs/run_01.csv", 40);
     let changed = workspace.run("estimate logs --results kept");
     changed.is_whole().says("2 of 3 logs are done already");
-    changed.says(
-        "1 result is replaced: logs/run_01.csv, or a file that is given beside it, has changed",
-    );
+    changed.says("1 result is replaced, since logs/run_01.csv or a file given with it has changed");
     let other = workspace.run("estimate logs --results kept --beta 2");
     let other = &other.is_whole().error;
     assert!(!other.contains("already") && !other.contains("replaced"), "{other}");
@@ -257,7 +255,7 @@ fn what_makes_no_sense_is_refused_with_the_remedy() {
         .is_refused_with("give them to `tauscope merge`");
     workspace.run("estimate nowhere --results r").says("nowhere");
     fs::create_dir(workspace.path("empty")).unwrap();
-    workspace.run("merge empty").is_refused_with("give those of `--results`");
+    workspace.run("merge empty").is_refused_with("name the folders that were given to `--results`");
     workspace.run("merge absent").is_refused_with("cannot be read as a folder of results");
     workspace.run("estimate logs --results one").is_whole();
     workspace.run("estimate logs --results two --beta 2").is_whole();
@@ -303,7 +301,7 @@ fn json_of_another_program_is_left_alone() {
     fs::write(&result, foreign).unwrap();
     let again = workspace.run("estimate logs --results kept --summary all.csv");
     assert_eq!(again.status, Some(1));
-    again.says("no result of tauscope has the name of one; move it");
+    again.says("has the name of a result, but tauscope did not write it; move it");
     assert_eq!(fs::read_to_string(result).unwrap(), foreign);
     assert_eq!(workspace.read("all.csv").lines().count(), 1 + 2);
 }

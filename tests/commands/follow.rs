@@ -78,7 +78,7 @@ fn decisions_come_while_the_log_grows_and_are_those_of_the_whole_log() {
     told.append(&mut rest);
     assert_eq!(document["schema"], "tauscope/estimate/1");
     assert_eq!(document["joints"], batch["joints"]);
-    assert!(!stderr.contains("changes it"), "{stderr}");
+    assert!(!stderr.contains("with the whole log"), "{stderr}");
     // All but the last of each joint, whose segments end with the log.
     assert!(told.len() >= steps - 6 && told.len() < steps, "{} of {steps}", told.len());
     let whole = desk.read("batch.csv");

@@ -9,7 +9,7 @@ use crate::desk::{Desk, banded, joint};
 
 /// What stands between backticks in the documents.
 fn documented() -> BTreeSet<String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/models.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/model_files.md");
     let text = std::fs::read_to_string(path).unwrap();
     let quoted = text.split('`').skip(1).step_by(2);
     quoted.map(str::to_owned).collect()

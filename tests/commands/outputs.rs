@@ -215,7 +215,7 @@ fn an_output_has_no_name_of_a_part_of_a_recording() {
     let command = "estimate log.csv -o many.rrd --decisions many_3.rrd";
     let ended = tauscope(folder.path()).args(command.split(' ')).output().unwrap();
     assert_eq!(ended.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&ended.stderr).contains("has files of this name"));
+    assert!(String::from_utf8_lossy(&ended.stderr).contains("needs files of this name"));
 }
 
 #[test]
@@ -262,7 +262,7 @@ fn what_a_person_filled_in_or_corrected_is_not_replaced() {
     };
     let cases = [
         ("estimate log.csv --quiet --review-sheet sheet.csv", "sheet.csv", "--review sheet.csv"),
-        ("columns log.csv --quiet -w columns.toml", "columns.toml", "is there already"),
+        ("columns log.csv --quiet -w columns.toml", "columns.toml", "exists already"),
     ];
     for (words, name, says) in cases {
         // As it was written it may be written again.

@@ -94,7 +94,7 @@ fn variables_that_go_together_are_said_not_to_be_told_apart() {
     assert!(!pairs.is_empty());
     assert!(pairs.iter().all(|pair| **pair == ["time", "oil"]), "{pairs:?}");
     let text = against_table([("boom", &found)]);
-    assert!(text.contains("time and oil go together"), "{text}");
+    assert!(text.contains("time and oil are correlated"), "{text}");
 }
 
 #[test]

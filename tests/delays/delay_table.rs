@@ -105,6 +105,6 @@ fn the_file_and_the_json_have_the_same_rows() {
 fn a_kind_with_few_accepted_steps_has_no_typical_delay_and_says_why() {
     let text = run(&["estimate", "data/worked_example.csv", "-q", "--table", "/dev/null"]);
     let start = text.lines().find(|line| line.starts_with("start: ")).unwrap();
-    assert!(start.contains("no typical delay, 0 of 1 steps accepted"), "{start}");
+    assert!(start.contains("no typical delay: too few accepted steps (0 of 1)"), "{start}");
     assert!(start.contains("first or last step of the trial"), "{start}");
 }

@@ -171,7 +171,8 @@ fn all_languages_agree_on_every_step_that_there_may_be() {
 #[test]
 fn a_name_that_no_language_has_is_refused_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
-    for (file, why) in [("lookup.txt", ".c, .m, .py or .json"), ("2nd try.m", "name of a function")]
+    for (file, why) in
+        [("lookup.txt", ".c, .m, .py or .json"), ("2nd try.m", "is not a valid name")]
     {
         let output = Command::new(env!("CARGO_BIN_EXE_tauscope"))
             .args(["estimate", "data/worked_example.csv", "-q", "--export"])

@@ -258,7 +258,7 @@ fn low_passes_that_do_not_fit_the_rate_are_left_out_unasked() {
     let output = sweep_of(&slow, &["--method", "two-line", "--alpha", "5", "--beta", "1,2"]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(0), "{said}");
-    assert!(said.contains("the low-pass of 5 and 10 Hz is left out"), "{said}");
+    assert!(said.contains("the 5 and 10 Hz low-pass is left out"), "{said}");
     assert!(!String::from_utf8_lossy(&output.stdout).contains("10 Hz"));
     // Who asks for one is told that it does not fit.
     let asked = sweep_of(&slow, &["--method", "two-line", "--passband", "5,none"]);

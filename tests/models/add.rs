@@ -76,7 +76,7 @@ fn without_a_model_file_a_new_one_is_made_and_none_is_replaced_by_accident() {
     }
     let first = desk.read("model.toml");
     let refused = desk.refusal("add flow_curve log.csv");
-    assert!(refused.contains("model.toml is there already") && refused.contains("--write"));
+    assert!(refused.contains("model.toml exists already") && refused.contains("--write"));
     desk.json("add backlash log.csv --model model.toml --write next.toml", 0);
     assert_eq!(desk.read("model.toml"), first);
     assert!(desk.read("next.toml").contains("revision = 2\nadded = \"backlash\""));

@@ -444,8 +444,8 @@ fn a_suspect_that_contains_the_other_is_said() {
     let options = "design --model boom.toml --separate dead_band,coulomb_friction --duration 8 \
                    --rehearsals 0";
     let said = desk.refusal(options);
-    assert!(said.contains("no input of 8 s or less separates them"), "{said}");
-    assert!(said.contains("one of them can do all that the other does"), "{said}");
+    assert!(said.contains("no input of 8 s or less distinguishes them"), "{said}");
+    assert!(said.contains("one of them gives the same output as the other"), "{said}");
 }
 
 #[test]
@@ -464,10 +464,10 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
         ("--dead-band avoid", "no model has it"),
         ("--model plain.toml --dead-band avoid", "the model has none"),
         ("--levels=-1,1 --dead-band=-2,2", "fewer than two are left"),
-        ("--hold 5,6 --duration 3", "no room for a hold of 5 s"),
+        ("--hold 5,6 --duration 3", "too short for a rest and a hold of 5 s"),
         ("--model boom.toml --joint bucket", "not in the model file, which has boom"),
         ("--separate dead_band --model boom.toml", "expected two effects"),
-        ("--separate dead_band,dead_band --model boom.toml", "there twice"),
+        ("--separate dead_band,dead_band --model boom.toml", "named twice"),
         ("--separate dead_band,stictoin --model boom.toml", "did you mean `stiction`?"),
         ("--separate dead_band,stiction", "give a log, or --model"),
         ("--separate dead_band,stiction --model plain.toml", "has neither dead_band nor stiction"),

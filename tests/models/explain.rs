@@ -71,7 +71,10 @@ fn noise_of_the_input_and_spikes_of_the_sensor_hide_no_effect() {
     let json: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
     assert_eq!(json["joints"][0]["ranking"][0]["effect"], "dead_band");
     let notes = String::from_utf8(done.stderr).unwrap();
-    assert!(notes.contains("1 sample is an isolated spike of the sensor, which no error counts"));
+    assert!(
+        notes
+            .contains("1 sample is an isolated spike of the sensor: excluded from fits and errors")
+    );
     assert!(notes.contains("the input has noise or glitches"), "{notes}");
 }
 

@@ -271,7 +271,7 @@ fn what_is_wrong_with_a_definition_is_said() {
         ),
         (
             joint_text(&own("mine", "input", "signal + k", "k = { value = 1, neutral = 1 }")),
-            "at its neutral values the effect makes 1 of 0",
+            "at its neutral values the effect changes 0 to 1",
         ),
         (
             joint_text(
@@ -321,6 +321,6 @@ fn what_is_wrong_with_the_use_of_one_is_said() {
             knee.clone() + &joint_text(&own("knee", "input", "signal", "")),
             "effect `knee` is a candidate; write kind = \"knee\"",
         ),
-        (candidate("kind = \"dead_band\""), "effect `dead_band` is not of this file"),
+        (candidate("kind = \"dead_band\""), "effect `dead_band` must have kind ="),
     ]);
 }

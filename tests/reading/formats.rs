@@ -597,7 +597,10 @@ mod mcap {
         assert_eq!(both.joints[0].trials, alone.trials);
         assert_eq!(both.joints[1].trials[0].len(), alone.trials[0].len());
         let said = |words: &str| both.notes.iter().any(|note| note.contains(words));
-        assert!(said("what the input was there is not known, nor a step to it"), "{both:?}");
+        assert!(
+            said("before the first value, the first one is used, so a step to it is not known"),
+            "{both:?}"
+        );
         assert!(!said("later messages"), "{both:?}");
     }
 
@@ -630,7 +633,7 @@ mod mcap {
             "{slow:?}"
         );
         assert!(
-            notes.iter().any(|note| note.contains("which is interpolated between them")),
+            notes.iter().any(|note| note.contains("it is interpolated between them")),
             "{notes:?}"
         );
     }

@@ -518,7 +518,7 @@ fn times_that_cannot_be_seconds_are_refused_and_so_are_too_few() {
     for (name, step) in [("t", 1e4), ("t", 1e7), ("time_s", 1e7)] {
         let error = Reading::of(log(name, step)).error();
         let text = error.to_string();
-        assert!(text.contains("so that their unit must be another"), "{name} {step}: {text}");
+        assert!(text.contains("so they are probably not in seconds"), "{name} {step}: {text}");
     }
     assert_eq!(periods(&Reading::of(log("t [us]", 1e4)).the_joint()), ["0.01 s"]);
     assert_eq!(periods(&Reading::of(log("time_s", 1e4)).the_joint()), ["10000 s"]);

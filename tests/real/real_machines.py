@@ -177,11 +177,11 @@ def by_duty(tauscope, folder, name):
     for (duty, forward), rows in sorted(found.items()):
         known = [[value for value in column if np.isfinite(value)] for column in zip(*rows)]
         measured, law, here, there = (np.mean(values) if values else None for values in known)
-        there = "does not get there" if there is None else f"{there:.1f}"
+        there = "the end of the stroke is not reached" if there is None else f"{there:.1f}"
         sign = "+" if forward else "-"
         print(f"| `{name}` | {sign}{duty:.0f} % | {measured:.2f} s | {law:.2f} s | {here:.1f} | {there} |")
     off = np.array([row[3] - row[2] for rows in found.values() for row in rows])
-    print(f"| `{name}` | all, root mean square | | | | off by {np.sqrt(np.nanmean(off ** 2)):.2f} |")
+    print(f"| `{name}` | all, root mean square | | | | error {np.sqrt(np.nanmean(off ** 2)):.2f} |")
 
 
 def columns(name, joint):
@@ -230,44 +230,45 @@ def models(tauscope, folder, name):
 def main():
     tauscope, folder = sys.argv[1:3]
     print("# On real machines\n")
-    print("Logs of other people's machines, with no option but which columns are which joint.")
+    print("Logs of machines of other groups; the only option is which columns belong to which joint.")
     print("`tests/real/real_machines.py` makes this page; the logs are not part of the project.\n")
     print("## Strokes\n")
-    print("Starts from rest of a full-size excavator's joints, 28 strokes each, beside an estimate that")
-    print("knows nothing of tauscope: when the angle has left its rest by 0.2 deg.")
-    print("Last, steps at which the joint stood still and that were accepted all the same.\n")
+    print("Delays of starts from rest of a full-size excavator's joints, 28 strokes each, compared with an")
+    print("independent estimate: the time at which the angle has left its rest by 0.2 deg. The last column counts")
+    print("steps that were wrongly accepted although the joint stood still.\n")
     print("| log | method | starts accepted | median difference | 90 % below | accepted at rest |\n|---|---|---|---|---|---|")
     for name in STROKES:
         strokes(tauscope, folder, name)
     print("\n### The delay and the speed of the model\n")
-    print("Of each duty the mean delay by the same independent estimate, and what the model that `improve`")
-    print("finds says of it; the speed over the middle half of each stroke in deg/s, measured and of the model")
-    print("exported to Python. A ladder of least squares on these speeds alone leaves on the arm 7.95 with a")
-    print("gain, 2.33 with dead band, saturation and gain by direction, 1.30 with a factor for the load, too.")
-    print("The two poses of a duty, heavy (H) and light (L), differ by up to 60 deg/s at one end of the way; the")
-    print("model has it from the labels. Out, the arm's speed rises by 10 deg/s from 50 to 60 % and by 15 from 60")
-    print("to 70 %, where it is at its limit: no straight line from the overlap to the limit does, and that is")
-    print("most of what its model is off by; a saturation for each direction is not significant there.\n")
+    print("For each duty: the mean delay by the same independent estimate and the delay of the model that")
+    print("`improve` finds; the mean speed over the middle half of each stroke, measured and of the model")
+    print("exported to Python, in deg/s. For comparison, least squares on these speeds alone leave on the arm an")
+    print("error of 7.95 deg/s with a gain, 2.33 with dead band, saturation and gain by direction, and 1.30 with")
+    print("a factor for the load as well. The two poses of a duty, heavy (H) and light (L), differ by up to")
+    print("60 deg/s at one end of the stroke; the model takes the pose from the labels. Outward, the arm's speed")
+    print("rises by 10 deg/s from 50 to 60 % and by 15 deg/s from 60 to 70 %, where it reaches its limit. The")
+    print("model has a straight line from overlap to limit, which is most of its error; a saturation for each")
+    print("direction is not significant there.\n")
     print("| log | duty | delay | of the model | speed | of the model |\n|---|---|---|---|---|---|")
     for name in STROKES:
         by_duty(tauscope, folder, name)
     print("\n## Every log as it comes\n")
-    print("Median delay with the least and the largest accepted one; where the input never holds, one dead")
-    print("time with its 95 % interval. Of the rotary actuator no command is logged but the pressure that moves")
-    print("it, and no sample period; it is taken for 4 ms. The dead times of the furnace and of the sales are")
-    print("three samples in the textbook (Box and Jenkins' series J and M), which counts the one that any")
+    print("Median delay with the smallest and the largest accepted one; where the input moves all the time, one")
+    print("dead time with its 95 % interval. The log of the rotary actuator has no command, so the pressure that")
+    print("moves it is the input, and no sample period, which is set to 4 ms. For the furnace and the sales (Box")
+    print("and Jenkins' series J and M) the textbook gives three samples, including the one sample that any")
     print("sampled system takes: two to three sample periods of 9 s and of 1 s.\n")
     print("| log | joint | input | accepted | delay | processor time |\n|---|---|---|---|---|---|")
     for name in LOGS:
         as_it_comes(tauscope, folder, name)
     print("\n## What is missing in the model\n")
-    print("`improve` with no option: with what the model begins, the effects that carry 1 % of the error or")
-    print("more, each with its share and with what leaves as little in its place, the delay of the model, and")
-    print("the error from revision to revision, on what was not fitted. Then what SciPy leaves with an")
-    print(f"engineer's ladder ({', '.join(LADDER).replace('_', ' ')}; `tests/real/scipy_ladder.py`), and its delay.")
-    print("Both restart where the input changes and at least every 2 s (200 samples of a slow log), but `improve` not where the")
-    print("output follows its input itself. Processor time on one core of two; SciPy looks for five fixed")
-    print("models, `improve` for what is missing among all effects.\n")
+    print("`improve` without options: the first model; the effects of practical consequence, each with its share")
+    print("and its alternatives; the delay of the model; and the validation error of each revision. For")
+    print("comparison, SciPy fits five models that an engineer would try")
+    print(f"({', '.join(LADDER).replace('_', ' ')}; `tests/real/scipy_ladder.py`):")
+    print("their errors, and the delay of the last. Both restart where the input changes and at least every 2 s")
+    print("(200 samples of a slow log); `improve` does not where the output follows the input itself. Times are")
+    print("processor time on one core of two; `improve` searches all effects, SciPy fits only these models.\n")
     print("| log | joint | effects | delay | error | time | SciPy | time |\n|---|---|---|---|---|---|---|---|")
     for name in LOGS:
         models(tauscope, folder, name)

@@ -120,7 +120,7 @@ fn a_delay_between_samples_is_recorded_as_finely_as_it_was_found() {
                     let off = (low - fine.low).abs();
                     assert!(off <= 0.05 * (fine.high - fine.low), "{low} {}: {text}", fine.low);
                 }
-                assert!(text.contains("| response behind the delay | after the delay"), "{text}");
+                assert!(text.contains("| response after the delay | after the delay"), "{text}");
             }
         }
     }

@@ -288,7 +288,7 @@ mod recorded {
         assert!(!desk.has("x_1.rrd") && !desk.has("x.rrd"));
         desk.write("y_2.rrd", "notes");
         let refused = desk.refusal("estimate log.csv --method two-line -o y.rrd --quiet");
-        assert!(refused.contains("y_2.rrd: is there already"), "{refused}");
+        assert!(refused.contains("y_2.rrd: exists already"), "{refused}");
         assert_eq!(desk.read("y_2.rrd"), "notes");
     }
 }

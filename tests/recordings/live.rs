@@ -314,7 +314,7 @@ fn what_listens_but_is_no_viewer_is_found_out() {
     let address = silent.local_addr().unwrap();
     let start = Instant::now();
     let stderr = desk.refusal(&format!("estimate log.csv --connect {address}"));
-    assert!(stderr.contains("what listens there"), "{stderr}");
+    assert!(stderr.contains("that listens there"), "{stderr}");
     assert!(start.elapsed() < Duration::from_mins(1));
 }
 

@@ -107,7 +107,7 @@ fn a_word_stands_above_the_program_and_is_kept_through_runs() {
     let text = desk.run("estimate log.csv --review review.csv").stdout;
     let text = String::from_utf8(text).unwrap();
     let sentence =
-        "boom: 2 steps reviewed by a person: 1 accepted, 1 rejected, 1 against the program";
+        "boom: 2 steps reviewed by a person: 1 accepted, 1 rejected; 1 differing from the program";
     assert!(text.contains(sentence), "{text}");
 }
 
@@ -124,7 +124,7 @@ fn a_step_that_changed_is_said_and_a_review_that_is_none_names_its_place() {
     desk.write("moved.csv", moved);
     let output = desk.run("estimate log.csv --review moved.csv");
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("the review is ignored, review it again"), "{said}");
+    assert!(said.contains("the review is ignored, so review the step again"), "{said}");
     desk.write("wrong.csv", "joint,trial,i,verdict,delay_s,note,reviewer\nboom,1,2,maybe,,,\n");
     let output = desk.run("estimate log.csv --review wrong.csv");
     let said = String::from_utf8(output.stderr).unwrap();

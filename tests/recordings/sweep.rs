@@ -215,7 +215,7 @@ fn words_are_those_of_the_text_and_tell_what_it_was_made_from() {
     };
     let found = text("/boom/found");
     assert!(found.contains("depend on the method"), "{found}");
-    assert!(found.contains("that they agree does not make them right"), "{found}");
+    assert!(found.contains("all are too late by about the lag"), "{found}");
     assert!(found.contains("| no low-pass |"), "{found}");
     let about = text("/about");
     assert!(about.contains(&swept.experiment.sources[0].sha256), "{about}");

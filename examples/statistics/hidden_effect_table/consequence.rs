@@ -56,11 +56,15 @@ cargo run --release --no-default-features --example statistics -- hidden-effect-
     --two {two} --three {three} --first-seed {first_seed} > docs/consequence.md
 ```
 
-`improve --refine` on {records} records that hide two or three effects (see
-[hidden_effect_table.md](hidden_effect_table.md)), half of them with a valve whose corners are
-rounded over {SOFT_EDGE} of the largest level. Each effect of the final model carries a share of the
-error: what the error grows by without it, the rest fitted again. A threshold keeps those that carry
-as much. *Hidden*: it is in the plant, or one of its alternatives is.
+`improve` removes effects whose share of the error is below a threshold, 3 %. This page shows what
+other thresholds would do, from `improve --refine` on {records} simulated records with two or three hidden
+effects ([hidden_effect_table.md](hidden_effect_table.md)), half of them with a soft valve, its corners
+rounded over {SOFT_EDGE} of the largest level.
+
+The share of an effect is the growth of the error when it is left out of the final model and the rest is
+fitted again. A threshold keeps the effects with at least this share. *Hidden effects kept*: kept effects
+that are in the plant, or have an alternative that is, of all such effects. *Not there*: the other kept
+effects, of all kept ones.
 "
     )
 }

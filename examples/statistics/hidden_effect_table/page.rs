@@ -43,7 +43,7 @@ pub(crate) fn page(counts: Counts, judged: &[Judged]) -> String {
 fn head(counts: Counts, records: usize) -> String {
     let Counts { one, soft, nothing, two, three, outside, finer, cylinder, first_seed } = counts;
     format!(
-        "# What is found of what is hidden
+        "# How often a hidden effect is found
 
 Made by
 
@@ -53,18 +53,20 @@ cargo run --release --no-default-features --example statistics -- hidden-effect-
     --cylinder {cylinder} --first-seed {first_seed} > docs/hidden_effect_table.md
 ```
 
-{records} records of two minutes at 100 Hz, white or coloured noise of {NOISE} deg where nothing
-else is said, each from a seed of its own. The plant that makes them shares no equation with the models
-([simulating.md](simulating.md)). *Clear* is what makes the nearest integrator wrong by some
-12 times the noise, *weak* by some 3 times. `explain` and `improve` start with a plain
-integrator and have the whole catalogue; both restart at every step of the input.
+{records} simulated records of two minutes at 100 Hz, each from a seed of its own, with white or coloured
+noise of {NOISE} deg unless stated. The plant shares no equation with the models
+([simulating.md](simulating.md)). A *clear* effect makes the error of the nearest integrator about
+12 times the noise, a *weak* one about 3 times. `explain` and `improve` start with a plain
+integrator and may use the whole catalogue; both restart at every step of the input.
 
-*Named first*: the first of the ranking, with the verdict `missing_effect`; half where it is
-only among what the first is indistinguishable from. *Exactly*: after `improve` the model has what is
-hidden and nothing else. *Or an alternative*: each effect that is hidden is in the model or among
-the alternatives that are given to one of its effects, and each effect of the model is hidden or
-has an alternative that is. *Not there*: effects of the model that are neither. *Soft valve*: its
-corners are rounded over {SOFT_EDGE} of the largest level instead of 0.004. *Error*: validation error after `improve`, over the noise.
+| column | meaning |
+| --- | --- |
+| named first | the hidden effect is the first of the ranking, with the verdict `missing_effect`; counted as half where it is only among the effects indistinguishable from the first |
+| exactly | after `improve` the model has the hidden effects and no other |
+| or an alternative | each hidden effect is in the model, or among the alternatives given for one of its effects; and each effect of the model is hidden, or has a hidden alternative |
+| not there | effects of the model that are neither hidden nor have a hidden alternative |
+| soft valve | the corners of the valve are rounded over {SOFT_EDGE} of the largest level instead of 0.004 |
+| error | validation error after `improve`, divided by the noise: median, 95 % quantile, and how often it is at most 1.15 |
 "
     )
 }
@@ -308,8 +310,7 @@ fn outside(pairs: &[Pair<'_>]) -> String {
         return String::new();
     }
     let mut text = "\n## Outside the catalogue\n".to_owned();
-    text +=
-        "\n*Points at it*: where the integrator fails is shown by what the effect depends on.\n";
+    text += "\n*Points at it*: the condition that is named for the error of the integrator is on a quantity on which the hidden effect depends.\n";
     text += &header(&[
         "hidden",
         "strength",
@@ -354,16 +355,16 @@ fn cylinder(pairs: &[Pair<'_>]) -> String {
         return String::new();
     }
     let mut text = "\n## The cylinder\n".to_owned();
-    text += "\nErrors in times the noise, less than which no model can leave: that takes *at most* \
-             away. *Beyond noise*: of the error whose square is that of the error less that of the \
-             noise.\n";
+    text += "\nErrors are divided by the noise. *Removed*: the part of the integrator's error that \
+             `improve` removes; *possible*: the largest part that any model could remove, since the \
+             noise remains. *Beyond noise*: the removed part of √(error² − noise²).\n";
     let columns = [
         "noise, deg",
         "seed",
         "integrator",
         "after improve",
-        "taken away",
-        "at most",
+        "removed",
+        "possible",
         "beyond noise",
         "effects",
     ];
@@ -391,8 +392,9 @@ fn coverage(pairs: &[Pair<'_>]) -> String {
     let mut names: Vec<&str> = estimates.iter().map(|estimate| estimate.name.as_str()).collect();
     names.sort_by_key(|name| (name.contains('.'), *name));
     names.dedup();
-    let mut text = "\n## Parameters\n\nOf records where exactly what is hidden was found, and of \
-                    parameters that the plant has\nunder the same name; its formulas are others.\n"
+    let mut text = "\n## Parameters\n\nRecords in which exactly the hidden effects were found, \
+                    and parameters that the plant has\nunder the same name, though with other \
+                    equations. SE: standard error.\n"
         .to_owned();
     text += &header(&["parameter", "in the 95 % interval", "median error / SE", "no SE"]);
     for name in names {
@@ -419,7 +421,7 @@ fn fault(case: &Case, outcome: &Outcome) -> Option<String> {
     }
     match case.group {
         Group::Cylinder if after > (1.0 - MOST_OF_IT) * before => {
-            faults.push("too little taken away".to_owned());
+            faults.push("too little removed".to_owned());
         }
         Group::Cylinder => (),
         Group::Outside => {
@@ -458,8 +460,8 @@ fn went_wrong(judged: &[Judged]) -> String {
     let count = share(wrong.len(), judged.len());
     format!(
         "\n## Records that went wrong\n\n{count}; each with its revisions and their validation \
-         errors over the noise.\n`tauscope simulate --effect NAME --strength STRENGTH --seed SEED` \
-         makes those that hide one\neffect again, with `--noise-correlation 0.9` for AR(1).\n\n{}",
+         errors divided by the noise.\n`tauscope simulate --effect NAME --strength STRENGTH --seed \
+         SEED` makes a record with one hidden\neffect again, with `--noise-correlation 0.9` for AR(1).\n\n{}",
         wrong.concat()
     )
 }

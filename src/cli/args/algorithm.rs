@@ -16,8 +16,9 @@ pub(crate) struct AlgorithmArgs {
     #[arg(long, value_parser = method())]
     method: Vec<Method>,
 
-    /// Samples that a segment reaches beyond its input steps, or seconds as in `0.1s`; `auto`
-    /// chooses this and the next two from the record of each joint [default: 10]
+    /// How far a segment extends before its input step and after the next one, in samples or in
+    /// seconds as in `0.1s`; `auto` chooses this and the next two from the record of each joint
+    /// [default: 10]
     #[arg(long, value_name = "N|Xs|auto", value_parser = or_auto(length))]
     alpha: Option<OrAuto<Length>>,
 
@@ -69,7 +70,7 @@ fn given<T>(value: Option<OrAuto<T>>) -> Option<T> {
 /// The delay between two steps.
 const BETWEEN: Choices<Interpolation> = &[
     ("hold", "Keep the delay until the next step", Interpolation::Hold),
-    ("linear", "Go in a line to the next accepted delay", Interpolation::Linear),
+    ("linear", "Interpolate linearly to the next accepted delay", Interpolation::Linear),
 ];
 
 impl AlgorithmArgs {

@@ -19,7 +19,7 @@ pub(crate) struct AgainstArgs {
 /// A review of the decisions.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct ReviewArgs {
-    /// Put a person's word above the conditions: a table with the columns
+    /// Apply a person's review, which overrides the conditions: a table with the columns
     /// `joint,trial,i,verdict,delay_s,note,reviewer`, as `estimate --review-sheet` writes it and
     /// `report --interactive` saves it
     #[arg(long, value_name = "FILE.csv")]

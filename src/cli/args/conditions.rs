@@ -28,8 +28,8 @@ pub(crate) struct ConditionArgs {
     #[arg(long, value_name = "N|Xs", default_value = "0", value_parser = length_or_none)]
     min_delay: Length,
 
-    /// Look for delays up to this many samples only, or seconds as in `0.5s`: for holds so long
-    /// that the output meets an end stop on its way
+    /// Longest delay that is searched, in samples or in seconds as in `0.5s`: useful where the
+    /// output reaches an end stop within a hold
     #[arg(long, value_name = "N|Xs", value_parser = length)]
     max_delay: Option<Length>,
 
@@ -58,7 +58,7 @@ pub(crate) struct ConditionArgs {
     #[arg(long, conflicts_with_all = ["first_last", "keep_first_last"])]
     pub(crate) paper: bool,
 
-    /// Accept delays although the output leads its input, does not follow it, or answers later than the
+    /// Accept delays although the output leads its input, does not follow it, or reacts later than the
     /// next step
     #[arg(long)]
     accept_anyway: bool,
@@ -97,8 +97,8 @@ pub(crate) fn ids_with(says: impl Fn(&MethodSpec) -> bool) -> String {
 fn confidence_help() -> String {
     let untested = ids_with(|spec| !spec.has_intervals);
     format!(
-        "Reject a step as `nothing_happened` unless its change of slope is this unlikely to be \
-         noise, or `none` [default: 0.99; `none` for {untested}]"
+        "Reject a step as `nothing_happened` unless a reaction is significant at this confidence \
+         level; `none`: no test [default: 0.99; `none` for {untested}]"
     )
 }
 

@@ -73,8 +73,8 @@ pub(crate) struct ReadingArgs {
 /// How much memory logs may take.
 #[derive(Args, Debug)]
 pub(crate) struct MemoryArgs {
-    /// The most memory that reading logs may take, in bytes or as `500MB` or `4GB`: a log that
-    /// needs more is refused [default: half of the machine's]
+    /// Limit of the memory for reading logs, in bytes or as `500MB` or `4GB`: a log that needs more
+    /// is refused [default: half of the machine's]
     #[arg(long, value_name = "SIZE", value_parser = number::bytes)]
     max_memory: Option<u64>,
 }
@@ -117,13 +117,16 @@ impl DataArgs {
         }
         if path.metadata().is_ok_and(|found| !found.is_file()) {
             bail!(
-                "{}: a pipe or a device has no end that grows; write it to a file, as with `tee`, \
-                 and follow that",
+                "{}: a pipe or a device cannot be followed; write it to a file, as with `tee`, \
+                 and follow that file",
                 path.display()
             );
         }
         if self.reading.fill.is_some() {
-            bail!("`--fill` names trials anew at each gap; leave it out until the log has ended");
+            bail!(
+                "`--fill` splits and renames trials at gaps, which a growing log does not \
+                   allow; leave it out until the log has ended"
+            );
         }
         Ok(path.clone())
     }

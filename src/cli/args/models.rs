@@ -37,7 +37,7 @@ impl ModelFileArgs {
             Some(path) if path.exists() || self.write.is_some() => Ok(read_model(path)?),
             Some(path) => Ok(ModelFile::new(path)),
             None if self.write.is_none() && Path::new(DEFAULT).exists() => bail!(
-                "{DEFAULT} is there already: `--model {DEFAULT}` goes on with it, `--write FILE` \
+                "{DEFAULT} exists already: `--model {DEFAULT}` continues with it, `--write FILE` \
                  starts another"
             ),
             None => Ok(ModelFile::new(self.target())),
@@ -118,7 +118,10 @@ fn check_unchanged(path: &Path, read: &str) -> anyhow::Result<()> {
         now => now.with_context(|| format!("{name}: cannot be read"))?,
     };
     if now != read {
-        bail!("{name}: it was changed meanwhile and is left as it is; run the command again");
+        bail!(
+            "{name}: it was changed by another program meanwhile and is not replaced; run the \
+               command again"
+        );
     }
     Ok(())
 }
@@ -153,7 +156,10 @@ pub(crate) fn check_models(
         let is_in_log = |name: &str| joints.iter().any(|joint| joint.name == name);
         let near = nearest_name(name, file.names().filter(|name| !is_in_log(name)));
         let near = near.map_or_else(String::new, |near| format!(", which has `{near}`"));
-        let missing = format!("joint `{name}`: not in the model file{near}; a plain integrator");
+        let missing = format!(
+            "joint `{name}`: not in the model file{near}; it starts as a plain \
+                               integrator"
+        );
         verbosity.say("note", missing);
     }
     Ok(())

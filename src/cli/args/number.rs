@@ -70,6 +70,16 @@ pub(crate) fn threads(text: &str) -> Result<usize, String> {
     number.ok_or_else(|| format!("expected a whole number from 1 to {MOST_THREADS}"))
 }
 
+/// A count that may be 0.
+pub(crate) fn count(text: &str) -> Result<usize, String> {
+    text.parse().ok().ok_or_else(|| "expected a whole number from 0 up".to_owned())
+}
+
+/// The seed of random numbers.
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
+    text.parse().ok().ok_or_else(|| "expected a whole number from 0 up".to_owned())
+}
+
 /// A count.
 pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|number: &usize| *number > 0);

@@ -18,8 +18,8 @@ use crate::report::columns::{columns_json, columns_table};
 ///
 /// Names and data tell which column is the time, which drives a joint, and which follows.
 /// With `-w` the mapping is written as a file for `--columns`, to be corrected by hand; without a name it is
-/// `columns.toml` beside the log, which holds for all logs in this folder from then on. What is mended in
-/// the log where it is read so is said, too.
+/// `columns.toml` beside the log, which holds for all logs in this folder from then on. It also
+/// lists the repairs made while reading the log.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
     /// The log
@@ -73,7 +73,7 @@ fn write(survey: &Survey, path: &Path, verbosity: Verbosity) -> anyhow::Result<(
     let is_mapping = path.is_file() && ColumnMap::read(path).is_ok();
     if is_mapping && std::fs::read_to_string(path).is_ok_and(|text| text != mapping) {
         bail!(
-            "--write {name}: is there already and says something else; remove it, or name another file"
+            "--write {name}: exists already with another mapping; remove it, or name another file"
         );
     }
     write_bytes(path, mapping)?;

@@ -8,7 +8,7 @@ use clap_complete::Shell;
 use crate::cli::console;
 use crate::cli::exit::Completion;
 
-/// Print what makes a shell complete commands, options and their values
+/// Print the script by which a shell completes commands, options and their values
 ///
 /// For bash: `tauscope completions bash > ~/.local/share/bash-completion/completions/tauscope`.
 /// For fish: `tauscope completions fish > ~/.config/fish/completions/tauscope.fish`.

@@ -18,7 +18,7 @@ use crate::cli::exit::Completion;
 use crate::cli::viewer::{NEWEST, PORT, VERSION, installed, is_listening, on_path};
 use crate::report::json::document;
 
-/// Say what is missing to make recordings and to look at them
+/// Check what is needed to make and view recordings, and say what is missing
 ///
 /// It looks for the Rerun viewer and its version, for a screen, and at this program and the
 /// terminal; each line that is not `ok` names the remedy. Exit status 1 when something is
@@ -134,8 +134,8 @@ fn screen() -> Finding {
     }
     missing(
         "neither WAYLAND_DISPLAY nor DISPLAY is set: the viewer has no screen here",
-        "copy recordings to a machine with a screen, or run `rerun --web-viewer FILE.rrd` and \
-         look from there",
+        "copy recordings to a machine with a screen, or run `rerun --web-viewer FILE.rrd` here \
+         and open its address there",
     )
 }
 
@@ -273,7 +273,7 @@ fn minor(version: &str) -> Option<(u32, u32)> {
 
 fn running() -> Finding {
     if is_listening(SocketAddr::from((Ipv4Addr::LOCALHOST, PORT))) {
-        return ok(format!("something listens on port {PORT}, where viewers do"));
+        return ok(format!("a program listens on port {PORT}, the port of the viewer"));
     }
     let found = format!("no viewer listens on port {PORT}");
     note(found, "`--spawn` starts one; `--connect` needs one: start it with: rerun")

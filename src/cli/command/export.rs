@@ -27,11 +27,11 @@ pub(crate) struct Args {
     #[arg(value_name = "MODEL.toml")]
     model: PathBuf,
 
-    /// What is written; its functions have its name
+    /// The file to write; its functions are named after it
     #[arg(value_name = "FILE", required_unless_present = "output", conflicts_with = "output")]
     file: Option<PathBuf>,
 
-    /// What is written, as an option
+    /// The file to write, given as an option
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
@@ -131,8 +131,8 @@ fn exported(args: &Args, model: &ModelFile, joint: &str) -> anyhow::Result<Expor
     let units = Units { input, output };
     let place = || format!("{}: joint `{joint}`", args.model.display());
     let of = in_trial(of, args.trial.as_deref()).with_context(place)?;
-    let caution = "it left an error that no effect accounts for when it was fitted: its outputs may be \
-                   far off";
+    let caution = "when it was fitted, an error remained that no effect accounts for (verdict \
+                   `unexplained`): its outputs may be far off";
     let caution = model.is_unexplained(joint).then(|| caution.to_owned());
     let origin: Vec<String> = std::iter::once(origin).chain(caution).collect();
     Export::new(joint, &of, units, &origin).with_context(place)

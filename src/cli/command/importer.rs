@@ -13,9 +13,9 @@ use crate::cli::viewer::{IMPORTER, installed, on_path};
 
 /// Let the Rerun viewer open logs: `rerun LOG.csv` shows the whole recording
 ///
-/// A viewer asks each program `rerun-importer-…` on PATH about a file that it is to open. With
-/// `--install` this program is there under the name `rerun-importer-tauscope`. Without it, the command
-/// says where that is. To remove it, delete that file.
+/// To open a file, the viewer calls every program on PATH whose name begins with `rerun-importer-`.
+/// `--install` makes a link of that kind, `rerun-importer-tauscope`, to this program; without
+/// `--install` the command says where the link is. To undo it, delete the link.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
     /// Make the link
@@ -60,7 +60,7 @@ fn install(folder: Option<&Path>) -> anyhow::Result<PathBuf> {
     let program = env::current_exe().context("it is not known where this program is")?;
     // A file that is no link was put there by somebody.
     if link.exists() && !link.is_symlink() && cfg!(unix) {
-        bail!("{}: is there already, and is no link; remove it first", link.display());
+        bail!("{}: exists already and is not a link; remove it first", link.display());
     }
     if link.is_symlink() || link.exists() {
         fs::remove_file(&link)

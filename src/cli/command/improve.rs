@@ -10,6 +10,7 @@ use crate::report::improve::{improve_json, improve_text};
 use crate::study::{Mode, improve_joints};
 use clap::Args as ClapArgs;
 
+use crate::cli::args::number::count;
 use crate::cli::args::{
     DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, add_arguments,
 };
@@ -36,11 +37,11 @@ pub(crate) struct Args {
     effects: EffectArgs,
 
     /// How many effects are added at most
-    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS)]
+    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, value_parser = count)]
     max_effects: usize,
 
-    /// Keep effects that are significant and have no practical consequence: without them
-    /// the error grows by less than 1 % of the first
+    /// Keep effects that are significant but have no practical consequence: without them the error
+    /// grows by less than 3 % of the initial error beyond the noise
     #[arg(long)]
     refine: bool,
 

@@ -11,7 +11,7 @@ use crate::cli::each_log::{Merged, Tables, kept_in, present, read_folders};
 use crate::cli::exit::Completion;
 use crate::cli::output::CsvText;
 
-/// Make the tables of all logs from folders of results
+/// Merge the results of many logs into tables of all logs
 ///
 /// The results are those of `estimate` or `improve` with `--results`, and `--shard`. The
 /// tables are the same, byte for byte, as those of one run over all logs.
@@ -29,8 +29,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
 
-    /// Write texts in CSV so that a spreadsheet program computes nothing: an apostrophe stands
-    /// before what it would take for a formula
+    /// Make texts in CSV safe for spreadsheet programs: an apostrophe is put before what they would
+    /// take for a formula
     #[arg(long)]
     safe_csv: bool,
 

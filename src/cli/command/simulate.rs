@@ -8,13 +8,13 @@ use crate::synthetic::{PlantSpec, Synthetic, simulate, write_log, write_truth};
 use anyhow::{Context as _, bail};
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{Choices, one_of};
+use crate::cli::args::{Choices, number, one_of};
 use crate::cli::console::{Bar, Verbosity};
 use crate::cli::exit::Completion;
 use crate::cli::output::{OutputFile, OutputKind, Outputs, filled_file};
 use crate::experiment::read_text;
 
-/// Make a log of joints whose truth is known
+/// Simulate a log of joints with known delays and effects
 ///
 /// A plant file states each joint's gain, delay law, effects and noise, and what drives it;
 /// `data/manipulator.plant.toml` is an example. Without one, a joint of random gain, delay
@@ -43,13 +43,13 @@ pub(crate) struct Args {
     #[arg(short, long = "output", value_name = "LOG.csv")]
     output: PathBuf,
 
-    /// Where the truth goes: the true delay of every step, or the whole plant where the name
-    /// ends in `.toml`. May be repeated
+    /// A file for the truth: the true delay of every step, or the whole plant if the name ends in
+    /// `.toml`. May be repeated
     #[arg(long, value_name = "TRUTH.csv|TRUTH.toml")]
     truth: Vec<PathBuf>,
 
     /// Seed of everything random [default: the plant file's, or 1]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = number::seed)]
     seed: Option<u64>,
 
     /// Standard deviation of the noise of every joint [default: the plant file's, or 0.05]

@@ -28,9 +28,8 @@ pub(crate) use with_parent::end_with_parent;
 /// Many logs, each by itself.
 #[derive(Args, Debug)]
 pub(crate) struct FolderArgs {
-    /// Take each log as an experiment of its own, and keep its result in this folder. A log
-    /// whose result is there already, from the same bytes by the same settings and version,
-    /// is not worked on again
+    /// Process each log as an experiment of its own, and keep its result in this folder. A log
+    /// whose result is there already, from the same bytes, settings and version, is skipped
     #[arg(long, value_name = "FOLDER")]
     results: Option<PathBuf>,
 
@@ -42,8 +41,8 @@ pub(crate) struct FolderArgs {
     #[arg(long, value_name = "FILE", requires = "results")]
     summary: Option<PathBuf>,
 
-    /// Write texts in CSV so that a spreadsheet program computes nothing: an apostrophe stands
-    /// before what it would take for a formula
+    /// Make texts in CSV safe for spreadsheet programs: an apostrophe is put before what they would
+    /// take for a formula
     #[arg(long)]
     safe_csv: bool,
 }
@@ -102,7 +101,7 @@ impl FolderArgs {
         let tables = Tables { decisions, summary, text: self.csv_text() };
         if self.shard.is_some() && tables.files().next().is_some() {
             bail!(
-                "--shard: a part of the logs makes no table of all; leave out `--decisions` and \
+                "--shard: the tables need the results of all parts; leave out `--decisions` and \
                  `--summary`, and give them to `tauscope merge` when all parts are done"
             );
         }

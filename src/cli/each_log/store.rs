@@ -168,7 +168,7 @@ pub(crate) fn read_folders(folders: &[PathBuf]) -> anyhow::Result<Merged> {
         if let Some(first) = unread.iter().chain(&foreign).next() {
             bail!("{first}");
         }
-        bail!("no result in these folders; give those of `--results`");
+        bail!("no result in these folders; name the folders that were given to `--results`");
     };
     let missing = of.saturating_sub(found.len());
     let missing = (missing > 0).then(|| {

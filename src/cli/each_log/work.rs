@@ -108,9 +108,9 @@ impl Work<'_> {
         self.verbosity().say(
             "note",
             format!(
-                "{count} {results} replaced: {first}, or a file that is given beside it, has changed \
-                 since; results are known by the paths of their logs as typed, so that logs of one name in \
-                 two folders need the folders in their paths"
+                "{count} {results} replaced, since {first} or a file given with it has changed. A \
+                 result is identified by the path of its log as typed: for logs of one name in \
+                 two folders, type the folders, too"
             ),
         );
     }
@@ -160,7 +160,10 @@ impl Work<'_> {
     fn key(&self, log: &Path) -> anyhow::Result<String> {
         let place = self.place(log);
         if is_foreign(&place) {
-            bail!("{}: no result of tauscope has the name of one; move it", place.display());
+            bail!(
+                "{}: has the name of a result, but tauscope did not write it; move it",
+                place.display()
+            );
         }
         // It is read twice: for its hash, and by the program that works on it.
         if log.metadata().is_ok_and(|found| !found.is_file()) {

@@ -150,7 +150,8 @@ fn check_beside_parts(path: &Path, outputs: &[(OutputKind, &Path)]) -> anyhow::R
     };
     if let Some((_, other)) = outputs.iter().find(is_part) {
         bail!(
-            "{}: a recording of many joints has files of this name beside {}; give it another",
+            "{}: a recording of many joints needs files of this name beside {}; give this output \
+             another name",
             other.display(),
             path.display()
         );

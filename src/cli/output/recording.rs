@@ -133,7 +133,7 @@ impl Recording<'_> {
 fn check_own(path: &Path, parts: &[&Path]) -> anyhow::Result<()> {
     match parts.iter().find(|part| part.exists()) {
         Some(part) if !path.exists() => bail!(
-            "{}: is there already, and a recording of many joints has files of this name beside \
+            "{}: exists already, and a recording of many joints needs files of this name beside \
              {}; give the recording another name",
             part.display(),
             path.display()

@@ -53,7 +53,8 @@ fn other(
     // A log is read again from its beginning.
     if path.metadata().is_ok_and(|found| !found.is_file()) {
         bail!(
-            "a log in a pipe can be read once, and was read for a result; write it to a file first"
+            "a pipe can be read only once, and was read already to see what it is; write the log \
+             to a file first"
         );
     }
     let experiment = read(&[path.to_owned()], &data.options()?)?;

@@ -95,9 +95,8 @@ fn unresolved(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let longest = joint.trials.iter().map(|trial| trial.period().seconds()).fold(0.0, f64::max);
     (delays.len() >= FEWEST && 2 * short > delays.len()).then(|| {
         format!(
-            "{short} of {} delays are shorter than the sample period of {longest} s, \
-             which is all that this log says of them; a log that is sampled faster would resolve \
-             them",
+            "{short} of {} delays are shorter than the sample period of {longest} s, so their \
+             values are not resolved; sample faster to resolve them",
             delays.len()
         )
     })
@@ -119,8 +118,8 @@ fn coarse_grid(joints: &[EstimatedJoint<'_>]) -> Option<String> {
         _ => format!("joints {named}"),
     };
     Some(format!(
-        "{joints}: delays come in steps of β = {beta} samples, which is much beside them; `--method \
-         {finer}` places them between samples, with intervals"
+        "{joints}: delays are multiples of β = {beta} samples, which is coarse for delays this \
+         short; `--method {finer}` finds them between samples, with intervals"
     ))
 }
 
@@ -150,8 +149,9 @@ fn smeared(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let unsmoothed = Method::AUTO;
     (hold_s * cutoff_hz < 1.0).then(|| {
         format!(
-            "the input is held for {} s (median), less than a period of the low-pass of \
-             {cutoff_hz} Hz, which blends reactions into one another: `--method {unsmoothed}` needs none",
+            "the input is held for {} s (median), less than one period of the {cutoff_hz} Hz \
+             low-pass, which smears neighbouring reactions together: use `--method {unsmoothed}`, \
+             which needs no low-pass",
             number(hold_s),
         )
     })
@@ -161,9 +161,10 @@ fn smeared(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
 fn later_than_the_next_step(joint: &Joint) -> Option<String> {
     delay_beyond_holds(&joint.trials).map(|delay_s| {
         format!(
-            "over the whole record it answers about {} s late, longer than most levels are \
-             held: what is listed are delays of its answers to earlier steps. A model shows the \
-             delay (`tauscope compare`), and so does an input that holds its levels for longer",
+            "over the whole record the output follows the input about {} s late, which is longer \
+             than most levels are held, so the listed delays are those of reactions to earlier \
+             steps. Fit a model to find the delay (`tauscope compare`), or hold the levels for \
+             longer",
             number(delay_s),
         )
     })
@@ -180,8 +181,8 @@ fn as_long_as_allowed(joint: &Joint, estimate: &JointEstimate) -> Option<String>
     let bounded = delays.iter().filter(|delay| **delay > longest - near).count();
     (bounded > 0 && bounded as f64 >= PART * delays.len() as f64).then(|| {
         format!(
-            "{bounded} of {} delays are as long as `--max-delay` allows: reactions may \
-             come later; raise it",
+            "{bounded} of {} delays are as long as `--max-delay` allows, so the reactions may \
+             come later: increase `--max-delay`",
             delays.len()
         )
     })
@@ -196,8 +197,8 @@ fn cut_at_the_next_step(estimate: &JointEstimate) -> Option<String> {
     let settings = &estimate.settings;
     estimate.estimated().any(|trial| end_at_the_next_step(&trial.decisions)).then(|| {
         format!(
-            "it reacts within α = {} samples, so that segments hold the reaction to the \
-             next step, too: they end at that step",
+            "the joint reacts within α = {} samples, so segments that end α samples after the \
+             next step would contain the reaction to that step, too: they are ended at that step",
             settings.alpha
         )
     })
@@ -212,8 +213,8 @@ fn unsmoothed(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let whose = if slow == all { String::new() } else { format!(" at {slow} of {all} trials") };
     (slow > 0).then(|| {
         format!(
-            "the low-pass of {hz} Hz is left out{whose}, where no more than {} \
-             samples come in a second",
+            "the {hz} Hz low-pass is not applied{whose}, since the log has no more than {} \
+             samples per second",
             2.0 * hz
         )
     })
@@ -258,7 +259,7 @@ fn far_off(joint: &Joint, what: &str, of: fn(&Trial) -> &[f64]) -> Option<String
 fn spikes(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let count = !(estimate.settings.paper || estimate.settings.grows);
     let spikes = Some(joint).filter(|_| count).and_then(spikes_of)?;
-    Some(format!("{spikes}: interpolated where delays are estimated"))
+    Some(format!("{spikes}: replaced by interpolation before delays are estimated"))
 }
 
 /// That there are isolated spikes in the output of a joint, where there are any.
@@ -278,9 +279,9 @@ fn saturated(joint: &Joint) -> Option<String> {
         .collect();
     (!ends.is_empty()).then(|| {
         format!(
-            "the output stands, without noise, at {}: the range of the sensor or its converter \
-             ends there; what the joint does beyond is not seen, and the delay of a step there is how late the \
-             output comes back",
+            "the output stays exactly, without noise, at {}: the sensor or its converter \
+             saturates there. Motion beyond is not measured, and the delay of a step there is the \
+             time until the output leaves saturation",
             ends.join(" and at ")
         )
     })
@@ -291,9 +292,9 @@ fn coarse(joint: &Joint) -> Option<String> {
     let found = coarse_resolution(&joint.trials)?;
     let unit = joint.output_unit.as_deref().map_or_else(String::new, |unit| format!(" {unit}"));
     Some(format!(
-        "the resolution of the output is {}{unit}, a count every {} s at its usual speed: a \
-         reaction is seen up to that much late, and delays are no more accurate than that; a finer sensor, \
-         or larger steps of the input, resolve them better",
+        "the resolution of the output is {}{unit}, one count every {} s at its usual speed: a \
+         reaction may be seen that much late, so delays are no more accurate than that. Use a \
+         finer sensor or larger input steps",
         to_digits(found.count, 4),
         to_digits(found.between_s, 2)
     ))

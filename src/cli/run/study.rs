@@ -174,9 +174,14 @@ impl<'a> Study<'a> {
 /// What models are not held against in the records of `joints`.
 fn notes_on_models(joints: &[Joint]) -> Vec<String> {
     let note = |joint: &Joint| {
-        let spikes = spikes_of(joint).map(|spikes| format!("{spikes}, which no error counts"));
+        let spikes = spikes_of(joint).map(|spikes| {
+            format!(
+                "{spikes}: excluded from fits and \
+                                                            errors"
+            )
+        });
         let noise = joint.trials.property::<Mended>().has_noisy_input.then(|| {
-            "the input has noise or glitches: models take the levels that it holds".to_owned()
+            "the input has noise or glitches: models use the levels at which it is held".to_owned()
         });
         let said = spikes.into_iter().chain(noise);
         said.map(|note| format!("joint `{}`: {note}", joint.name)).collect::<Vec<_>>()

@@ -29,8 +29,8 @@ fn started(address: SocketAddr) -> anyhow::Result<()> {
     while !is_listening(address) {
         if let Some(status) = child.try_wait().ok().flatten() {
             bail!(
-                "the viewer ended at once ({status}); `tauscope doctor` says what it lacks, and \
-                 `-o FILE.rrd` needs none"
+                "the viewer ended at once ({status}); `tauscope doctor` says what is missing, and \
+                 `-o FILE.rrd` writes the recording without a viewer"
             );
         }
         if Instant::now() > end {
@@ -45,8 +45,8 @@ fn started(address: SocketAddr) -> anyhow::Result<()> {
 fn start() -> anyhow::Result<Child> {
     let path = on_path("rerun", std::env::var_os("PATH").as_deref());
     let path = path.context(
-        "there is no viewer `rerun` on PATH; `tauscope doctor` says how to get it, and \
-         `-o FILE.rrd` needs none",
+        "there is no viewer `rerun` on PATH; `tauscope doctor` says how to install it, and `-o \
+         FILE.rrd` writes the recording without a viewer",
     )?;
     let mut command = Command::new(&path);
     command.args([&format!("--port={PORT}"), "--expect-data-soon"]);

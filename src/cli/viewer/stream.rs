@@ -139,7 +139,7 @@ impl Stream {
 
         let Some(live) = &self.0 else { return Ok(completion) };
         let mut live = live.lock().map_err(|_poisoned| bug())?;
-        let interrupt = live.is_served().then(|| Interrupt::watch("viewers are served no more"));
+        let interrupt = live.is_served().then(|| Interrupt::watch("no longer serving viewers"));
         if let Err(error) = live.flush() {
             console::message("warning", &said(&error));
             return Ok(Completion::Partial);

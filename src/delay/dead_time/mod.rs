@@ -1,7 +1,7 @@
 //! The dead time of a joint whose input moves all the time, by a dynamic fit over the record.
 //!
 //! - [`dead_time`]: from the trials of a joint to its dead time, over the record and in windows
-//! - [`DeadTime`]: what comes of it
+//! - [`DeadTime`]: the result
 //!
 //! Here, `response` is the structure in recursions, `curve` the static curve before it,
 //! `record` and `moments` the regression, `search` and `profile` its minimum, `uncertainty`

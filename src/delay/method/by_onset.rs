@@ -63,8 +63,8 @@ fn answered(context: &StepContext<'_>, by_lines: Decision, onset: Option<StepOns
     decision
 }
 
-/// `fine`, whose interval also holds the onsets of a joint that gathers speed from rest in a way
-/// of its own: lines meet behind them.
+/// `fine` with its interval extended to the onsets of a joint that accelerates gradually from rest:
+/// two lines meet after such an onset.
 fn from_rest(context: &StepContext<'_>, fine: FineDelay) -> FineDelay {
     context.gradual().map_or(fine, |other| FineDelay {
         low: fine.low.min(other.low),

@@ -5,9 +5,9 @@
 //! next segment then begins behind its own reaction, which it cannot find, and so on to the end of
 //! the record: every delay is a hold, and the next delay.
 //!
-//! Which step a breakpoint answers, its change of slope says: it is in proportion to the change of
-//! the input, `c_i = g·Δu_i`, or `c_i = g·Δu_(i+1)`. Of both, that with the smaller squared error
-//! through the origin is believed:
+//! The change of slope shows to which step a breakpoint belongs, since it is proportional to the
+//! change of the input: `c_i = g·Δu_i`, or `c_i = g·Δu_(i+1)`. Of both, the one with the smaller
+//! squared error of a line through the origin is taken:
 //!
 //! ```text
 //! R² = (Σ c_i Δu)² / (Σ c_i² · Σ Δu²)

@@ -153,7 +153,7 @@ mod tests {
     use crate::delay::neutral::Transition;
     use crate::numerics::testing::uniform;
 
-    /// An integrator that answers `delay` samples late.
+    /// An integrator that reacts `delay` samples late.
     fn run(delay: f64) -> Run {
         let mut random = uniform(5);
         let (mut at, mut before, mut steps) = (40.0, 0.0, Vec::new());

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Onsets are found one by one, whatever the sizes of their steps, so that the part of `Σ w a²` that
-//! is explained says whether they answer the input. An output that answers nothing has as good
+//! is explained says whether they follow the input. An output that follows nothing has as good
 //! onsets, of other sizes. The weight `w` of a size is as well as it is known, at most what is usual:
 //! of onsets that are near each other only the sum of their sizes is.
 

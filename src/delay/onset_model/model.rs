@@ -150,7 +150,7 @@ impl OnsetModel {
         let origin = Origin { period, neutral, families };
         let runs = alike.map(|trial| run_of(trial, settings.max_delay, &origin));
         let mut runs: Vec<Run> = runs.filter(|run| !run.steps.is_empty()).collect();
-        // What is found hangs on no order of the trials.
+        // The result does not depend on the order of the trials.
         runs.sort_by(|a, b| {
             let [one, other] = [a, b].map(|run| run.output.iter().map(|y| y.to_bits()));
             b.output.len().cmp(&a.output.len()).then_with(|| one.cmp(other))
@@ -189,7 +189,7 @@ impl OnsetModel {
                 let candidates = search.select();
                 (search, candidates)
             }
-            // Which reaction is whose does not hang on the reach.
+            // Which reaction belongs to which step does not depend on the reach.
             Some(whole) => {
                 let shape = whole.shapes.of(whole.usual()).scaled((every as f64).recip());
                 let typical = whole.typical / every as f64;

@@ -13,7 +13,7 @@
 //! by the logarithm of its error alone. Each of the `m` states that follow takes from the errors of the
 //! `N` windows half of a chi-square variable of `N` degrees of freedom where it is not needed, `N/2 ± √(N/2)`:
 //! what it is at the start of a window is left by the step before and no choice, so that noise is all
-//! that it must be told from, by two standard deviations. The two sizes of a curved hold are chosen for
+//! that it must be distinguished from, by two standard deviations. The two sizes of a curved hold are chosen for
 //! each window and count as in Akaike's criterion.
 //! Shapes whose onsets go far less with the input than those of others have missed them.
 //!
@@ -32,7 +32,7 @@ use crate::delay::neutral::Transition;
 use crate::numerics::{Axes, Differences, median};
 
 /// Steps up to which a record is taken as a whole: a disturbed window is then no small part of it,
-/// and a curved hold cannot be told from a response.
+/// and a curved hold cannot be distinguished from a response.
 pub(super) const FEW: usize = 3;
 const FEW_FOR_WEIGHTS: usize = 5;
 
@@ -349,8 +349,8 @@ impl Search {
         self.restarted_at_best(all)
     }
 
-    /// Each candidate also from where the best has its onsets: which reaction is whose does not hang on
-    /// the shape.
+    /// Each candidate started again from the onsets of the best: which reaction belongs to which
+    /// step does not depend on the shape.
     fn restarted_at_best(&self, mut all: Vec<Candidate>) -> Vec<Candidate> {
         let Some(best) = all.first().cloned() else { return all };
         for other in &mut all[1..] {

@@ -36,7 +36,8 @@ pub enum DefinitionError {
     Syntax(#[from] SyntaxError),
     /// An effect on the delay has states.
     #[error(
-        "an effect of stage `transport` has no states: it is asked once at each step of the input"
+        "an effect of stage `transport` has no states: it is evaluated once at each step of the \
+         input"
     )]
     States,
     /// It has too many states.
@@ -49,8 +50,8 @@ pub enum DefinitionError {
     },
     /// The neutral values that are given are not neutral.
     #[error(
-        "at its neutral values the effect makes {found} of {signal}, and must leave it as it is; \
-         correct `neutral`, or leave it out of all parameters if there is no such point"
+        "at its neutral values the effect changes {signal} to {found}, but must not change it; \
+         correct `neutral`, or leave it out of all parameters if there is no neutral point"
     )]
     NotNeutral {
         /// The signal in front of it.

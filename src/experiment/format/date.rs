@@ -4,7 +4,7 @@ use jiff::Timestamp;
 use jiff::civil::{Date, DateTime, Time};
 use jiff::tz::TimeZone;
 
-/// Dates whose order their form tells: with dots the day is first, as everywhere; where clocks count to twelve,
+/// Dates whose order follows from their form: with dots the day is first, as everywhere; where clocks count to twelve,
 /// the month is. Which comes first in `3/1/2026 10:15:00` is not known.
 const FORMS: [&str; 8] = [
     "%d.%m.%Y %H:%M:%S%.f",

@@ -98,7 +98,7 @@ const FOREIGN: [Foreign; 11] = [
     (
         &[b"schema = \"tauscope/model/"],
         "it is a model",
-        "name it behind `--model`, and the log by itself: `tauscope compare LOG --model FILE`",
+        "give it with `--model`, after the log: `tauscope compare LOG --model FILE`",
     ),
     (
         &[b"SQLite format 3\0"],

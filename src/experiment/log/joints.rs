@@ -135,8 +135,8 @@ impl Log<'_> {
             }
             if let Some(largest) = column.too_small() {
                 let text = format!(
-                    "its largest number, {largest:e}, is below what double precision can square; write \
-                     it in a smaller unit"
+                    "its largest number, {largest:e}, is too small: its square is below double \
+                     precision; write it in a smaller unit"
                 );
                 return Err(
                     ReadError::new(ReadErrorKind::Content, text).in_column(self.header(index))

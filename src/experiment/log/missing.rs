@@ -62,9 +62,9 @@ impl Log<'_> {
             return Ok((Filled::Gaps, notes));
         };
         notes.push(format!(
-            "its input changes only in gaps (of up to {longest_s} s): they are filled, the \
-             output interpolated and the input held, and delays count from their ends; a reaction within a \
-             gap is not seen, and what is accepted behind it then is none"
+            "its input changes only in gaps of the log (of up to {longest_s} s). They are filled, \
+             the output interpolated and the input held, so delays count from the end of a gap. A \
+             reaction inside a gap cannot be seen; a delay accepted for such a step is wrong"
         ));
         Ok((Filled::Pauses { longest_s }, notes))
     }
@@ -149,10 +149,10 @@ impl Log<'_> {
         let all = output.len();
         let usual_s = median(&apart).filter(|_| (all - count) as f64 > SPARSE * all as f64)?;
         let note = format!(
-            "{count} of {all} rows have an output, which is interpolated between them, so that \
-             steps of the input keep their times; what follows from its noise, as intervals, takes all \
-             samples for measured, and an onset model the lines between them for a lag; models are held \
-             against those that are measured"
+            "only {count} of {all} rows have an output; it is interpolated between them, so that \
+             the input steps keep their times. Intervals and p-values treat interpolated samples \
+             as measured, and an onset model may take the interpolation for a lag. Models are \
+             compared with the measured samples only"
         );
         Some((Filled::Readings { longest_s: LONGEST * usual_s }, note))
     }
@@ -161,12 +161,12 @@ impl Log<'_> {
     fn filled_notes(&self, layout: &JointLayout) -> Vec<String> {
         let input = self.column(layout.input.column).map_or(&[][..], |column| &column.values);
         let held = if input.first().is_some_and(|value| value.is_nan()) {
-            "the last value is held, and the first one is taken before it: what the input was \
-             there is not known, nor a step to it"
+            "the last value is held; before the first value, the first one is used, so a step to \
+             it is not known"
         } else {
             "the last value is held"
         };
-        let filled = "short gaps are filled in a line, longer ones part the trial";
+        let filled = "short gaps are filled by linear interpolation, longer ones split the trial";
         let note = |(column, what): (usize, &str)| {
             let values = &self.column(column)?.values;
             let missing = values.iter().filter(|value| value.is_nan()).count();

@@ -100,8 +100,8 @@ impl Log<'_> {
             let column = self.header(column);
             if period > most {
                 let text = format!(
-                    "its times would be {period} s apart, so that their unit must be another; name it in \
-                     the header, as in `{column} [ms]`, `[us]` or `[ns]`"
+                    "its times would be {period} s apart, so they are probably not in seconds; \
+                     name their unit in the header, as in `{column} [ms]`, `[us]` or `[ns]`"
                 );
                 return Err(ReadError::new(ReadErrorKind::Times, text).in_column(column));
             }
@@ -166,8 +166,8 @@ impl Log<'_> {
         let [before, time] =
             [index - 1, index].map(|at| values.get(at).copied().unwrap_or(f64::NAN));
         let text = format!(
-            "from here on the times are in another unit: `{time}` behind `{before}`, and the steps \
-             between them are as many times as large; write all times in one unit"
+            "from here on the times are in another unit: `{time}` follows `{before}`, and the \
+             steps between rows change by the same factor; write all times in one unit"
         );
         Err(self.clock_error(text, index).in_column(self.header(column)))
     }
@@ -215,8 +215,8 @@ impl Log<'_> {
             Fault::NotIncreasing { row } => {
                 let (before, time) = (row.checked_sub(1).map_or(f64::NAN, at), at(row));
                 let text = format!(
-                    "time goes from {before} s to {time} s, but it must increase; remove the row if it \
-                     is there twice, or mark a new trial in a `trial` column"
+                    "time goes from {before} s to {time} s, but must increase; remove the row if \
+                     it is a copy, or mark a new trial in a `trial` column"
                 );
                 (ReadErrorKind::Content, number(row), text)
             }
@@ -228,16 +228,18 @@ impl Log<'_> {
             }
             Fault::FewStamps { stamps, grain_s } => {
                 let text = format!(
-                    "the {} rows of this trial have only {stamps} different times, {grain_s} s apart, \
-                     from which no sample period follows; write times as 64-bit numbers or with more digits",
+                    "the {} rows of this trial have only {stamps} different times, {grain_s} s \
+                     apart: too few to determine the sample period; write times as 64-bit numbers \
+                     or with more digits",
                     times.len()
                 );
                 (ReadErrorKind::Times, number(0), text)
             }
             Fault::Coarse { row, grain_s, period } => {
                 let text = format!(
-                    "the times are rounded to {grain_s} s, in which some {:.0} samples come, but not \
-                     evenly: when each was measured is not known; write times with more digits",
+                    "the times are rounded to {grain_s} s, with an uneven number of samples \
+                     (about {:.0}) at each, so the time of a sample is not known; write times \
+                     with more digits",
                     grain_s / period
                 );
                 (ReadErrorKind::Times, number(row), text)
@@ -286,8 +288,9 @@ impl Log<'_> {
         };
         if usual(1) > APART * usual(size) {
             let text = format!(
-                "each time stands in {size} rows, whose values in `{column}` lie far apart, as in a table \
-                 with a row for each joint; give each joint an input and an output column of its own"
+                "each time is repeated in {size} rows with very different values in `{column}`, \
+                 as in a table with a row for each joint; give each joint an input and an output \
+                 column of its own"
             );
             return Err(ReadError::new(ReadErrorKind::Content, text).about(column));
         }

@@ -40,8 +40,8 @@ pub(super) fn spread_out(log: &mut Log<'_>) {
         }
     }
     log.notes.extend(any.then(|| {
-        "rows come in bursts, as packets bring them: those of each are spread evenly over the time since \
-         the one before"
+        "rows come in bursts, as in packets over a network: the rows of each are spread evenly \
+         over the time since the burst before"
             .to_owned()
     }));
 }

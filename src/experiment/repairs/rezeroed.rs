@@ -27,9 +27,8 @@ pub(super) fn put_back(log: &Log<'_>, joint: &JointLayout) -> Option<Mended> {
         count => format!(", and {} times more", count - 1),
     };
     let note = format!(
-        "the output jumps by {by}{unit} at row {row}{more}, much farther than it moves \
-         between any other rows: taken for a sensor that was re-zeroed, and later samples are shifted \
-         back by as much"
+        "the output jumps by {by}{unit} at row {row}{more}, much farther than between any other \
+         rows: the sensor was probably re-zeroed, so later samples are shifted back by this amount"
     );
     Some(Mended { values, note: Some(note) })
 }

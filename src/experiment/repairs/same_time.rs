@@ -36,7 +36,10 @@ pub(super) fn join(log: &mut Log<'_>) {
     log.notes.push(if are_copies {
         format!("{count} rows are copies of the row before, and left out")
     } else {
-        format!("{count} rows complete the row before, which has the same time: they are one row")
+        format!(
+            "{count} rows have the time of the row before and only values that it lacks: they \
+                 are merged with it"
+        )
     });
 }
 

@@ -1,4 +1,4 @@
-//! Outputs of a sensor that is slower than its log: each reading stands in several rows.
+//! Outputs of a sensor that is slower than its log: each reading is repeated in several rows.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use crate::experiment::layout::JointLayout;
 use crate::experiment::log::Log;
 use crate::numerics::quantile;
 
-/// Rows that a reading stands in, at least.
+/// Rows in which a reading is repeated, at least.
 const FEWEST_ROWS: usize = 3;
 
 /// Readings that show it.
@@ -20,7 +20,7 @@ pub(super) fn first_readings(log: &Log<'_>, joint: &JointLayout) -> Option<Mende
     let mut values = values.clone();
     keep_first(&mut values, &spans, rows);
     let note = format!(
-        "each reading of the output stands in {rows} rows, and counts in the first of them"
+        "each reading of the output is repeated in {rows} rows; only the first of them is used"
     );
     Some(Mended { values, note: Some(note) })
 }
@@ -44,7 +44,7 @@ fn keep_first(values: &mut [f64], trials: &[Range<usize>], rows: usize) {
     }
 }
 
-/// The rows that a reading stands in, where a sensor is read anew every so many rows.
+/// The rows in which a reading is repeated, where a sensor is read anew every so many rows.
 ///
 /// That is seen by changes that come at one interval or at multiples of it, each by as much as the output
 /// moved meanwhile: an output that is rounded coarsely changes by one step at a time.

@@ -332,7 +332,10 @@ impl Columns<'_> {
             });
         if let Some(follows) = pair.follows {
             let [_, output] = &mut why;
-            *output = format!("{output}; its rate follows the input (correlation {follows:+.2})");
+            *output = format!(
+                "{output}; its rate of change follows the input (correlation \
+                               {follows:+.2})"
+            );
         }
         why
     }

@@ -113,7 +113,7 @@ impl Survey {
         }
         if joints.is_empty() {
             open.push(
-                "which columns drive and measure a joint is clear neither from names nor from data"
+                "neither names nor data show which columns are the input and the output of a joint"
                     .to_owned(),
             );
         }

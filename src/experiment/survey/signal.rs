@@ -60,7 +60,10 @@ impl Signal {
         let percent = 100.0 * self.changing;
         match self.changing {
             0.0 => "it never changes".to_owned(),
-            0.0..HOLDS => format!("it holds levels (changes at {percent:.1} % of the rows)"),
+            0.0..HOLDS => format!(
+                "it is held at levels (it changes at {percent:.1} % of the \
+                                   rows)"
+            ),
             _ => format!("it changes at {percent:.0} % of the rows"),
         }
     }

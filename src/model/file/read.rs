@@ -77,8 +77,8 @@ fn define(
     start: Start,
 ) -> Result<&'static dyn Effect, ModelError> {
     if given.kind != expression::KIND {
-        let problem = "is not of this file: a candidate has kind = \"expression\"; those of \
-                       the catalogue are candidates anyway";
+        let problem = "must have kind = \"expression\"; effects of the catalogue are candidates \
+                       anyway";
         return Err(of_effect(place, &given.kind, problem));
     }
     let id = given.id.clone().ok_or_else(|| {

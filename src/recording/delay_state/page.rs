@@ -134,7 +134,7 @@ impl<'f> Page<'f> {
         let pairs = self.found.kinds.iter().flat_map(|kind| &kind.confounded);
         let words = |[one, other]: &[String; 2]| {
             let (one, other) = (variable_text(one, None), variable_text(other, None));
-            format!("; {one} and {other} go together and cannot be separated")
+            format!("; {one} and {other} are correlated and cannot be separated")
         };
         pairs.map(words).next().unwrap_or_default()
     }

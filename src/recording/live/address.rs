@@ -53,7 +53,7 @@ fn greet(stream: &mut TcpStream, patience: Duration) -> io::Result<()> {
     if answered && header[TYPE] == SETTINGS {
         return Ok(());
     }
-    Err(io::Error::other("what listens there is no viewer"))
+    Err(io::Error::other("the program that listens there is not a viewer"))
 }
 
 /// An address as it is written before a port.

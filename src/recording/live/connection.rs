@@ -69,7 +69,7 @@ impl Live {
         let viewer = GrpcSink::new(uri.clone());
         if !connects(&viewer) {
             give_up(Sink::Viewer(viewer));
-            return Err(no_viewer("what listens there is no viewer"));
+            return Err(no_viewer("the program that listens there is not a viewer"));
         }
         Ok(Self::with(Sink::Viewer(viewer), uri.to_string()))
     }

@@ -37,7 +37,7 @@ pub(super) fn page(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>, place
     lines.extend(commands.map(|command| format!("    {command}\n")));
     let several = if improved.revisions.len() > 1 { SEVERAL } else { "" };
     let decision = if layout.segments().next().is_some() { "`decision`, " } else { "" };
-    lines.push(format!("*{several}The pages behind this one follow {decision}{HOW}*"));
+    lines.push(format!("*{several}The pages after this one follow {decision}{HOW}*"));
     lines.join("\n") + "\n"
 }
 

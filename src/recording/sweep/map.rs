@@ -149,7 +149,7 @@ mod tests {
     fn a_run_has_all_rows_that_it_stands_for() {
         let grid = grid();
         assert_eq!(rows_of(&grid, 3), [(3, 3)]);
-        // Onsets hang on neither β nor this low-pass.
+        // Onsets depend neither on β nor on this low-pass.
         let hinge = grid.combinations()[8].run;
         assert_eq!(rows_of(&grid, hinge), [(8, 9), (12, 13)]);
     }

@@ -91,9 +91,8 @@ fn page(sweep: &SweepRecording<'_>) -> Result<String, std::fmt::Error> {
     let (combinations, runs) = (sweep.grid.combinations().len(), sweep.grid.runs().len());
     writeln!(
         page,
-        "\n{combinations} combinations, of which {runs} differ. Delays agree when they differ \
-         by {} samples at most, beside what the distance of candidates (β) or their own \
-         intervals allow.\n",
+        "\n{combinations} combinations, of which {runs} differ. Two delays agree if they differ \
+         by no more than {} samples beyond the resolution of each: ± β/2, or its interval.\n",
         number(sweep.tolerance)
     )?;
     for base in sweep.grid.bases() {

@@ -38,7 +38,7 @@ impl Finding<'_> {
         let alone = match found.len() {
             _ if !has_no_other => "",
             1 => "; no other effect that was tried fits as well in its place",
-            _ => "; no other effect that was tried fits as well in place of one of them",
+            _ => "; no other effect that was tried fits as well in place of any of them",
         };
         format!("{names}: {explained}{alone}")
     }
@@ -76,9 +76,7 @@ impl Finding<'_> {
         match (strongest, self.verdict) {
             (Some(condition), _) => condition.sentence(&misfit_units(self.joint())),
             (None, Verdict::Adequate) => "nowhere: no lack of fit is shown".to_owned(),
-            (None, _) => {
-                "under no condition more than under others: see the worst segments".to_owned()
-            }
+            (None, _) => "under no particular condition: see the worst segments".to_owned(),
         }
     }
 }

@@ -25,7 +25,7 @@ impl Topic {
     /// What comes next in a search.
     pub(crate) const NEXT: Self = Self("What comes next");
     /// What the residual follows.
-    pub(crate) const RESIDUAL: Self = Self("What the residual follows");
+    pub(crate) const RESIDUAL: Self = Self("What the residual depends on");
     /// The measured curves that the model does not follow.
     pub(crate) const CURVES: Self = Self("Measured curves");
     /// The part of the error that each effect explains.
@@ -86,13 +86,13 @@ impl Finding<'_> {
         match test.shown_by? {
             ShownBy::UnseenPart => {
                 let times = times_as_large(test.times_training?);
-                Some(format!("On the part that was not fitted it is {times}."))
+                Some(format!("On the validation part it is {times}."))
             }
             ShownBy::FewWindows => {
                 let times = rounded(test.local?.times_noise?);
                 Some(format!(
-                    "It is not spread as noise would be: in one window the motion that is \
-                     missed is {times} times the noise."
+                    "It is not spread evenly, as noise is: in one window the simulated motion is \
+                     wrong by {times} times the noise."
                 ))
             }
             ShownBy::Shapes | ShownBy::Size => None,
@@ -140,20 +140,22 @@ impl Finding<'_> {
         let joint = self.joint();
         let speed = joint.output_unit.as_deref().map(|unit| format!("{unit}/s"));
         let input = unit_suffix(joint.input_unit.as_deref());
+        // Not with ±, which is one standard error everywhere else.
+        let interval = || format!("95 %: {} to {}", rounded(y - band), rounded(y + band));
         let between = |what: &str| {
-            let speed = |value: f64| measure(value, speed.as_deref());
-            let (band, model) = (speed(band), speed(model));
+            let model = measure(model, speed.as_deref());
             format!(
-                "At {what} {}{input} the measured speed is {} ± {band}, the model's {model}.",
+                "At {what} {}{input} the measured speed is {} ({}), the model's {model}.",
                 rounded(x),
-                rounded(y)
+                rounded(y),
+                interval()
             )
         };
         let gain = |place: String| {
             format!(
-                "{place} the measured speed is {} ± {} times that of the whole record, the model's {}.",
+                "{place} the measured speed is {} ({}) times that of the whole record, the model's {}.",
                 rounded(y),
-                rounded(band),
+                interval(),
                 rounded(model)
             )
         };

@@ -53,10 +53,11 @@ impl Finding<'_> {
             Some(LackOfFit { edges: Some(edges), .. }) => {
                 let (spread, share) = (measure(edges.spread_s, Some("s")), percent(edges.share));
                 format!(
-                    "The steps of the input lie between the samples of the log, and their times, the \
-                     middle 80 % of which are spread over {spread}, explain {share} of the squared \
-                     residual; beside that no lack of fit is shown. A log with the samples of the \
-                     controller, or a faster one, would show smaller errors of the model."
+                    "The input steps lie between the samples of the log. Their times, estimated \
+                     from the residual (80 % of them within {spread}), explain {share} of the \
+                     squared residual; without that part no lack of fit is shown. With a log made \
+                     by the controller itself, or sampled faster, the error of the model would be \
+                     smaller."
                 )
             }
             Some(test) if test.p_value >= SIGNIFICANCE => {
@@ -75,13 +76,16 @@ impl Finding<'_> {
                     );
                 }
                 let p_value = p_text(test.p_value);
-                let rest = if test.adequate {
-                    "which as a whole is close to the noise"
-                } else {
-                    "and no tried effect explains a relevant part of it"
+                let rest = match test.times_noise.filter(|_| test.adequate) {
+                    Some(times) => format!(
+                        "but on the training part the error is only {} times the noise",
+                        rounded(times)
+                    ),
+                    None => "and no tried effect explains a relevant part of it".to_owned(),
                 };
                 format!(
-                    "A pattern is left in {share} % of the squared residual ({p_value}), {rest}."
+                    "{share} % of the squared residual still follows a pattern ({p_value}), \
+                     {rest}."
                 )
             }
             None if self.is_exact() => {
@@ -300,19 +304,23 @@ impl Finding<'_> {
         let by_mean = |a: &&Region, b: &&Region| a.mean_residual.total_cmp(&b.mean_residual);
         let (low, high) = (parts.iter().min_by(by_mean)?, parts.iter().max_by(by_mean)?);
         let (feature, share_said) = (low.feature, percent(share));
-        let head = format!("Measured − simulated ({}) follows", self.comparison().arising);
+        let head = format!("Measured − simulated ({})", self.comparison().arising);
         if share < NOTHING {
-            return Some(format!("{head} none of its features."));
+            return Some(format!(
+                "{head} depends on none of input, output, speed, time and \
+                                 trial."
+            ));
         }
         if share < WORTH {
             return Some(format!(
-                "{head} none of its features much; `{feature}` most, with {share_said} of its \
-                 square."
+                "{head} depends little on input, output, speed, time or trial: at most on \
+                 `{feature}`, which explains {share_said} of its square (R²)."
             ));
         }
         let (low, high) = (self.mean_at(low), self.mean_at(high));
         Some(format!(
-            "{head} `{feature}` most, with {share_said} of its square: on average {low}, {high}."
+            "{head} depends most on `{feature}`, which explains {share_said} of its square (R²): \
+             its mean is {low}, {high}."
         ))
     }
 
@@ -341,17 +349,20 @@ impl Finding<'_> {
         Some(if explained >= ONE_OF_SEVERAL && likeliest.is_significant() {
             let share = percent(explained);
             format!(
-                "The likeliest effect, {name}, alone would explain {share} of the misfit, and a lack of \
-                 fit would remain: several effects are probably missing."
+                "The likeliest further effect, {name}, would explain {share} of the error beyond \
+                 the noise and leave a lack of fit: several effects are probably missing."
             )
         } else {
             let with = self.output(with);
             let why = if likeliest.is_significant() {
-                "too little is gained for it to be named"
+                "that is too little for it to be named"
             } else {
-                "it is not significant"
+                "the reduction is not significant"
             };
-            format!("The likeliest effect, {name}, would leave {with}: {why}.")
+            format!(
+                "The likeliest further effect, {name}, would reduce the error to {with}, but \
+                     {why}."
+            )
         })
     }
 }

@@ -18,8 +18,7 @@ use crate::wording::{bracketed, capitalized, p_cell};
 pub(super) fn record_figure(estimated: EstimatedJoint<'_>, file: String) -> Figure {
     let joint = estimated.joint;
     let name = format!("Input and output of {} over time", joint.name);
-    let caption =
-        "What was measured, and where the output of each step of the input breaks.".to_owned();
+    let caption = "Input and output over time, with the breakpoint of each input step.".to_owned();
     let panels = record_panels(estimated, &Timeline::of(joint)).into();
     Figure { file, name, width: WIDTH, panels, caption }
 }
@@ -98,7 +97,7 @@ struct Delays {
 pub(super) fn over_time(estimated: EstimatedJoint<'_>, file: String) -> Option<Figure> {
     let panels = vec![delay_panel(estimated, &Timeline::of(estimated.joint))?];
     let name = format!("Delay of {} over time", estimated.joint.name);
-    let caption = "The delay of each step, at the time of the step; rejected steps stand at \
+    let caption = "Delay of each step against the time of the step; rejected steps are marked at \
                    the bottom."
         .to_owned();
     Some(Figure { file, name, width: WIDTH, panels, caption })
@@ -187,9 +186,9 @@ pub(super) fn over_levels(
 ) -> Option<Figure> {
     let panel = delay_levels::panel(found, estimated.joint.input_unit.as_deref())?;
     let name = format!("Delay of {} by level", estimated.joint.name);
-    let caption = "The median delay over the level, for a stop that before it, else that after \
-                   it, with its 95 % interval and how many of how many steps were accepted; where \
-                   none was, a cross stands at the bottom."
+    let caption = "Median delay against the level after the step (for a stop, the level before \
+                   it), with its 95 % interval and the number of accepted steps out of all; a \
+                   cross at the bottom marks a level without an accepted step."
         .to_owned();
     Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
 }
@@ -245,7 +244,10 @@ fn caption(found: &AgainstState, variable: usize, name: &str) -> String {
     let of_kind = |kind: &AgainstOfKind| {
         let one = kind.correlations.get(variable)?;
         let Some(rho) = one.rho else {
-            return Some(format!("{}: too few steps, or no change, to tell more", kind.transition));
+            return Some(format!(
+                "{}: not tested: too few steps, or the quantity does not change",
+                kind.transition
+            ));
         };
         let p = p_cell(one.p_holm);
         let p = if p.starts_with('<') { format!("p {p}") } else { format!("p = {p}") };
@@ -333,8 +335,8 @@ fn windows_over_time(
 ) -> Option<Figure> {
     let panels = vec![dead_time_panel(found, &Timeline::of(estimated.joint))?];
     let name = format!("Dead time of {} over time", estimated.joint.name);
-    let caption = "The dead time in windows of the record, with intervals; where the input moves \
-                   the output too little there is none."
+    let caption = "Dead time in windows of the record, with intervals; a window in which the \
+                   input moves the output too little has none."
         .to_owned();
     Some(Figure { file, name, width: WIDTH, panels, caption })
 }
@@ -381,8 +383,8 @@ fn curve(estimated: EstimatedJoint<'_>, found: &DeadTime, file: String) -> Optio
     ];
     let panel = Panel { x, y: Axis::new(y, "error over the least", 5.0), height: 150, marks };
     let name = format!("Prediction error of {} by dead time", estimated.joint.name);
-    let caption = "The error of the prediction against the dead time, all else being fitted anew \
-                   to each."
+    let caption = "Prediction error against dead time; all other parameters are refitted for each \
+                   dead time."
         .to_owned();
     Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
 }

@@ -60,9 +60,9 @@ fn figure(joint: &DesignedJoint, difference: Option<&Apart>) -> Figure {
         name: format!("The input of {}, and what is expected of it", joint.rig.name),
         width: WIDTH,
         panels,
-        caption: "The input, and what is expected of the output, between thin lines two standard \
-                  deviations of the prediction apart from it. The difference of two suspects starts \
-                  anew at each step, as in a fit."
+        caption: "The input and the expected output; thin lines are two standard deviations of \
+                  the prediction away from it. The difference of the two effects starts at zero \
+                  at each step, as in a fit."
             .to_owned(),
     }
 }
@@ -119,7 +119,15 @@ fn over_noise(joint: &DesignedJoint, found: &Apart, x: &Axis) -> Panel {
 
 /// A row per level: when and how long, and how far the suspects are apart.
 fn hold_table(joint: &DesignedJoint, difference: Option<&Apart>) -> TextTable {
-    let header = ["trial", "from [s]", "level", "held [s]", "apart by [noise]", "of all squares"];
+    let header = [
+        "trial",
+        "from [s]",
+        "level",
+        "held [s]",
+        "difference [noise]",
+        "of the squared \
+                                                                                   difference",
+    ];
     let unit = joint.rig.input_unit.as_deref();
     let row = |(place, hold): (usize, Held)| {
         let own = difference.and_then(|found| found.holds.get(place));

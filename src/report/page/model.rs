@@ -137,7 +137,7 @@ fn beside_the_measurement(
     }
     let residual = correlation_sentences(compared.comparison).join("; ");
     if !residual.is_empty() {
-        blocks.push(Block::text(format!("Residual of the part that was fitted: {residual}.")));
+        blocks.push(Block::text(format!("Residual of the training part: {residual}.")));
     }
     blocks
 }
@@ -161,7 +161,7 @@ fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     let said: Vec<String> = said.collect();
     let mut blocks = vec![Block::part(heading)];
     if said.is_empty() {
-        let none = "No condition holds much more of the error than of the time.";
+        let none = "No condition contains much more of the error than of the time.";
         blocks.push(Block::text(none));
     } else {
         blocks.push(Block::List(said));
@@ -230,8 +230,8 @@ pub(super) fn share(compared: &ComparedJoint<'_>, file: String) -> Option<Figure
     let by = feature_with_unit(feature, joint);
     let name = format!("Share of the error of {}", joint.name);
     let caption = format!(
-        "Where the error arises, by {by}: the squared error of the speed, {}. A bar beyond its mark is \
-         a part with too much of it.",
+        "Where the error arises, by {by}: the squared error of the speed, {}. A bar beyond its \
+         mark (the share of time) is a range with more than its share of the error.",
         compared.comparison.arising
     );
     let panel = shares.panel(joint, &[(Role::Error, compared.comparison)])?;
@@ -296,8 +296,8 @@ fn curve(joint: &Joint, curves: &[&Curve], file: String) -> Figure {
     };
     let name = format!("Speed of {} {caption}", joint.name);
     let caption = format!(
-        "The speed in settled parts of the holds, {caption}, behind the delay; each curve is free of \
-         what the others explain."
+        "Speed in the settled parts of the holds, {caption}, after the delay; the influence of \
+         the quantities of the other curves is removed."
     );
     Figure { file, name, width: HALF, panels: vec![panel], caption }
 }

@@ -107,7 +107,7 @@ pub(super) fn earlier(improved: &ImprovedJoint<'_>, file: String) -> Option<Figu
     }
     let panels = before.iter().enumerate().map(panel).collect();
     let name = format!("Residual of the earlier revisions of {}", last.joint.name);
-    let caption = "What the earlier revisions left, each at its own scale.".to_owned();
+    let caption = "Residuals of the earlier revisions, each at its own scale.".to_owned();
     Some(Figure { file, name, width: WIDTH, panels, caption })
 }
 
@@ -136,7 +136,7 @@ pub(super) fn worst(compared: &ComparedJoint<'_>, place: usize, file: String) ->
         format!(" The largest residual of all, {height}, {place}.")
     });
     let caption = format!(
-        "The worst segment: it holds {share} of the squared error, more than any other.{spike}"
+        "The worst segment: it contains {share} of the squared error, more than any other.{spike}"
     );
     Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
 }

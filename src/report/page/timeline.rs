@@ -36,7 +36,7 @@ impl<'a> Timeline<'a> {
             start += end_s(trial) - trial.time_s(1);
             shift
         };
-        let name = "time, one trial behind the other [s]";
+        let name = "time, one trial after the other [s]";
         Self { trials, shifts_s: trials.iter().map(shift).collect(), name }
     }
 

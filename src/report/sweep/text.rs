@@ -30,13 +30,13 @@ pub(crate) fn sweep_text(
 ) -> String {
     let paragraphs: Vec<String> = joints.iter().map(|joint| paragraph(grid, joint)).collect();
     let note = format!(
-        "{} combinations of settings. Delays agree when they differ by {} samples at most, \
-         beside what the distance of candidates (β) or their own intervals allow.",
+        "{} combinations of settings. Two delays agree if they differ by no more than {} samples \
+         beyond the resolution of each: ± β/2, or its interval.",
         grid.combinations().len(),
         rounded(tolerance)
     );
-    let of_values = "Median delay with each value of a setting, and the part of its delays that \
-                     differ from what most settings say:";
+    let of_values = "Median delay with each value of a setting, and the percentage of its delays \
+                     that differ from the majority:";
     [
         paragraphs.join("\n"),
         format!("{}\n{}", wrapped(of_values), levels_table(grid, joints)),
@@ -158,8 +158,8 @@ fn lag_sentence(grid: &Grid, reported: &ReportedSweep<'_>) -> Option<String> {
     let others = grid.bases().len() > 1;
     others.then(|| {
         format!(
-            "`{}` finds a lag of {} s, which the other methods take for delay: that they agree \
-             does not make them right.",
+            "`{}` finds a lag of {} s, which the other methods count as delay: they agree, but \
+             all are too late by about the lag.",
             settings.method,
             rounded(seconds)
         )

@@ -186,7 +186,11 @@ fn two_time_steps_are_put_on_one_grid_with_a_note() {
     let time = |k: usize| seconds(0.01 * k as f64 + 0.01 * k.saturating_sub(200) as f64);
     let outcome = Workspace::new().with_log(&boom().column("time_s", time)).estimate("log.csv");
     outcome.is_whole();
-    assert!(outcome.stderr.contains("interpolated, the input held"), "{}", outcome.stderr);
+    assert!(
+        outcome.stderr.contains("the output interpolated and the input held"),
+        "{}",
+        outcome.stderr
+    );
 }
 
 #[test]

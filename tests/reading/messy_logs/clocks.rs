@@ -145,9 +145,13 @@ pub(crate) fn repeated_times() -> Vec<Messy> {
         messy(
             "row_for_each_sensor.csv",
             of_each_sensor,
-            read(1e-6, "1800 rows complete the row before, which has the same time"),
+            read(1e-6, "1800 rows have the time of the row before and only values that it lacks"),
         ),
-        messy("row_twice.csv", plain(&twice), read(1e-3, "1 row is at the time of the row before")),
+        messy(
+            "row_twice.csv",
+            plain(&twice),
+            read(1e-3, "1 row is at the same time as the row before"),
+        ),
         messy(
             "copies.csv",
             plain(&doubled(&|row| row)),
@@ -156,12 +160,15 @@ pub(crate) fn repeated_times() -> Vec<Messy> {
         messy(
             "row_for_each_joint.csv",
             plain(&doubled(&|row| Row { input: -row.input, output: 90.0 - row.output, ..row })),
-            Expected::Refused(&["each time stands in 2 rows", "`boom.output`"]),
+            Expected::Refused(&["each time is repeated in 2 rows", "`boom.output`"]),
         ),
         messy(
             "both_levels.csv",
             plain(&both_levels),
-            read(1e-6, "19 rows are at the time of the row before, and one of the two is left out"),
+            read(
+                1e-6,
+                "19 rows are at the same time as the row before; one of the two is left out",
+            ),
         ),
     ]
 }

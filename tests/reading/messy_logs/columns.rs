@@ -39,7 +39,7 @@ pub(crate) fn sensors() -> Vec<Messy> {
         messy(
             "seldom_measured.csv",
             seldom,
-            read(0.021, "900 of 1800 rows have an output, which is interpolated between them"),
+            read(0.021, "only 900 of 1800 rows have an output; it is interpolated between them"),
         ),
     ]
 }

@@ -41,7 +41,7 @@ pub(crate) fn sensors() -> Vec<Messy> {
         messy(
             "slow_sensor.csv",
             plain(&measured(as_sent, |rows, k| rows[k - k % 4].output)),
-            read(0.051, "each reading of the output stands in 4 rows"),
+            read(0.051, "each reading of the output is repeated in 4 rows"),
         ),
         messy(
             "counter.csv",

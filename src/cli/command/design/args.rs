@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 
-use crate::cli::args::number::at_least_one;
+use crate::cli::args::number::{self, at_least_one};
 use crate::cli::args::{ReadingArgs, RunArgs};
 use crate::design::Band;
 use crate::experiment::format_names;
@@ -28,7 +28,7 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "MODEL.toml")]
     pub(super) model: Option<PathBuf>,
 
-    /// How far the numbers of a model may be off that no log confirms, in parts
+    /// Relative standard deviation of the parameters of a model given without a log
     #[arg(long, value_name = "SHARE", value_parser = share, default_value_t = 0.1)]
     pub(super) uncertainty: f64,
 
@@ -51,8 +51,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "SECONDS", value_parser = above_zero)]
     pub(super) duration: Option<f64>,
 
-    /// Most trials, before each of which the joint is brought back to its start: 1 for an input
-    /// without a break [default: as many as the range needs]
+    /// Largest number of trials; before each the joint is brought back to its start. 1: an
+    /// uninterrupted input [default: as many as the range needs]
     #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "separate")]
     pub(super) trials: Option<usize>,
 
@@ -61,11 +61,11 @@ pub(crate) struct Args {
     pub(super) rate: Option<f64>,
 
     /// Seed of everything random
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = number::seed)]
     pub(super) seed: u64,
 
-    /// Lowest and highest output that the joint may come to; needs a model or a log. It is kept, by
-    /// as much as predictions of the joint were off on parts of the log, or refused [default with
+    /// Lowest and highest output allowed; needs a model or a log. The design keeps this range with
+    /// a margin for the error of its predictions, measured on the log, or is refused [default with
     /// `--separate` and a log: where the log has been]
     #[arg(long, value_name = "LO,HI", value_parser = ascending, allow_hyphen_values = true)]
     pub(super) output_range: Option<(f64, f64)>,
@@ -75,7 +75,7 @@ pub(crate) struct Args {
     pub(super) start: Option<f64>,
 
     /// `cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a
-    /// band in which none is to lie
+    /// band that must contain no level
     #[arg(long, value_name = "cross|avoid|LO,HI", value_parser = band, allow_hyphen_values = true)]
     pub(super) dead_band: Option<Band>,
 
@@ -95,15 +95,15 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X", value_parser = above_zero)]
     pub(super) noise: Option<f64>,
 
-    /// How often the experiment is rehearsed with either effect, in simulation
+    /// Number of simulated experiments (rehearsals) with each of the two effects
     #[arg(long, value_name = "N", value_parser = rehearsals, default_value_t = 40)]
     pub(super) rehearsals: usize,
 
-    /// Where the input goes: `time_s`, and `<joint>.input` of each joint
+    /// The file of the input: `time_s`, and `<joint>.input` of each joint
     #[arg(short, long, value_name = "INPUT.csv")]
     pub(super) output: Option<PathBuf>,
 
-    /// Where the input goes with what is expected of it: a table (.csv), or a page with figures
+    /// Also write the input with the expected output: a table (.csv), or a page with figures
     /// (.html)
     #[arg(long, value_name = "FILE.csv|FILE.html")]
     pub(super) preview: Option<PathBuf>,

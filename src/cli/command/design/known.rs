@@ -97,9 +97,9 @@ impl Known {
         let names = self.names.iter().filter(|name| self.file.is_unexplained(name));
         let caution = |name: &String| {
             format!(
-                "joint `{name}`: its model left an error that no effect accounts for when it was \
-                 fitted (verdict `unexplained`): the output may leave the range that is predicted; \
-                 play the input at a small part of its size first"
+                "joint `{name}`: when its model was fitted, an error remained that no effect \
+                 accounts for (verdict `unexplained`), so the output may leave the predicted \
+                 range; try the input at a fraction of its size first"
             )
         };
         names.map(caution).collect()

@@ -63,7 +63,7 @@ fn effects(args: &Args, known: &Known) -> anyhow::Result<[&'static dyn Effect; 2
     let named = |id: &str| find(id.trim(), known).context("--separate");
     let (one, other) = (named(one)?, named(other)?);
     if one.spec().id == other.spec().id {
-        bail!("--separate: `{}` is there twice; name two different effects", one.spec().id);
+        bail!("--separate: `{}` is named twice; name two different effects", one.spec().id);
     }
     Ok([one, other])
 }
@@ -108,8 +108,8 @@ fn of_model(
             ids[1]
         ),
         (false, false) => bail!(
-            "the model has neither {} nor {}, so it is not known how large they are: give a log, \
-             or a model that has one of them (`tauscope add {} LOG.csv --model FILE`)",
+            "the model has neither {} nor {}, so their parameters are not known: give a log, or a \
+             model that has one of them (`tauscope add {} LOG.csv --model FILE`)",
             ids[0],
             ids[1],
             ids[0]
@@ -162,19 +162,20 @@ fn distinguish(
     let effects = ids.join(",");
     let (doubt, next) = if design.explores.is_empty() {
         let doubt = (!design.passes(&limits)).then(|| {
-            "Fewer rehearsals went well than were wanted: what is known of the two leaves it open \
-             whether this input will do; a log that shows them better, or larger levels, may help."
+            "Fewer rehearsals succeeded than required: the parameters of the two effects are not \
+             known well enough to say whether this input distinguishes them. A log that shows the \
+             effects more clearly, or larger levels, may help."
                 .to_owned()
         });
         let next = format!(
-            "Play it, and ask: tauscope explain LOG.csv --effects {effects}; with --model, of a \
-             model that has neither."
+            "Apply it, log the output, then run: tauscope explain LOG.csv --effects {effects}; a \
+             model given with --model must have neither effect."
         );
         (doubt, next)
     } else {
         let next = format!(
-            "Play it, and design again from both logs: tauscope design LOG.csv PLAYED.csv \
-             --separate {effects}."
+            "Apply it, log the output, then design again from both logs: tauscope design LOG.csv \
+             PLAYED.csv --separate {effects}."
         );
         (None, next)
     };

@@ -12,8 +12,9 @@ use crate::delay::{Method, Settings};
 
 /// Estimate the delay of every input step of every joint
 ///
-/// Each step of the input is decided by the pair of regression lines that fits the
-/// output around it best (Albrecht and Taylor's Algorithm 1).
+/// By default (`--method auto`) a response common to all steps of a joint is fitted: its onset
+/// after each step gives the delay, with a confidence interval. `--method two-line` is Algorithm 1
+/// of Albrecht and Taylor: the pair of regression lines that fits the output around the step best.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
     #[command(flatten)]

@@ -70,10 +70,7 @@ impl<'a> Files<'a> {
     pub(crate) fn left_out(&self, result: &Estimated<'_>) -> Vec<String> {
         let path = self.args.export.as_ref().filter(|_| lookup(result).is_empty());
         let why = |path: &PathBuf| {
-            format!(
-                "{}: not written: no joint has a delay that a controller could look up",
-                path.display()
-            )
+            format!("{}: not written: no joint has an accepted delay to look up", path.display())
         };
         path.map(why).into_iter().collect()
     }
@@ -137,8 +134,8 @@ fn named_lookup(path: &Path) -> anyhow::Result<(Language, &str)> {
     let is_function = name.starts_with(|c: char| c.is_ascii_alphabetic());
     if language == Language::Matlab && !(is_function && name.chars().all(is_letter)) {
         bail!(
-            "{shown}: MATLAB calls a function as its file, and `{name}` is no name of a function; \
-               use letters, digits and underscores"
+            "{shown}: MATLAB calls a function by the name of its file, and `{name}` is not a \
+               valid name; use letters, digits and underscores, a letter first"
         );
     }
     Ok((language, name))
@@ -155,8 +152,8 @@ fn check_sheet(sheet: &Path) -> anyhow::Result<()> {
     if is_filled_in {
         let sheet = sheet.display();
         bail!(
-            "--review-sheet {sheet}: holds reviews already, which would be lost; write another file, \
-             and `--review {sheet}` takes them over"
+            "--review-sheet {sheet}: contains reviews already, which would be lost; write another \
+             file, and give `--review {sheet}` to copy them"
         );
     }
     Ok(())

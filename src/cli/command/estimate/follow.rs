@@ -39,7 +39,7 @@ pub(crate) fn follow(args: &Args, runs: &[Settings], stream: &Stream) -> anyhow:
     check_growing(settings).context("--follow")?;
     let settings = &as_it_grows(settings);
     if args.algorithm.automatic().any() {
-        bail!("--follow: `auto` looks at the whole record; give a number");
+        bail!("--follow: `auto` needs the whole record; give a number");
     }
     let path = args.data.only_file().context("--follow")?;
     let mut log = Followed::of(&path, args)?;
@@ -135,7 +135,7 @@ impl Followed {
         let read = self.seen.len() as u64;
         // To open a pipe would wait for who writes into it.
         if read > 0 && self.path.metadata().is_ok_and(|found| !found.is_file()) {
-            bail!("{name}: it is no file any more; run the command again");
+            bail!("{name}: the file is gone; run the command again when it is there");
         }
         let mut file = match File::open(&self.path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound && read == 0 => return Ok(false),
@@ -275,7 +275,13 @@ impl Reported {
             let Some(before) = before else { continue };
             let now = decision.verdict();
             if *before != (decision.delay(), now) {
-                message("note", &format!("{name}, step {step}: the whole log changes it to {now}"));
+                message(
+                    "note",
+                    &format!(
+                        "{name}, step {step}: with the whole log the decision is \
+                                          {now}"
+                    ),
+                );
             }
         }
     }

@@ -295,7 +295,7 @@ impl Reported<'_> {
 fn write_model(path: &Path, file: &ModelFile, verbosity: Verbosity) -> anyhow::Result<()> {
     if path.exists() {
         let name = path.display();
-        verbosity.say("note", format!("{name}: it is there already and is left as it is"));
+        verbosity.say("note", format!("{name}: exists already and is not replaced"));
         return Ok(());
     }
     write_bytes(path, file.text())?;

@@ -40,7 +40,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAMES", default_value_t = Values::all(), value_parser = methods)]
     method: Values<Method>,
 
-    /// Samples that a segment reaches beyond its input steps, or seconds as in `0.05s,0.1s`
+    /// How far a segment extends before its input step and after the next one, in samples or in
+    /// seconds as in `0.05s,0.1s`
     #[arg(long, value_name = "LIST", default_value = "5,10,20", value_parser = lengths, allow_hyphen_values = true)]
     alpha: Values<Length>,
 
@@ -50,7 +51,8 @@ pub(crate) struct Args {
     #[arg(long, help = format!("Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none]; for `{}` alone", ids_with(|spec| !spec.has_intervals)), value_name = "LIST", value_parser = passbands, allow_hyphen_values = true)]
     passband: Option<Values<OrNone>>,
 
-    /// Delays that differ by so many samples more than β or their intervals allow still agree
+    /// Two delays agree if they differ by no more than this, beyond the resolution of each (± β/2,
+    /// or its interval)
     #[arg(long, value_name = "SAMPLES", default_value_t = 2.0, value_parser = number::threshold)]
     tolerance: f64,
 
@@ -64,7 +66,7 @@ pub(crate) struct Args {
 /// What is printed and recorded.
 #[derive(ClapArgs, Debug)]
 struct OutputArgs {
-    /// Record how every delay moves with the settings, for the Rerun viewer
+    /// Record how every delay depends on the settings, for the Rerun viewer
     #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
     recording: Option<PathBuf>,
 
@@ -155,7 +157,8 @@ fn fitting<'a>(grid: &Grid, trials: impl Iterator<Item = &'a Trial>) -> (Grid, V
     let hz: Vec<String> = left_out.iter().flatten().map(|it| it.cutoff_hz.to_string()).collect();
     let samples = 2.0 * nyquist_hz;
     let note = format!(
-        "the low-pass of {} Hz is left out, where no more than {samples} samples come in a second",
+        "the {} Hz low-pass is left out, since the log has no more than {samples} samples per \
+         second",
         hz.join(" and ")
     );
     (grid.with_passbands(kept), vec![note])

@@ -101,7 +101,7 @@ impl Listing<'_> {
         let count = datasets.len();
         if count > MOST_BESIDE {
             return fault(format!(
-                "{count} variables lie beside one another, and {MOST_BESIDE} of such a file are read at most"
+                "{count} variables are in one group, and at most {MOST_BESIDE} are read"
             ));
         }
         let mut groups: Vec<(String, Group)> = group.iter_groups()?.collect();
@@ -131,7 +131,7 @@ impl Listing<'_> {
         if [&shape, &chunk].iter().any(|of| product(element, of).is_none_or(|size| size > most)) {
             let size = self.size;
             return fault(format!(
-                "`{name}` says that it is larger than a file of {size} bytes can be"
+                "the size stated for `{name}` is larger than a file of {size} bytes can hold"
             ));
         }
         let attributes = dataset.attrs()?;
@@ -189,8 +189,8 @@ impl Source for Watched {
     fn read_at(&self, offset: u64, buf: &mut [u8]) -> Result<(), FormatError> {
         let one_less = |left: u64| left.checked_sub(1);
         if self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_less).is_err() {
-            let why = "its structures lie in one another in a circle, or the header of an object in it names \
-                       its own parts without end";
+            let why = "its structures contain one another in a circle, or the header of an object \
+                       refers to its own parts without end";
             return Err(FormatError::Source(why.to_owned()));
         }
         self.file.read_at(offset, buf)

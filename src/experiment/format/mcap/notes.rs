@@ -61,7 +61,7 @@ fn missing(messages: &Messages, topic: usize, end: i64, name: &str) -> Option<St
         1 => said.push("has 1 message without a value".to_owned()),
         count => said.push(format!("has {count} messages without a value")),
     }
-    let held = "the last value is held, so that a step in between is seen late or not at all";
+    let held = "the last value is held, so a step in such a pause is seen late or not at all";
     (!said.is_empty()).then(|| format!("`{name}` {}: {held}", said.join(" and ")))
 }
 
@@ -101,8 +101,9 @@ pub(super) fn clocks_differ<'a>(
     let apart = most.saturating_sub(least);
     (apart > USUAL).then(|| {
         format!(
-            "the {clock} of `{}` is {:.3} s behind that of `{}`, by the time of recording: if these are \
-             the clocks of two computers, delays are off by that; `--time log_time` has one clock",
+            "compared with the time of recording, the {clock} of `{}` is {:.3} s behind that of \
+             `{}`: if these are the clocks of two computers, delays are wrong by this time; \
+             `--time log_time` uses one clock for both",
             name(of_most),
             apart as f64 * 1e-9,
             name(of_least)
