@@ -8,7 +8,7 @@ use super::paths;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::figure::error_share::panels;
-use crate::figure::{Panel, Role};
+use crate::figure::{Mark, Panel, Role};
 use crate::report::ComparedJoint;
 
 /// Width and height of the sheet: two rows of plots.
@@ -31,7 +31,7 @@ pub(super) fn add(chunks: &mut Chunks, models: &[&ComparedJoint<'_>]) -> Result<
 pub(super) fn placed(joint: &Joint, models: &[(Role, &Comparison)]) -> Vec<Placed> {
     let place = |(place, mut panel): (usize, Panel)| {
         panel.y.name.clear();
-        panel.marks.iter_mut().for_each(|mark| mark.unname());
+        panel.marks.iter_mut().for_each(Mark::unname);
         let rows = if place < COLUMNS { 46.0..=140.0 } else { 232.0..=326.0 };
         let width = SIZE.0 / COLUMNS as f32;
         let left = (place % COLUMNS) as f32 * width;

@@ -20,7 +20,7 @@ pub(super) fn add(
     sources: &[Source],
     improved: Option<&ImprovedJoint<'_>>,
 ) -> Result<(), RecordError> {
-    chunks.page(paths::HEADLINE, on_delays(layout, sources, improved.is_some()))?;
+    chunks.page(paths::HEADLINE, on_delays(layout, sources, improved))?;
     improved.map_or(Ok(()), |improved| {
         chunks.page(paths::REVISION_HEADLINE, on_model(layout, improved))
     })
@@ -28,7 +28,11 @@ pub(super) fn add(
 
 /// What the delays are, what speaks against them, and how to correct them; where none is doubtful, what
 /// follows.
-fn on_delays(layout: &JointLayout<'_>, sources: &[Source], has_model: bool) -> String {
+fn on_delays(
+    layout: &JointLayout<'_>,
+    sources: &[Source],
+    improved: Option<&ImprovedJoint<'_>>,
+) -> String {
     let estimated = layout.estimated;
     let name = plain(&estimated.joint.name);
     let answer = format!("**{name}: {}**", prose(&delay_answer(estimated)));
@@ -51,7 +55,7 @@ fn on_delays(layout: &JointLayout<'_>, sources: &[Source], has_model: bool) -> S
                 "{doubtful} To correct them: `tauscope estimate {data} --review-sheet review.csv`"
             )
         }
-        None if has_model => "No decision is doubtful.".to_owned(),
+        None if improved.is_some() => "No decision is doubtful.".to_owned(),
         None => {
             format!("No decision is doubtful. What a model lacks: `tauscope improve {data}`")
         }

@@ -98,9 +98,9 @@ pub(super) fn errors_table(
     TextTable { header, rows: rows.collect(), numbers: (2..8).collect() }
 }
 
-/// What the error is called by which revisions are judged.
-pub(crate) fn judged_error(is_validated: bool) -> &'static str {
-    if is_validated { "validation error" } else { "error" }
+/// What the error is called by which revisions are judged, from whether each has a validation part.
+pub(crate) fn judged_error(mut are_validated: impl Iterator<Item = bool>) -> &'static str {
+    if are_validated.all(|is_validated| is_validated) { "validation error" } else { "error" }
 }
 
 /// What a revision changed: `+ dead_band`; of the first, the effects that it has.

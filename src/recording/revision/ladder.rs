@@ -24,6 +24,7 @@ const ROW: (f32, f32) = (90.0, 40.0);
 const ENDS: (f32, f32) = (44.0, SIZE.1 - 20.0);
 
 /// Rows for which there is room below two lines of name and legend.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few rows")]
 const MOST: usize = ((ENDS.1 - ENDS.0 - LINE) / ROW.1) as usize;
 
 /// The error by which a revision is judged: on data that were not fitted, where there are any.
@@ -123,8 +124,8 @@ fn ladder(improved: &ImprovedJoint<'_>, at: usize) -> Bars {
         }
     };
     let all = improved.numbered().enumerate().filter(|(place, _)| shown.contains(place));
-    let is_validated = improved.revisions.iter().all(|one| one.comparison.validation.is_some());
-    let name = judged_error(is_validated);
+    let name =
+        judged_error(improved.revisions.iter().map(|one| one.comparison.validation.is_some()));
     let title = match count - shown.len() {
         0 => name.to_owned(),
         _ => format!("{name}, {} of {count} revisions", shown.len()),

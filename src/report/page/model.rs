@@ -212,8 +212,8 @@ pub(super) fn ladder(improved: &ImprovedJoint<'_>, file: String) -> Figure {
     let name = (bracketed("root-mean-square error", unit), "ladder");
     let mut panel = panel(name, &rungs, (sensor_noise(&joint.trials), unit), 1.2);
     if let Some(first) = panel.marks.first_mut() {
-        let is_validated = rows.iter().all(|row| row.errors.validation_rmse.is_some());
-        first.name = Some(judged_error(is_validated).to_owned());
+        let are_validated = rows.iter().map(|row| row.errors.validation_rmse.is_some());
+        first.name = Some(judged_error(are_validated).to_owned());
     }
     let name = format!("Errors of the revisions of {}", joint.name);
     let caption = "How the error falls from revision to revision.".to_owned();
