@@ -128,9 +128,10 @@ mod tests {
             fit
         };
         // The overlap ends at 0.9.
-        let record = RecordRange { input_levels: &[0.3, 0.6, 1.0, 2.0], ..RecordRange::default() };
+        let record =
+            RecordRange { input_levels: &[0.3, 0.6, 0.8, 1.0, 2.0], ..RecordRange::default() };
         let is_told = |start| are_distinguished(&with(start), &["dead_band"], &record);
-        assert!(is_told(0.4), "it does not move at 0.6 either");
+        assert!(is_told(0.4), "it does not move at 0.6 and 0.8 either");
         assert!(!is_told(0.95));
     }
 

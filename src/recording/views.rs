@@ -333,8 +333,7 @@ impl Tab<'_> {
         let name =
             "Where the error of the speed arises: its share (bars), share of the time (white)";
         let share = self.drawing(name, paths::REVISION_SHARE, error_share::SIZE);
-        let record =
-            self.drawing("The whole record", paths::REVISION_RECORD, revision::RECORD_SIZE);
+        let record = self.drawing("The whole record", paths::REVISION_RECORD, revision::SIZE);
         let words = self.text("In words", paths::REVISION_WORDS);
         let parameters = self.text("Parameters", paths::REVISION_PARAMETERS);
         let left = [(1.0, Page::tabs("Ladder", [sheet, share])), (1.0, record)];
@@ -389,7 +388,7 @@ impl Tab<'_> {
         ];
         let plots = Page::stacked(ALONG, plots);
         let map = if self.revisions == 0 { paths::MODEL_MAP } else { paths::REVISION_RECORD };
-        let map = self.drawing("Whole record, on every timeline", map, revision::RECORD_SIZE);
+        let map = self.drawing("Whole record, on every timeline", map, revision::SIZE);
         // Models side by side are compared in the plots: the map is of the first one alone.
         let tabs = if self.are_side_by_side() { [plots, map] } else { [map, plots] };
         let rows = [

@@ -1,6 +1,6 @@
 //! The ladder of errors, a rung per revision, and the candidates for what comes next.
 
-use super::pages::SIZE;
+use super::record::SIZE;
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::explain::{Candidate, Verdict};
 use crate::figure::ladder::{Rung, panel, value};

@@ -15,5 +15,5 @@ mod residual;
 mod words;
 
 pub(super) use ladder::judged;
-pub(super) use pages::{SIZE, add};
-pub(super) use record::{SIZE as RECORD_SIZE, add as add_record};
+pub(super) use pages::add;
+pub(super) use record::{SIZE, add as add_record};

@@ -16,9 +16,6 @@ use crate::recording::paths;
 use crate::recording::{error_share, panels};
 use crate::report::{ComparedJoint, ImprovedJoint};
 
-/// Width and height of the sheet with ladder, evidence and ranking.
-pub(in crate::recording) const SIZE: (f32, f32) = (1860.0, 470.0);
-
 /// Rows of the joint that is recorded.
 struct Steps<'c> {
     chunks: &'c mut Chunks,

@@ -12,7 +12,7 @@ use crate::report::ComparedJoint;
 use crate::report::page::simulated::{Marked, simulated_panels, worst_panel};
 use crate::report::page::timeline::Timeline;
 
-/// Width and height of the sheet.
+/// Width and height of the sheet, and of that with ladder, evidence and ranking beside it.
 pub(in crate::recording) const SIZE: (f32, f32) = (1860.0, 470.0);
 
 /// Top and bottom of the plots of the output: above them their titles.
