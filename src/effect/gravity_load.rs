@@ -32,7 +32,7 @@ static SPEC: Spec = Spec::new(
 .equation("out = in sqrt(1 - sign(in) kappa cos(y - y0)) - creep cos(y - y0)")
 .source(
     "Merritt, 1967, Hydraulic Control Systems; Jelali and Kroll, 2003, Hydraulic \
-             Servo-systems",
+     Servo-systems",
 )
 .parameters(&[
     Parameter::new("kappa", "largest load pressure over supply pressure", Dimension::One)

@@ -22,8 +22,7 @@ pub struct Resonance;
 static SPEC: Spec = Spec::new(
     "resonance",
     Stage::Dynamics,
-    "compressible oil: a poorly damped oscillation of the \
-                                             speed",
+    "compressible oil: a poorly damped oscillation of the speed",
 )
 .equation("d2 out/dt2 + 2 damping w d out/dt + w^2 out = w^2 in, w = 2 pi / period")
 .source("Merritt, 1967, Hydraulic Control Systems")

@@ -2,8 +2,8 @@
 //!
 //! An effect is added where the record shows it, determines it, and physics allows its values; where
 //! nothing that is there already looks the same; where what was not fitted is predicted as well; and
-//! where the error that it takes away has a practical consequence. The first of these that fails is the reason
-//! for which it is refused.
+//! where the error that it takes away has a practical consequence. The first of these that fails is the
+//! reason for which it is refused.
 
 use super::candidate::Candidate;
 use super::determined::{are_determined, implausible};
@@ -99,8 +99,8 @@ impl<'a, 'r> Judge<'a, 'r> {
     }
 }
 
-/// What the effects `new` of a fitted model are not distinguished from, where there is any such: an effect beside
-/// them, or a simpler one in their place.
+/// What the effects `new` of a fitted model are not distinguished from, where there is any such: an effect
+/// beside them, or a simpler one in their place.
 fn like_another(
     record: &FitRecord<'_>,
     fit: &AssessedModel,

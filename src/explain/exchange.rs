@@ -73,8 +73,7 @@ pub(super) fn exchanges_for(
     old: &'static str,
     options: &Options,
 ) -> Vec<Exchange> {
-    let single = replacements(record, model, old, options).into_iter().map(Exchange::alone);
-    single.chain(by_two(record, model, old, options)).collect()
+    [replacements, by_two].into_iter().flat_map(|of| of(record, model, old, options)).collect()
 }
 
 /// The exchanges of `old` for two effects that look like it together.
@@ -134,7 +133,7 @@ pub(super) fn replacements(
     model: &JointModel,
     old: &'static str,
     options: &Options,
-) -> Vec<Change> {
+) -> Vec<Exchange> {
     let alike = options.effects.iter();
     let alike = alike.filter(move |effect| looks_like(old, effect.spec().id));
     let rest = model.without(old);
@@ -144,7 +143,9 @@ pub(super) fn replacements(
             && !spec.is_free_form
             && (is_free_form(old) || is_due(&rest, spec, options) || is_as_simple_a_form(spec, old))
     });
-    let replaced = |effect: &&'static dyn Effect| Change::Replaced { old, new: effect.spec().id };
+    let replaced = |effect: &&'static dyn Effect| {
+        Exchange::alone(Change::Replaced { old, new: effect.spec().id })
+    };
     able.map(replaced).collect()
 }
 

@@ -97,8 +97,8 @@ impl Removal<'_> {
         let others = |old: &'static str| replacements(record, model, old, self.options);
         let added: Vec<&'static str> = ids(model).into_iter().filter(was_added).collect();
         let old: Vec<&'static str> = added.iter().copied().filter(may_go).collect();
-        let removals = old.iter().map(|id| Change::Removed(id));
-        let single = removals.chain(old.iter().flat_map(|old| others(old))).map(Exchange::alone);
+        let removals = old.iter().map(|id| Exchange::alone(Change::Removed(id)));
+        let single = removals.chain(old.iter().flat_map(|old| others(old)));
         let of_two = added.iter().flat_map(|old| by_two(record, model, old, self.options));
         let of_all = in_place_of_all(record, model, &added, self.options);
         single.chain(of_two).chain(of_all).collect()

@@ -31,6 +31,9 @@ pub(super) const SHEET: (f32, f32) = (1600.0, 640.0);
 /// Height of a line of text on a sheet in a window of 1280 points.
 pub(super) const LINE: f32 = 44.0;
 
+/// Width and height of the sheets in the tabs below a record, which share one view.
+pub(super) const TAB: (f32, f32) = (1840.0, 376.0);
+
 /// How far below its point the middle of a text is drawn.
 const LABEL_DROP: f32 = 18.0;
 

@@ -9,9 +9,6 @@ use crate::figure::Role;
 use crate::figure::correlogram::panels;
 use crate::report::ComparedJoint;
 
-/// Width and height of the sheet.
-pub(super) const SIZE: (f32, f32) = (1840.0, 376.0);
-
 /// Draws the correlations of `models`: a curve and a band per model.
 pub(super) fn add(chunks: &mut Chunks, models: &[&ComparedJoint<'_>]) -> Result<(), RecordError> {
     let models = models.iter().enumerate();

@@ -1,5 +1,6 @@
 //! Where the error arises: its share in each part of each feature, beside the share of time.
 
+use super::canvas::TAB;
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layers::Layers;
@@ -10,9 +11,6 @@ use crate::experiment::Joint;
 use crate::figure::error_share::panels;
 use crate::figure::{Mark, Panel, Role};
 use crate::report::ComparedJoint;
-
-/// Width and height of the sheet: two rows of plots.
-pub(super) const SIZE: (f32, f32) = (1840.0, 376.0);
 
 /// Plots in a row.
 const COLUMNS: usize = 4;
@@ -33,7 +31,7 @@ pub(super) fn placed(joint: &Joint, models: &[(Role, &Comparison)]) -> Vec<Place
         panel.y.name.clear();
         panel.marks.iter_mut().for_each(Mark::unname);
         let rows = if place < COLUMNS { 46.0..=140.0 } else { 232.0..=326.0 };
-        let width = SIZE.0 / COLUMNS as f32;
+        let width = TAB.0 / COLUMNS as f32;
         let left = (place % COLUMNS) as f32 * width;
         Placed::new(panel, (left + 95.0, left + width - 20.0), rows)
     };

@@ -275,7 +275,7 @@ fn headline(judged: &ComparedJoint<'_>) -> String {
     let followed = followed.map_or_else(String::new, |part| {
         format!(
             "the model explains {part:.0} % of the motion; \
-                                                  "
+             "
         )
     });
     let times = times.map(|(error, noise)| error.rmse / noise.max(f64::MIN_POSITIVE));

@@ -10,9 +10,6 @@ use crate::numerics::quantile;
 use crate::report::ComparedJoint;
 use crate::wording::bracketed;
 
-/// Width and height of the sheet: four plots side by side.
-pub(super) const SIZE: (f32, f32) = (1840.0, 376.0);
-
 /// Points that are drawn of each plot; more hide one another.
 const POINTS: usize = 3000;
 

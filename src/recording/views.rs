@@ -13,13 +13,11 @@ use rerun::external::re_sdk_types::blueprint::datatypes::{
 };
 
 use super::blueprint::{Blueprint, Page};
-use super::canvas::SHEET;
+use super::canvas::{SHEET, TAB};
 use super::content::Growth;
 use super::overview::{LARGE_HEIGHT, MAP_HEIGHT};
 use super::paths::{self, at, child, joint_root, of_model};
-use super::{
-    correlogram, delay_state, difference, error_share, palette, revision, scatter, segment_view,
-};
+use super::{delay_state, difference, palette, revision, segment_view};
 use crate::delay::{Decision, Doubt};
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
@@ -113,9 +111,9 @@ type Drawing = (&'static str, &'static str, &'static [&'static str], (f32, f32))
 /// What the residual of models depends on.
 #[rustfmt::skip]
 const DRAWINGS: [Drawing; 3] = [
-    ("Residual against four quantities: points, and their mean", paths::SCATTER, &["lines"], scatter::SIZE),
-    ("Share of the error: bars; of the time: white", paths::ERROR_SHARE, &["squared_error"], error_share::SIZE),
-    ("Correlation: 99 % of noise lies between the lines", paths::CORRELATION, &["band", "lines"], correlogram::SIZE),
+    ("Residual against four quantities: points, and their mean", paths::SCATTER, &["lines"], TAB),
+    ("Share of the error: bars; of the time: white", paths::ERROR_SHARE, &["squared_error"], TAB),
+    ("Correlation: 99 % of noise lies between the lines", paths::CORRELATION, &["band", "lines"], TAB),
 ];
 
 /// Where a plot says what its curves are: a legend covers data.
@@ -332,7 +330,7 @@ impl Tab<'_> {
         let sheet = self.drawing(name, paths::REVISION_SHEET, revision::SIZE);
         let name =
             "Where the error of the speed arises: its share (bars), share of the time (white)";
-        let share = self.drawing(name, paths::REVISION_SHARE, error_share::SIZE);
+        let share = self.drawing(name, paths::REVISION_SHARE, TAB);
         let record = self.drawing("The whole record", paths::REVISION_RECORD, revision::SIZE);
         let words = self.text("In words", paths::REVISION_WORDS);
         let parameters = self.text("Parameters", paths::REVISION_PARAMETERS);

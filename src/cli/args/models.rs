@@ -158,7 +158,7 @@ pub(crate) fn check_models(
         let near = near.map_or_else(String::new, |near| format!(", which has `{near}`"));
         let missing = format!(
             "joint `{name}`: not in the model file{near}; it starts as a plain \
-                               integrator"
+             integrator"
         );
         verbosity.say("note", missing);
     }

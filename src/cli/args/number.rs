@@ -1,5 +1,7 @@
 //! Numbers on the command line, and what is said of those that cannot be used.
 
+use std::str::FromStr;
+
 use crate::batch::MOST_THREADS;
 use crate::experiment::is_period;
 use crate::units::{Length, SamplePeriod};
@@ -70,13 +72,8 @@ pub(crate) fn threads(text: &str) -> Result<usize, String> {
     number.ok_or_else(|| format!("expected a whole number from 1 to {MOST_THREADS}"))
 }
 
-/// A count that may be 0.
-pub(crate) fn count(text: &str) -> Result<usize, String> {
-    text.parse().ok().ok_or_else(|| "expected a whole number from 0 up".to_owned())
-}
-
-/// The seed of random numbers.
-pub(crate) fn seed(text: &str) -> Result<u64, String> {
+/// A whole number that may be 0: a count, or the seed of random numbers.
+pub(crate) fn whole<N: FromStr>(text: &str) -> Result<N, String> {
     text.parse().ok().ok_or_else(|| "expected a whole number from 0 up".to_owned())
 }
 

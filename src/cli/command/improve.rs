@@ -10,7 +10,7 @@ use crate::report::improve::{improve_json, improve_text};
 use crate::study::{Mode, improve_joints};
 use clap::Args as ClapArgs;
 
-use crate::cli::args::number::count;
+use crate::cli::args::number::whole;
 use crate::cli::args::{
     DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, add_arguments,
 };
@@ -37,7 +37,7 @@ pub(crate) struct Args {
     effects: EffectArgs,
 
     /// How many effects are added at most
-    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, value_parser = count)]
+    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, value_parser = whole::<usize>)]
     max_effects: usize,
 
     /// Keep effects that are significant but have no practical consequence: without them the error

@@ -49,7 +49,7 @@ pub(crate) struct Args {
     truth: Vec<PathBuf>,
 
     /// Seed of everything random [default: the plant file's, or 1]
-    #[arg(long, value_name = "N", value_parser = number::seed)]
+    #[arg(long, value_name = "N", value_parser = number::whole::<u64>)]
     seed: Option<u64>,
 
     /// Standard deviation of the noise of every joint [default: the plant file's, or 0.05]

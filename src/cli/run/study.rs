@@ -177,7 +177,7 @@ fn notes_on_models(joints: &[Joint]) -> Vec<String> {
         let spikes = spikes_of(joint).map(|spikes| {
             format!(
                 "{spikes}: excluded from fits and \
-                                                            errors"
+                 errors"
             )
         });
         let noise = joint.trials.property::<Mended>().has_noisy_input.then(|| {

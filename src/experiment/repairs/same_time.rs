@@ -38,7 +38,7 @@ pub(super) fn join(log: &mut Log<'_>) {
     } else {
         format!(
             "{count} rows have the time of the row before and only values that it lacks: they \
-                 are merged with it"
+             are merged with it"
         )
     });
 }

@@ -334,7 +334,7 @@ impl Columns<'_> {
             let [_, output] = &mut why;
             *output = format!(
                 "{output}; its rate of change follows the input (correlation \
-                               {follows:+.2})"
+                 {follows:+.2})"
             );
         }
         why

@@ -62,7 +62,7 @@ impl Signal {
             0.0 => "it never changes".to_owned(),
             0.0..HOLDS => format!(
                 "it is held at levels (it changes at {percent:.1} % of the \
-                                   rows)"
+                 rows)"
             ),
             _ => format!("it changes at {percent:.0} % of the rows"),
         }

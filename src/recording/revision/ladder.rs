@@ -166,13 +166,8 @@ fn ranking(improved: &ImprovedJoint<'_>, at: usize) -> Bars {
     let mut rungs: Vec<Rung> = std::iter::once(own).chain(all).collect();
     // The model as it is and the effect that is added stay where there is no room for all.
     let is_needed = |place: usize| place == 0 || rungs[place].role == role(palette::PROPOSED);
-    let shown =
-        telling(
-            rungs.len(),
-            |place| {
-                if is_needed(place) { f64::INFINITY } else { -(place as f64) }
-            },
-        );
+    let weight = |place| if is_needed(place) { f64::INFINITY } else { -(place as f64) };
+    let shown = telling(rungs.len(), weight);
     let title = match rungs.len() - shown.len() {
         0 => title,
         more => format!("{title}; {more} more left out"),

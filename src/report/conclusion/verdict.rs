@@ -308,7 +308,7 @@ impl Finding<'_> {
         if share < NOTHING {
             return Some(format!(
                 "{head} depends on none of input, output, speed, time and \
-                                 trial."
+                 trial."
             ));
         }
         if share < WORTH {
@@ -361,7 +361,7 @@ impl Finding<'_> {
             };
             format!(
                 "The likeliest further effect, {name}, would reduce the error to {with}, but \
-                     {why}."
+                 {why}."
             )
         })
     }

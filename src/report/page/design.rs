@@ -126,7 +126,7 @@ fn hold_table(joint: &DesignedJoint, difference: Option<&Apart>) -> TextTable {
         "held [s]",
         "difference [noise]",
         "of the squared \
-                                                                                   difference",
+         difference",
     ];
     let unit = joint.rig.input_unit.as_deref();
     let row = |(place, hold): (usize, Held)| {

@@ -61,7 +61,7 @@ pub(crate) struct Args {
     pub(super) rate: Option<f64>,
 
     /// Seed of everything random
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = number::seed)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = number::whole::<u64>)]
     pub(super) seed: u64,
 
     /// Lowest and highest output allowed; needs a model or a log. The design keeps this range with

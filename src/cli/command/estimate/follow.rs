@@ -279,7 +279,7 @@ impl Reported {
                     "note",
                     &format!(
                         "{name}, step {step}: with the whole log the decision is \
-                                          {now}"
+                         {now}"
                     ),
                 );
             }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 
-use crate::cli::args::number::count;
+use crate::cli::args::number::whole;
 use crate::cli::args::{
     AgainstArgs, AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, ReviewArgs, RunArgs,
 };
@@ -55,7 +55,7 @@ pub(super) struct ModelArgs {
     pub(super) effects: EffectArgs,
 
     /// How many effects `--improve` adds at most
-    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, value_parser = count)]
+    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, value_parser = whole::<usize>)]
     pub(super) max_effects: usize,
 
     #[command(flatten)]
