@@ -140,10 +140,14 @@ pub(super) fn in_order(mut ranking: Vec<Candidate>) -> Vec<Candidate> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::options::Tried;
     use super::super::ranking::{Scope, rank};
     use super::super::workers::Sequential;
     use super::*;
-    use crate::effect::{DirectionGain, FlowCurve, InputSaturation};
+    use crate::effect::{
+        ActuatorLag, Backlash, DeadBand, DirectionGain, Effect, FlowCurve, GravityLoad,
+        InputOffset, InputSaturation, Leakage, RateLimit, ThermalDrift,
+    };
     use crate::experiment::{Joint, Trial};
     use crate::fit::{Horizon, Split, fit};
     use crate::model::{Component, JointModel, Value};
@@ -171,12 +175,45 @@ mod tests {
         }
     }
 
+    /// The integrator that fits `record` best.
+    fn integrator(record: &FitRecord<'_>) -> Fit {
+        let base = JointModel::integrator(1.0, 0.0);
+        fit(record, &base, &record.range_for(&base)).unwrap()
+    }
+
+    #[test]
+    fn of_many_effects_those_are_fitted_that_promise_most_and_all_that_are_asked_for() {
+        let joint = joint();
+        let record = FitRecord::new(&joint, Split::Blocks, Horizon::Auto);
+        let base = integrator(&record);
+        let effects: Vec<&'static dyn Effect> = vec![
+            &ActuatorLag,
+            &Backlash,
+            &DeadBand,
+            &DirectionGain,
+            &FlowCurve,
+            &GravityLoad,
+            &InputOffset,
+            &InputSaturation,
+            &Leakage,
+            &RateLimit,
+            &ThermalDrift,
+        ];
+        let ranked = |tried| {
+            let options = Options { effects: effects.clone(), tried, ..Options::default() };
+            let all = rank(&record, &base, 0.01, &options, Scope::SingleEffects, &Sequential);
+            all.iter().map(Candidate::name).collect::<Vec<_>>()
+        };
+        let (some, all) = (ranked(Tried::WhereLacking), ranked(Tried::Always));
+        assert!(some.len() < effects.len() && all.len() == effects.len(), "{some:?}, {all:?}");
+        assert_eq!((some[0].as_str(), all[0].as_str()), ("direction_gain", "direction_gain"));
+    }
+
     #[test]
     fn each_thing_that_speaks_against_an_effect_refuses_it() {
         let joint = joint();
         let record = FitRecord::new(&joint, Split::Blocks, Horizon::Auto);
-        let base = JointModel::integrator(1.0, 0.0);
-        let base = fit(&record, &base, &record.range_for(&base)).unwrap();
+        let base = integrator(&record);
         let options = Options { effects: vec![&DirectionGain], ..Options::default() };
         let ranking = rank(&record, &base, 0.01, &options, Scope::SingleEffects, &Sequential);
         let misfit = Misfit::of(&record, &Errors::of(&record, &base));

@@ -2,13 +2,14 @@
 
 use super::candidate::Candidate;
 use super::comparison::{MUCH_LESS, compared};
+use super::decide::is_founded;
 use super::eligible::{eligible, free_forms, steady_refinements};
 use super::extension::Extension;
 use super::limiting_case::put_limiting_cases_first;
-use super::options::Options;
+use super::options::{Options, Tried};
 use super::outcome::FitOutcome;
 use super::pairs::pairs;
-use super::screening::fit_best;
+use super::screening::{Entrants, Surveyed, fitted, surveyed};
 use super::workers::Workers;
 use crate::diagnosis::{NEAR_NOISE, sensor_noise};
 use crate::effect::{Effect, RecordRange};
@@ -25,10 +26,13 @@ pub(super) enum Scope {
     Everything,
 }
 
-/// Effects that are fitted, of those that were surveyed: at most, and at least. Chosen: each more costs a
-/// fit; of an excavator's arm six leave 0.95 deg, since the survey ranks the effect that is
-/// added behind them, and nine 0.88.
-const FINALISTS: (usize, usize) = (9, 3);
+/// Effects that are fitted, of those that were surveyed, at most. Chosen: each more costs a fit; of an
+/// excavator's arm six leave 0.95 deg, since the survey ranks the effect that is added after them, and nine
+/// 0.88.
+const FINALISTS: usize = 9;
+
+/// Effects that are fitted before it is asked whether one of them can be added.
+const FITTED_AT_ONCE: usize = 3;
 
 /// What the cost of a finalist may be after the survey, in parts of the least. Chosen: with 1.3 six
 /// measured joints get the same models in 96 % of the time.
@@ -121,14 +125,7 @@ impl<'a, 'r> Search<'a, 'r> {
             models.into_iter().map(move |model| (id, model))
         };
         let models: Vec<_> = self.effects.iter().flat_map(with).collect();
-        let kept = |costs: &[f64]| {
-            let (most, least) = FINALISTS;
-            let limit = costs.first().map_or(0.0, |best| HOPELESS * best);
-            costs.iter().filter(|cost| **cost <= limit).count().clamp(least, most)
-        };
-        let fits = fit_best(self.record, &models, self.range, kept, workers);
-        let extension = |(id, fit)| Extension { effects: vec![id], fit };
-        let mut extensions: Vec<Extension> = fits.into_iter().map(extension).collect();
+        let mut extensions = self.finalists(&models, workers);
         if let Some(other) = self.as_first_order() {
             extensions.retain(|one| one.effects != other.effects || one.fit.cost < other.fit.cost);
             let is_known = extensions.iter().any(|one| one.effects == other.effects);
@@ -142,6 +139,54 @@ impl<'a, 'r> Search<'a, 'r> {
             extensions.extend(self.with_measured_delays());
         }
         self.compared(extensions)
+    }
+
+    /// The best of `models`, fitted: as many as it takes until one of them can be added, and all where they
+    /// are asked for.
+    fn finalists(
+        &self,
+        models: &[(&'static str, JointModel)],
+        workers: &impl Workers,
+    ) -> Vec<Extension> {
+        let are_asked_for = self.options.tried == Tried::Always;
+        let entrants = if are_asked_for { Entrants::All } else { Entrants::Promising };
+        let mut surveys = surveyed(self.record, models, self.range, entrants, workers);
+        if !are_asked_for {
+            let limit = surveys.first().map_or(0.0, |(_, best)| HOPELESS * best.cost);
+            let hopeful = surveys.partition_point(|(_, survey)| survey.cost <= limit);
+            surveys.truncate(hopeful.clamp(FITTED_AT_ONCE, FINALISTS));
+            self.put_likely_first(&mut surveys);
+        }
+        let mut extensions = Vec::new();
+        for some in surveys.chunks(FITTED_AT_ONCE) {
+            let fits = fitted(self.record, some, self.range, workers).into_iter();
+            extensions.extend(fits.map(|(id, fit)| Extension { effects: vec![id], fit }));
+            if !are_asked_for && self.has_one_to_add(&extensions) {
+                break;
+            }
+        }
+        extensions
+    }
+
+    /// Puts those of `surveys` first that are most likely on both parts of the record, as a ranking does.
+    fn put_likely_first(&self, surveys: &mut [Surveyed<'_, &'static str>]) {
+        let outline = |((id, _), survey): &Surveyed<'_, &'static str>| Extension {
+            effects: vec![*id],
+            fit: FitOutcome::of(self.record, survey.on(self.record, self.range)),
+        };
+        let outlines = surveys.iter().map(outline).collect();
+        let ranked = compared(self.record, self.base, self.noise_floor, outlines);
+        surveys.sort_by_key(|((id, _), _)| ranked.iter().position(|one| one.effects == [*id]));
+    }
+
+    /// Whether one of `extensions` is shown and nothing speaks against its effects.
+    fn has_one_to_add(&self, extensions: &[Extension]) -> bool {
+        let candidates = compared(self.record, self.base, self.noise_floor, extensions.to_vec());
+        candidates.iter().any(|one| {
+            one.is_shown()
+                && one.judgement.generalises
+                && is_founded(self.record, &one.fit, &one.effects, self.options)
+        })
     }
 
     /// The candidates of `ranking` among the best pairs of effects.

@@ -94,7 +94,7 @@ impl<'p, 'r> Beginning<'p, 'r> {
     /// The search from `start`, which knows the slopes about there.
     pub(super) fn search(&self, start: Vec<f64>) -> Search<'p, 'r> {
         let problem = &self.search.problem;
-        let mut search = Search::new(problem.record, problem.model, problem.space, start);
+        let search = Search::new(problem.record, problem.model, problem.space, start);
         let residuals = search.problem.residuals();
         let mut slopes = self.slopes.clone();
         let own: Vec<usize> = (0..self.own.len()).filter(|index| self.own[*index]).collect();
@@ -102,8 +102,7 @@ impl<'p, 'r> Beginning<'p, 'r> {
             slopes.column_mut(*index).fill(0.0);
         }
         search.problem.put_slopes(&mut slopes, &own, &residuals);
-        search.slopes = Some(slopes);
-        search
+        search.knowing(Some(slopes))
     }
 }
 

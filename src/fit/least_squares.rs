@@ -2,15 +2,14 @@
 
 use std::sync::Arc;
 
-use super::beginning::Beginning;
 use super::covariance::Covariance;
 use super::descent::Limits;
 use super::problem::Problem;
 use super::record::FitRecord;
-use super::result::{AssessedModel, Assessment, Fit, FitError, Parameter, Status, Survey};
-use super::search::{ROUGH, Search, comparing, whole};
+use super::result::{AssessedModel, Assessment, Fit, FitError, Parameter, Status};
+use super::search::{Search, comparing, whole};
 use super::space::Space;
-use super::starts::starts;
+use super::survey::{Survey, survey};
 use super::turn;
 use super::window::Part;
 use crate::effect::{RecordRange, UNLIMITED};
@@ -120,103 +119,6 @@ fn descended(
     Ok(fit)
 }
 
-/// Surveys the free parameters of `model`, from the starts of [`fit`]: fits them to one of some samples of
-/// the training windows.
-///
-/// # Errors
-/// As [`fit`].
-pub fn survey(
-    record: &FitRecord<'_>,
-    model: &JointModel,
-    range: &RecordRange<'_>,
-) -> Result<Survey, FitError> {
-    let space = Space::of(model, range);
-    check_record(record, &space)?;
-    let coarse = record.for_training().coarser_for(model);
-    let samples = coarse.training_samples();
-    let _turn = turn::wait_for(samples * space.free.len());
-    let short = coarse.shortened();
-    // Between which levels an effect jumps is chosen on the whole record: few of its steps decide, and the
-    // part that is fitted may have none of them.
-    let whole = space.has_jumps().then(|| record.coarser_for(model).unsplit().shortened());
-    let across = whole.as_ref().unwrap_or(&short);
-    let searches = rough(&short, &coarse, model, &space, range).into_iter();
-    let ended = |search: Search<'_, '_>| {
-        let crossed = search.onto(across).across_flats();
-        let search = crossed.onto(&coarse).descended(comparing(samples));
-        Survey { model: search.problem.model_now(), cost: search.cost }
-    };
-    let found = searches.map(ended).min_by(|a, b| a.cost.total_cmp(&b.cost));
-    Ok(found.unwrap_or_else(|| Survey { model: model.clone(), cost: f64::MAX }))
-}
-
-/// A rough descent from each of the most promising starts: the best of these. Slopes are kept for
-/// descents that go on in the windows of `next`, where these are the same.
-fn rough<'p, 'r>(
-    short: &'p FitRecord<'r>,
-    next: &FitRecord<'_>,
-    model: &'p JointModel,
-    space: &'p Space,
-    range: &RecordRange<'_>,
-) -> Vec<Search<'p, 'r>> {
-    let slopes = short.training_samples() * space.free.len();
-    let keeps_slopes = !turn::is_large(slopes) && next.windows() == short.windows();
-    let descended = |search: Search<'p, 'r>| {
-        let mut search = search.descended(ROUGH);
-        search.slopes.take_if(|_| !keeps_slopes);
-        search
-    };
-    let given = plain(model);
-    let search = |start| descended(Search::new(short, model, space, start));
-    let starts = starts(model, range);
-    let (starts, mut searches, cost_of_given) = if let [start] = starts.as_slice() {
-        let cost = || Search::new(short, model, space, given.clone()).problem.cost();
-        let cost_of_given = (*start != given).then(cost);
-        let found = vec![search(start.clone())];
-        (starts, found, cost_of_given)
-    } else {
-        let beginning = Beginning::of(short, model, space, (given.clone(), &starts));
-        let starts = beginning.most_promising(starts, FOLLOWED);
-        let mut begun: Vec<_> =
-            starts.iter().map(|start| beginning.search(start.clone())).collect();
-        keep_distinct(&mut begun, |search| search.problem.cost(), 0.0);
-        let found = begun.into_iter().map(descended).collect();
-        (starts, found, Some(beginning.cost()))
-    };
-    let is_above = |given: f64| searches.iter().all(|search: &Search<'_, '_>| search.cost > given);
-    if cost_of_given.is_some_and(is_above) {
-        searches.extend(starts.iter().map(|start| search(nearer(&given, start))));
-    }
-    searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    searches.truncate(FINALISTS);
-    keep_distinct(&mut searches, |search| search.cost, SAME_VALLEY);
-    searches
-}
-
-/// Keeps one of the searches whose costs differ by no more than the part `apart`: the first.
-fn keep_distinct<'p, 'r>(
-    searches: &mut Vec<Search<'p, 'r>>,
-    cost: impl Fn(&Search<'p, 'r>) -> f64,
-    apart: f64,
-) {
-    let mut kept: Vec<f64> = Vec::new();
-    searches.retain(|search| {
-        let cost = cost(search);
-        let is_new = kept.iter().all(|other| (cost - other).abs() > apart * other);
-        kept.push(cost);
-        is_new
-    });
-}
-
-/// A start that is nearer to the values `given`: from one that is too far a descent may end in a valley
-/// of its own, above where it would be without the effect.
-fn nearer(given: &[f64], start: &[f64]) -> Vec<f64> {
-    /// Part of the way. Chosen: on an excavator's bucket a friction, a stiction and a dead band by
-    /// condition then end at a thirtieth of the squared error at which they had ended, or less.
-    const PART: f64 = 0.25;
-    given.iter().zip(start).map(|(given, start)| given + PART * (start - given)).collect()
-}
-
 /// The model as it is, with the standard errors its free parameters would have if they
 /// were fitted.
 ///
@@ -258,7 +160,7 @@ fn check_changes(record: &FitRecord<'_>) -> Result<(), FitError> {
 }
 
 /// Whether there are samples enough, and a model of them has parameters within their bounds.
-fn check_record(record: &FitRecord<'_>, space: &Space) -> Result<(), FitError> {
+pub(super) fn check_record(record: &FitRecord<'_>, space: &Space) -> Result<(), FitError> {
     let mut outputs = record.joint().trials.iter().flat_map(Trial::output);
     if outputs.any(|output| output.abs() > UNLIMITED) {
         return Err(FitError::BeyondParameters);
@@ -271,21 +173,9 @@ fn check_record(record: &FitRecord<'_>, space: &Space) -> Result<(), FitError> {
     Ok(())
 }
 
-fn plain(model: &JointModel) -> Vec<f64> {
+pub(super) fn plain(model: &JointModel) -> Vec<f64> {
     model.values().iter().map(|value| value.value).collect()
 }
-
-/// Starts that are followed.
-const FOLLOWED: usize = 3;
-
-/// The part by which costs differ after rough descents into one valley: a thirtieth of what these leave
-/// open. On two measured joints 2 of 138 searches that end so close to another come to less than it in
-/// the end, by more than 0.1 %.
-const SAME_VALLEY: f64 = 1e-4;
-
-/// Searches that are brought to their end; the others are given up when it is seen where
-/// they lead.
-const FINALISTS: usize = 2;
 
 impl Search<'_, '_> {
     /// The fit to the training windows that was searched, on all of `whole`.

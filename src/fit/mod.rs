@@ -27,6 +27,7 @@ mod search;
 mod space;
 mod speed;
 mod starts;
+mod survey;
 mod turn;
 mod unlogged;
 mod window;
@@ -35,12 +36,11 @@ pub use evaluation::Evaluation;
 pub(crate) use excerpt::Excerpt;
 pub(crate) use extent::starts_s;
 pub(crate) use first_order::{follows_input, makes_first_order, time_constant_s};
-pub use least_squares::{assess, fit, fit_surveyed, fit_to_compare, survey};
+pub use least_squares::{assess, fit, fit_surveyed, fit_to_compare};
 pub(crate) use mended::Mended;
 pub use record::FitRecord;
 pub(crate) use record::is_rounding;
-pub use result::{
-    AssessedModel, Assessment, Fit, FitError, Parameter, Status, Survey, Termination,
-};
+pub use result::{AssessedModel, Assessment, Fit, FitError, Parameter, Status, Termination};
 pub use score::{Directions, Score};
+pub use survey::{RoughSurvey, Survey, end_survey, rough_survey, survey};
 pub use window::{Horizon, Part, Split, Window};

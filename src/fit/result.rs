@@ -150,14 +150,3 @@ pub enum FitError {
     )]
     BeyondParameters,
 }
-
-/// A model surveyed: fitted to one of some samples, and its sum of squared errors there.
-///
-/// Sums are comparable between models of the same record.
-#[derive(Clone, Debug)]
-pub struct Survey {
-    /// The model at the values that were found.
-    pub model: JointModel,
-    /// The sum over the samples of the survey.
-    pub cost: f64,
-}

@@ -49,6 +49,11 @@ impl<'p, 'r> Search<'p, 'r> {
         Self { problem, cost, termination, slopes: None }
     }
 
+    /// Knows the slopes of the residuals here, where there are any.
+    pub(super) fn knowing(self, slopes: Option<DMatrix<f64>>) -> Self {
+        Self { slopes, ..self }
+    }
+
     /// Goes on from here on another cut of the record.
     pub(super) fn onto(mut self, record: &'p FitRecord<'r>) -> Self {
         if self.problem.record.windows() != record.windows() {
