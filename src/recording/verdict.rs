@@ -376,8 +376,8 @@ impl Facts<'_, '_> {
             }
             // Of a delay between samples the end of its interval counts.
             Condition::BeforeInput => {
-                let of = if self.segment.decision.fine.is_some() { "at most " } else { "" };
-                (said(&|q| format!("q = {of}{q}")), needed("≥ p ="))
+                let sign = if self.segment.decision.fine.is_some() { "≤" } else { "=" };
+                (said(&|q| format!("q {sign} {q}")), needed("≥ p ="))
             }
             Condition::SlopeChange => (output("", "/sample"), needed("≥")),
             Condition::ShortHold => (said(&|hold| format!("{hold} samples")), needed("≥")),

@@ -22,8 +22,8 @@ pub(super) fn show_delays(args: &Args, study: &Study<'_>) -> anyhow::Result<()> 
     let joints = estimated(study.experiment(), &study.estimates);
     let extent = extent_table(study.joints());
     console::print(&format!("{extent}\n{}\n", estimate_table(&joints, &study.settings)))?;
-    let said = "searching for the effects that the models lack; Ctrl-C stops the search and keeps \
-                what was found";
+    let said = "searching for the effects that the models lack, which takes seconds, or minutes for \
+                a long log; Ctrl-C stops the search and keeps what was found";
     study.verbosity().say("improving", said);
     Ok(())
 }
