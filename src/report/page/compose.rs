@@ -87,7 +87,8 @@ fn anchor(index: usize, joint: &Joint) -> String {
 pub(crate) fn report_text(report: &Report<'_>) -> String {
     let lines = report.sentences().into_iter();
     let lines = lines.map(|(joint, sentence)| [joint, ": ", &sentence, "\n"].concat());
-    let next = report.with_models.map(|command| format!("what next:\n  {command}  {WITH_MODELS}\n"));
+    let next =
+        report.with_models.map(|command| format!("what next:\n  {command}  {WITH_MODELS}\n"));
     lines.chain(next).collect()
 }
 
