@@ -237,7 +237,7 @@ impl Facts<'_, '_> {
                 let by = if by.is_empty() { "a reviewer".to_owned() } else { by };
                 let note = if note.is_empty() { note } else { format!("\n> {note}\n") };
                 let program = self.program_headline().replacen("## ", "", 1);
-                // A heading of its own has no stop behind it.
+                // A heading of its own has no stop after it.
                 let program = program.replacen('\n', ".\n\n", 1);
                 let stop = if program.contains('\n') { "" } else { "." };
                 format!("## {said} (by {by})\n{note}\n**The program:** {program}{stop}\n")

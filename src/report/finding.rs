@@ -10,7 +10,7 @@ use crate::model::Component;
 use crate::study::JointEstimate;
 use crate::wording::{measure, percent, rounded};
 
-/// A joint, the verdict on its model, and the race behind it.
+/// A joint, the verdict on its model, and the ranking it follows from.
 #[derive(Clone, Copy, Debug)]
 pub struct Finding<'a> {
     /// The model that the verdict is about.
