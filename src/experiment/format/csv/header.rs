@@ -44,7 +44,7 @@ pub(super) fn check_last_name(
     }
     let header = head.header_row;
     let reason = format!(
-        "row {header} has {names} names and a mark behind the last, and row {row} has {cells} cells"
+        "row {header} has {names} names and a separator after the last, and row {row} has {cells} cells"
     );
     Err(ReadError::format(A_TABLE, reason, "name each column"))
 }

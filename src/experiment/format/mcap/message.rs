@@ -248,7 +248,7 @@ mod tests {
     use super::super::fields::each_number;
     use super::*;
 
-    /// Two joints of which each has a list of values, behind an image.
+    /// Two joints of which each has a list of values, after an image.
     const DEFINITION: &str = "string[] joint_names\nuint16[] image\nPart[] parts\nfloat64[2] pair\nbool on\n\
         ================================================================================\n\
         MSG: demo/Part\nstring[] names\nfloat32[] values\n";
