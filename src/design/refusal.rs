@@ -18,7 +18,7 @@ pub enum PlanError {
         /// Whether there is a model.
         has_model: bool,
     },
-    /// No hold fits behind the rest with which an input begins.
+    /// No hold fits after the rest with which an input begins.
     #[error("an input of {duration_s} s is too short for a rest and a hold of {hold_s} s after it")]
     HoldTooLong {
         /// The shortest hold, seconds.

@@ -27,7 +27,7 @@ pub(super) enum Scope {
 
 /// Effects that are fitted, of those that were surveyed: at most, and at least. Chosen: each more costs a
 /// fit; of an excavator's arm six leave 0.95 deg, since the survey ranks the effect that is
-/// added behind them, and nine 0.88.
+/// added after them, and nine 0.88.
 const FINALISTS: (usize, usize) = (9, 3);
 
 /// What the cost of a finalist may be after the survey, in parts of the least. Chosen: with 1.3 six

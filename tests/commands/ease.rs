@@ -51,7 +51,7 @@ fn completions_of_every_shell_know_every_command() {
     }
 }
 
-/// What bash offers behind some words, or `None` without bash.
+/// What bash offers after some words, or `None` without bash.
 fn offered(words: &[&str]) -> Option<Vec<String>> {
     let line = words.iter().map(|word| format!("'{word}'")).collect::<Vec<_>>().join(" ");
     let script = format!(

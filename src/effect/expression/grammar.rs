@@ -79,7 +79,7 @@ pub enum Problem {
         /// All names there are.
         known: String,
     },
-    /// A number has parentheses behind it.
+    /// A number has parentheses after it.
     #[error("`{0}` is not a function; a product is written with `*`")]
     NotAFunction(String),
     /// A function has none.
