@@ -7,7 +7,7 @@ use crate::numerics::{decimal_exponent, to_multiple};
 #[non_exhaustive]
 pub enum PlanError {
     /// Fewer than two levels.
-    #[error("fewer than two are left of the levels; an input needs two different ones or more")]
+    #[error("fewer than two levels are left; an input needs at least two different ones")]
     TooFewLevels,
     /// The ends of the dead band are not known.
     #[error(

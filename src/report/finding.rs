@@ -209,7 +209,7 @@ impl Consequence<'_> {
         let shares: Vec<String> = doubtful.iter().map(share).collect();
         (!shares.is_empty()).then(|| {
             format!(
-                "Doubtful: {}. Each removes less than half of the squared error beyond the noise \
+                "Doubtful: {}. Such an effect removes less than half of the squared error beyond the noise \
                  that the model has without it, so it may only imitate an effect outside the \
                  catalogue.",
                 shares.join(", ")

@@ -310,10 +310,7 @@ fn columns_says_what_is_mended_in_the_log() {
         ["the newest row is first", "wraps at a turn of 360 deg", "1 cell is empty or NaN"];
     assert_eq!(mended.len(), expected.len(), "{mended:?}");
     for (line, says) in mended.iter().zip(expected) {
-        assert!(
-            line.contains(says) && table.contains(&format!("where it is read: {line}")),
-            "{table}"
-        );
+        assert!(line.contains(says) && table.contains(&format!("on reading: {line}")), "{table}");
     }
 }
 

@@ -111,10 +111,10 @@ impl DataArgs {
     /// When there are several, or when gaps are to be filled: trials get new names at each.
     pub(crate) fn only_file(&self) -> anyhow::Result<PathBuf> {
         let [path] = self.data.as_slice() else {
-            bail!("expected one log, and {} are given", self.data.len());
+            bail!("expected one log, but {} are given", self.data.len());
         };
         if path.is_dir() {
-            bail!("{}: expected a log, and this is a folder", path.display());
+            bail!("{}: expected a log, but this is a folder", path.display());
         }
         if path.metadata().is_ok_and(|found| !found.is_file()) {
             bail!(

@@ -53,7 +53,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "UNIT")]
     output_unit: Option<String>,
 
-    /// Say nothing of what was written
+    /// No notices
     #[arg(short, long)]
     quiet: bool,
 }

@@ -204,7 +204,7 @@ fn array(
     found: &mut Vec<Variable>,
 ) -> Result<(), ReadError> {
     if depth > DEEPEST {
-        return fault("structures lie too deep in one another");
+        return fault("structures are nested too deeply");
     }
     let mut dims = vec![0, 0];
     // An empty array may have no bytes.

@@ -145,7 +145,10 @@ impl<'a, E: CdrEndian> Decoding<'a, E> {
         depth: usize,
     ) -> Result<Value<'a>, Error> {
         if depth > DEEPEST {
-            return Err(refused(format!("`{}` lies too deep in itself or other types", spec.name)));
+            return Err(refused(format!(
+                "`{}` is nested too deeply in itself or in other types",
+                spec.name
+            )));
         }
         let left = self.fields.checked_sub(1 + spec.fields.len());
         self.fields = left.ok_or_else(|| refused("it has too many fields".to_owned()))?;
