@@ -56,12 +56,21 @@ def _is_table(data: Any) -> bool:
     return hasattr(data, "columns") or (hasattr(data, "__arrow_c_stream__") and not is_column)
 
 
+def _arrow_table(data: pd.DataFrame) -> Any:
+    """As pandas makes it for a stream; batch by batch it may lie at any address."""
+    import pyarrow
+
+    return pyarrow.Table.from_pandas(data)
+
+
 def _table(name: str, data: Any) -> tuple[str, Any]:
     """A table as it lies in memory; column by column where it does not speak Arrow."""
     is_pandas = isinstance(data, pd.DataFrame)
     if hasattr(data, "__arrow_c_stream__"):
         try:
-            return name, _tauscope.Frame(data, _index_names(data.index) if is_pandas else {})
+            if is_pandas:
+                return name, _tauscope.Frame(_arrow_table(data), _index_names(data.index))
+            return name, _tauscope.Frame(data, {})
         except (ImportError, TypeError, ValueError):
             # pandas speaks Arrow by pyarrow alone, and not where a column is of several types.
             if not is_pandas:
