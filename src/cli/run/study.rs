@@ -97,6 +97,11 @@ impl<'a> Study<'a> {
         self.session.verbosity()
     }
 
+    /// Says how the logs were read, once.
+    pub(crate) fn say_notes(&self) {
+        self.session.say_notes();
+    }
+
     /// Results that are shown beside the delays.
     pub(crate) fn beside(&self) -> &[OtherResult] {
         &self.session.beside

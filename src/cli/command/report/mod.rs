@@ -240,7 +240,7 @@ impl Reported<'_> {
             notes: &notes,
             failures,
         };
-        // Those on the logs are said at the end, as by every command.
+        // Those on the logs are said by the session.
         // The tables are printed with what is said of the inputs.
         let with_tables = joints.iter().filter(|_| self.shown == Shown::Everything);
         let printed: Vec<String> = with_tables.filter_map(input_note).collect();
