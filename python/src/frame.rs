@@ -11,7 +11,7 @@ use arrow_array::types::{
 };
 use arrow_array::{Array, ArrayRef, Int32Array, Int64Array, RecordBatch, RecordBatchReader as _};
 use arrow_pyarrow::FromPyArrow as _;
-use arrow_schema::{DataType, Schema, SchemaRef, TimeUnit};
+use arrow_schema::{DataType, TimeUnit};
 use pyo3::prelude::*;
 use tauscope::experiment::{HandedColumn, HandedValues};
 
@@ -30,31 +30,18 @@ impl Frame {
     /// The columns of `table`; those in `names` have another name, or are left out.
     #[new]
     fn new(table: &Bound<'_, PyAny>, names: HashMap<String, Option<String>>) -> PyResult<Self> {
-        let (schema, batches) = batches(table)?;
+        let stream = ArrowArrayStreamReader::from_pyarrow_bound(table)?;
+        let schema = stream.schema();
         let all = schema.fields().iter().map(|field| field.name()).enumerate();
         let kept = |(index, name): (usize, &String)| {
             let given = names.get(name).cloned().unwrap_or_else(|| Some(name.clone()));
             Some((given?, index))
         };
         let columns = all.filter_map(kept).collect();
+        let batches = stream.collect::<Result<_, _>>();
+        let batches = batches.map_err(|error| TauscopeError::new_err(error.to_string()))?;
         Ok(Self { columns, batches })
     }
-}
-
-/// The rows of `table` in batches. Those of pyarrow are taken one by one: numbers that came over a
-/// network may lie at any address, which a batch copies, and a stream refuses with a panic.
-fn batches(table: &Bound<'_, PyAny>) -> PyResult<(SchemaRef, Vec<RecordBatch>)> {
-    if table.hasattr("to_batches")? {
-        let schema = Schema::from_pyarrow_bound(&table.getattr("schema")?)?;
-        let batches = table.call_method0("to_batches")?.try_iter()?;
-        let batches = batches.map(|batch| RecordBatch::from_pyarrow_bound(&batch?));
-        return Ok((SchemaRef::new(schema), batches.collect::<PyResult<_>>()?));
-    }
-    let stream = ArrowArrayStreamReader::from_pyarrow_bound(table)?;
-    let schema = stream.schema();
-    let batches = stream.collect::<Result<_, _>>();
-    let batches = batches.map_err(|error| TauscopeError::new_err(error.to_string()))?;
-    Ok((schema, batches))
 }
 
 impl Frame {
