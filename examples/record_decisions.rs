@@ -44,7 +44,7 @@ fn main() -> anyhow::Result<()> {
     };
     log_recording(&recording, &stream)?;
     stream.flush_blocking()?;
-    println!("look at it with: rerun {}", file.display());
+    println!("open it with: rerun {}", file.display());
     Ok(())
 }
 

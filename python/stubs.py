@@ -31,7 +31,7 @@ from typing import Literal, TypedDict
 File = str | os.PathLike[str]
 '''
 
-#: What is behind an option in the help, as a type. What names a file, and words in lower case,
+#: What follows an option in the help, as a type. What names a file, and words in lower case,
 #: which are taken as they are, are not here.
 TYPES = {
     **dict.fromkeys(["X", "SHARE", "HZ", "PHI", "SAMPLES", "SECONDS"], "float"),
@@ -54,7 +54,7 @@ Setting = tuple[str, str, str]
 
 
 def blocks(command: str) -> dict[str, str]:
-    """What the help says of each option, from behind its name on."""
+    """What the help says of each option after its name."""
     run = _tauscope.read if command == "read" else _tauscope.run
     try:
         run([command, "--help"])

@@ -59,7 +59,7 @@ fn as_many_as_fit(threads: usize) -> usize {
     asked.min(room)
 }
 
-/// Runs `work` as [`with_threads`] does; `run` runs each thread, and all have ended behind it.
+/// Runs `work` as [`with_threads`] does; `run` runs each thread, and all have ended after it.
 ///
 /// # Errors
 /// When the threads cannot be started.

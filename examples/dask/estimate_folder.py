@@ -5,7 +5,7 @@
 
 Each worker takes a part of the logs (`--shard`); `tauscope merge` then makes the table, which
 is that of one process, byte for byte. Without --scheduler a cluster is started on this
-machine. Options behind `--` go to `tauscope estimate`. The folders must be reachable by the
+machine. Options after `--` go to `tauscope estimate`. The folders must be reachable by the
 same paths from every worker.
 """
 import argparse
@@ -17,7 +17,7 @@ from distributed import Client, LocalCluster, as_completed
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0],
-                                     epilog="Options behind -- go to tauscope estimate.")
+                                     epilog="Options after -- go to tauscope estimate.")
     parser.add_argument("logs", help="folder of logs")
     parser.add_argument("--results", required=True, help="folder where results are kept")
     parser.add_argument("--decisions", required=True, help="the table of all decisions")

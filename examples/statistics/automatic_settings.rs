@@ -57,7 +57,7 @@ impl Tally {
         settings: &Settings,
     ) -> anyhow::Result<()> {
         let found = estimate(trial, settings)?;
-        // The last reaction may be behind the record's end.
+        // The last reaction may be after the record's end.
         let inner = truth.len().saturating_sub(1);
         for (truth, decision) in truth.iter().zip(&found.decisions).take(inner) {
             self.steps += 1;
@@ -136,7 +136,7 @@ fn the_settings_of_the_record_are_no_worse() -> anyhow::Result<()> {
     for (name, spec) in plants() {
         let ([paper, chosen], _) = measure(&spec, 2)?;
         let ([paper, own, _], [chosen, error, _]) = (paper.figures(), chosen.figures());
-        // Behind a lag both are wrong by the lag.
+        // After a lag both are wrong by the lag.
         let slack = if spec.lag_s.is_some() { 0.03 * paper } else { 0.0 };
         assert!(chosen < paper + slack + 2.0 * own.hypot(error), "{name}: {chosen} {paper}");
         if ["ideal", "noise x 4", "short holds", "long holds"].contains(&name) {

@@ -146,7 +146,7 @@ fn response(lag: Option<f64>, ringing: Option<(f64, f64)>, t: f64) -> f64 {
     }
 }
 
-/// What rings, behind a lag: `T·z' + z` is the answer of what rings alone, solved with a line, the
+/// What rings, after a lag: `T·z' + z` is the answer of what rings alone, solved with a line, the
 /// same oscillation and `e^(−t/T)`.
 fn ring_behind(lag: f64, (omega, zeta): (f64, f64), t: f64) -> f64 {
     let damped = omega * (1.0 - zeta * zeta).sqrt();
@@ -410,7 +410,7 @@ fn the_lag_is_not_booked_as_delay() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Behind a lag, what rings obeys `T·z' + z = ring`.
+/// After a lag, what rings obeys `T·z' + z = ring`.
 #[test]
 fn the_response_of_lag_and_ringing_solves_its_equation() {
     let (lag, ringing) = (6.0, (0.157, 0.25));

@@ -89,7 +89,7 @@ type Given = (String, f64, Option<f64>, Option<f64>, f64);
 #[pymethods]
 impl Function {
     /// The effect `id` of `stage` that calls `function` with the arguments of these names, those
-    /// of `parameters` and `states` among them. A state starts as the number behind its name, or as
+    /// of `parameters` and `states` among them. A state starts as the number after its name, or as
     /// the signal.
     #[new]
     fn new(
@@ -213,7 +213,7 @@ fn spec(id: &str, stage: Stage, arguments: &[&str], parameters: &[Given]) -> Spe
 
 impl Called {
     /// What the function gives, or `unchanged` where that is no finite number; the states of `memory`
-    /// become those that it gives behind it.
+    /// become those that it gives after it.
     fn call(
         &self,
         unchanged: f64,

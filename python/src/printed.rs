@@ -36,7 +36,7 @@ impl Printed {
 }
 
 impl Printed {
-    /// Takes what comes behind.
+    /// Takes what comes after.
     pub(crate) fn push(&self, text: &[u8]) -> io::Result<()> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push(text)
     }

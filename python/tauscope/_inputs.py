@@ -56,12 +56,33 @@ def _is_table(data: Any) -> bool:
     return hasattr(data, "columns") or (hasattr(data, "__arrow_c_stream__") and not is_column)
 
 
+def _arrow_table(data: Any) -> Any:
+    """A table of pandas or pyarrow whose values lie where the native part takes them.
+
+    What came over a network, as a frame of Dask, may lie at any address: it is copied.
+    """
+    import pyarrow as pa
+
+    table = pa.Table.from_pandas(data) if isinstance(data, pd.DataFrame) else data
+    chunks = [chunk for column in table.columns for chunk in column.chunks]
+    buffers = [buffer for chunk in chunks for buffer in chunk.buffers() if buffer is not None]
+    if all(buffer.address % 8 == 0 for buffer in buffers):
+        return table
+    copy = pa.BufferOutputStream()
+    with pa.ipc.new_stream(copy, table.schema) as stream:
+        stream.write_table(table)
+    return pa.ipc.open_stream(copy.getvalue()).read_all()
+
+
 def _table(name: str, data: Any) -> tuple[str, Any]:
     """A table as it lies in memory; column by column where it does not speak Arrow."""
     is_pandas = isinstance(data, pd.DataFrame)
     if hasattr(data, "__arrow_c_stream__"):
         try:
-            return name, _tauscope.Frame(data, _index_names(data.index) if is_pandas else {})
+            if is_pandas:
+                return name, _tauscope.Frame(_arrow_table(data), _index_names(data.index))
+            is_of_pyarrow = hasattr(data, "to_batches") and hasattr(data, "column_names")
+            return name, _tauscope.Frame(_arrow_table(data) if is_of_pyarrow else data, {})
         except (ImportError, TypeError, ValueError):
             # pandas speaks Arrow by pyarrow alone, and not where a column is of several types.
             if not is_pandas:

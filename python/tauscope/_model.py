@@ -127,7 +127,7 @@ class Model:
         states: Mapping[str, Any] | None = None,
         **parameters: Parameter,
     ) -> Model:
-        """This model with another effect behind those it has; neutral where no value is given.
+        """This model with another effect after those it has; neutral where no value is given.
 
         With ``expression`` or ``function`` the effect is a user's own: ``kind`` is its name, and
         ``stage`` where it acts: ``input``, ``transport``, ``dynamics``, ``load`` or ``output``.
@@ -137,7 +137,7 @@ class Model:
         The arguments of a function are, by their names, parameters and signals: ``signal``,
         ``position``, ``velocity``, ``time``, ``dt``, ``others``, ``radians``; of the transport
         stage ``before``, ``after``, ``held``, ``time``. It gets numbers in the units of the log
-        and seconds, and gives the signal behind the effect; of the transport stage the seconds by
+        and seconds, and gives the signal after the effect; of the transport stage the seconds by
         which a change of the input arrives later. It is called for every sample of every
         simulation, or, if it takes ``signal`` alone, for every level of the input; and never with
         a parameter below its ``min`` or above its ``max``.

@@ -16,8 +16,8 @@ class ReadOptions(TypedDict, total=False):
     """How logs are read."""
 
     joint: str | Sequence[str] | None
-    """A joint to use, by name; or `NAME=INPUT_COLUMN:OUTPUT_COLUMN` in a foreign log. May be a
-    list."""
+    """A joint to use, by name; or `NAME=INPUT_COLUMN:OUTPUT_COLUMN` where the columns have other
+    names. May be a list."""
     time: str | None
     """Column of the time in seconds."""
     trial: str | None
@@ -25,7 +25,8 @@ class ReadOptions(TypedDict, total=False):
     sample_period: float | None
     """Seconds between samples, for a log without a time column."""
     columns: File | None
-    """A TOML file that maps the columns of a foreign log."""
+    """A TOML file that says which columns are the time and the inputs and outputs, as `tauscope
+    columns -w` writes it."""
     resample: float | None
     """Put unevenly sampled logs on a grid of this period: output linear, input held."""
     fill: float | None
@@ -137,7 +138,7 @@ class SweepOptions(ReadOptions, total=False):
     """The settings of :func:`tauscope.sweep`."""
 
     method: str | Sequence[str] | None
-    """How a breakpoint is found [default: two-line,hinge,lag-aware]."""
+    """The methods by which delays are found [default: two-line,hinge,lag-aware]."""
     alpha: float | str | Sequence[float | str] | None
     """How far a segment extends before its input step and after the next one, in samples or in
     seconds as in `0.05s,0.1s` [default: 5,10,20]."""
@@ -345,8 +346,8 @@ class ReportOptions(ReadOptions, total=False):
     --format json`, its table of `--decisions`, or another log of the experiment, which is estimated
     with the same settings. May be a list."""
     improve: bool
-    """Add to the model what it lacks, and report the ladder of errors. Without a model each joint
-    starts as a plain integrator; no model file is written."""
+    """Add to the model what it lacks, and report the error of each revision. Without a model each
+    joint starts as a plain integrator; no model file is written."""
     effects: str | Sequence[str] | None
     """Effects that are tried, separated by commas [default: the catalogue and the candidates of the
     model file]."""
@@ -412,7 +413,7 @@ class DesignOptions(ReadOptions, total=False):
     """`cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a band
     that must contain no level."""
     separate: str | Sequence[str] | None
-    """Two effects to separate. The model has one of them, or a log is given."""
+    """Two effects to distinguish. The model has one of them, or a log is given."""
     power: float | None
     """The probability of success that is wanted [default: 0.95]."""
     noise: float | None

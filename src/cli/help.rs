@@ -17,24 +17,22 @@ const FIRST: [(&str, &str); 9] = [
 ];
 
 /// The headings of all other options.
-const QUESTIONS: [(&str, &str); 13] = [
-    ("The columns are not recognised", "joint time trial columns"),
+const QUESTIONS: [(&str, &str); 15] = [
+    ("The columns are not recognized", "joint time trial columns"),
     ("The clock is uneven, or samples are missing", "sample-period resample fill"),
     ("The input is noisy, or moves all the time", "min-step input"),
-    (
-        "How delays are found",
-        "method alpha beta passband filter-order max-delay interval interpolate paper \
-         tolerance",
-    ),
+    ("How delays are found", "method max-delay interval interpolate tolerance"),
+    ("Algorithm 1 of Albrecht and Taylor", "paper alpha beta passband filter-order"),
     (
         "Steps are accepted or rejected wrongly",
-        "confidence min-delay output-limits min-slope-change max-sse first-last \
-         keep-first-last accept-anyway review review-sheet",
+        "confidence min-delay output-limits min-slope-change max-sse accept-anyway review \
+         review-sheet",
     ),
     (
         "Which model, and how it is fitted",
-        "model write improve fit effects max-effects refine horizon split uncertainty",
+        "model write improve fit effects max-effects refine uncertainty",
     ),
+    ("What the record decides (for experts)", "first-last keep-first-last horizon split"),
     ("Compare with another result", "against"),
     (
         "Which input is designed",

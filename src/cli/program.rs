@@ -120,7 +120,7 @@ fn first_look_output(output: Arg) -> Arg {
     output.required(false).num_args(0..=1).default_missing_value(report::BESIDE_THE_LOG)
 }
 
-/// The words as they were typed; where a log stands in the place of a command, also behind options,
+/// The words as they were typed; where a log stands in the place of a command, also after options,
 /// they get one.
 ///
 /// # Errors
@@ -199,7 +199,7 @@ pub fn read_within(arguments: &[OsString], host: Arc<dyn Hosting>) -> Result<Exp
     within(host, || read(reading.data.given(), &reading.data.options()?))
 }
 
-/// The arguments behind the program's name.
+/// The arguments after the program's name.
 fn named(arguments: &[OsString]) -> impl Iterator<Item = OsString> {
     std::iter::once(OsString::from("tauscope")).chain(arguments.iter().cloned())
 }

@@ -31,7 +31,7 @@ pub struct StepState {
     pub transition: Transition,
     /// The delay in seconds.
     pub delay_s: f64,
-    /// Magnitude of the slope behind the breakpoint, output units per second.
+    /// Magnitude of the slope after the breakpoint, output units per second.
     pub average_speed: f64,
     /// Change of the input, input units; its sign is the direction.
     pub input_change: f64,

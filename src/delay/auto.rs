@@ -17,7 +17,7 @@
 //! two reactions, where a lag has died away. Methods that look at the output as it was
 //! measured stay so: smoothing would take from noise what intervals are made of.
 //!
-//! **α.** Behind the next input step the output goes on as before for as long as the next
+//! **α.** After the next input step the output goes on as before for as long as the next
 //! delay takes. These samples belong to the line, and the first ones of the next reaction do
 //! not: α is a delay that nine of ten exceed, of those that two lines that meet know best.
 //!

@@ -94,7 +94,7 @@ impl Blocks {
     }
 }
 
-/// The squared error of the increments behind the first `skipped` blocks, on the input `lag` blocks
+/// The squared error of the increments after the first `skipped` blocks, on the input `lag` blocks
 /// before, or on a constant.
 fn unexplained(blocks: &[Blocks], skipped: usize, lag: Option<usize>) -> f64 {
     let long = || blocks.iter().filter(|of| of.increments.len() > skipped);

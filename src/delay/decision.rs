@@ -83,7 +83,7 @@ impl Decision {
         Some(Breakpoint { candidate, delay })
     }
 
-    /// `p_(i+1)`: the sample of the next step, or the one behind the trial's last.
+    /// `p_(i+1)`: the sample of the next step, or the one after the trial's last.
     pub(crate) fn next_sample(&self) -> usize {
         self.input_step.sample + self.hold
     }

@@ -33,7 +33,7 @@ pub enum Flag {
     Edge,
     /// The lines jump apart at the breakpoint: they cross more than two rows away.
     Jump,
-    /// The output stands at an end of its range, in the later half behind the breakpoint, though
+    /// The output stands at an end of its range, in the later half after the breakpoint, though
     /// the input is not zero.
     Stop,
 }

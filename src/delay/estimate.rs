@@ -52,7 +52,7 @@ pub struct TrialEstimate {
     pub decisions: Vec<Decision>,
     /// The delay of every sample.
     pub profile: DelayProfile,
-    /// The response of the joint behind its dead times, where the method looks for it.
+    /// The response of the joint after its dead times, where the method looks for it.
     pub onset_model: Option<Arc<OnsetModel>>,
     /// Where the output comes to rest, where its input says that: its arrivals answer no step.
     pub tracking: Option<Tracking>,
@@ -90,7 +90,7 @@ pub fn estimate(trial: &Trial, settings: &Settings) -> Result<TrialEstimate, Est
     Estimator::of(&[trial.clone()].into(), settings)?.estimate(trial)
 }
 
-/// Estimates all trials of a joint, which share the response behind their dead times.
+/// Estimates all trials of a joint, which share the response after their dead times.
 pub fn estimate_joint(
     trials: &Record,
     settings: &Settings,

@@ -66,7 +66,7 @@ fn best_lag(trials: &[Trial]) -> Option<(usize, f64)> {
     (follows.1 > best(sign)?.1).then_some(follows)
 }
 
-/// Samples that the output may lag behind.
+/// Samples by which the output may lag.
 fn lags(trials: &[Trial]) -> impl Iterator<Item = usize> + use<> {
     /// Longest lag as a part of the shortest trial, and each lag of the one before.
     const PART: usize = 10;
@@ -106,7 +106,7 @@ impl Property for Option<FirstOrder> {
     fn find(record: &Record) -> Self {
         /// Times of 1.5 each, from two samples on.
         const COUNT: usize = 16;
-        // The whole lag is a dead time and the time constant behind it.
+        // The whole lag is a dead time and the time constant after it.
         let (longest, _) = followed(record)?;
         Some(best(record, longest, f64::INFINITY, COUNT)?.0)
     }
@@ -180,7 +180,7 @@ fn best(
     Some((FirstOrder { time_constant_s, dead_time_s, static_gain, at_zero }, sums.r_squared()))
 }
 
-/// How the output goes with what `of` makes of the input `dead` samples before, behind a lag of the
+/// How the output goes with what `of` makes of the input `dead` samples before, after a lag of the
 /// first order.
 fn lagging(trials: &[Trial], time_s: f64, dead: usize, of: fn(f64) -> f64) -> PairSums {
     let mut sums = PairSums::default();

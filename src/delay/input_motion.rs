@@ -209,7 +209,7 @@ fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
 }
 
 /// Whether the sample `next` is within `tolerance` of the middle of those of a window with the
-/// extremes in front of two queues; nothing is behind the last sample.
+/// extremes in front of two queues; nothing is after the last sample.
 fn fits(
     input: &[f64],
     next: usize,

@@ -13,7 +13,7 @@ pub(super) struct Levels<'a> {
     /// The largest change that is noise; 0 where levels are exact, or where what the input takes back
     /// at once is not small beside its range.
     pub(super) tolerance: f64,
-    /// Samples behind an edge at which the median still knows the level before it; 0 without one.
+    /// Samples after an edge at which the median still knows the level before it; 0 without one.
     pub(super) reach: usize,
 }
 
@@ -84,7 +84,7 @@ fn without_dropouts(input: &[f64], period_s: f64) -> Option<Vec<f64>> {
     (dropped <= holds.len() && SHORT * short <= holds.len()).then_some(without)
 }
 
-/// An input measured with noise without single samples that are off those before and behind them by more
+/// An input measured with noise without single samples that are off those before and after them by more
 /// than the largest change that is noise, as a logger drops a value; none where there are none, or many.
 fn without_spikes(input: &[f64], noise: f64, period_s: f64) -> Option<Vec<f64>> {
     /// Samples to each, at least (chosen).

@@ -30,7 +30,7 @@ pub(crate) enum Remedy {
 /// The second-best breakpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunnerUp {
-    /// First sample behind it.
+    /// First sample after it.
     pub breakpoint: usize,
     /// Its squared error, output units squared.
     pub sse: f64,

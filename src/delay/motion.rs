@@ -20,7 +20,7 @@
 //! part [`PLAIN`] of the motion to come, and by more than as much drift again as before. It has
 //! *arrived* at a stop when it rests before the next step, although it was plainly driven: its
 //! input was not eased, and it came faster than it went before the step, or from the other side.
-//! A joint whose rest is not shown, as behind much noise, is left alone.
+//! A joint whose rest is not shown, as under much noise, is left alone.
 
 use super::settings::{FirstLast, Settings};
 use super::steps::InputStep;
@@ -59,7 +59,7 @@ pub(super) struct StepMotion {
     pub(super) first: usize,
     /// The last position that its reaction may have.
     pub(super) latest: usize,
-    /// Behind the last sample that says something of it.
+    /// After the last sample that says something of it.
     pub(super) end: usize,
     /// What shows that the joint rested when the input stepped; none where it moved.
     pub(super) rest: Option<Rest>,
@@ -99,7 +99,7 @@ pub(super) fn arrival(held: &[f64], level: f64, near: f64) -> usize {
 
 /// What the output does about each of `steps`; none where neither rest nor a stop is shown.
 ///
-/// What is found of a step depends on no sample behind the next one, so that it stays as a
+/// What is found of a step depends on no sample after the next one, so that it stays as a
 /// record grows.
 pub(super) fn motions(
     output: &[f64],
@@ -215,21 +215,21 @@ impl Hold<'_> {
         lines.filter_map(move |look_back| Quiet::before(output, end, look_back))
     }
 
-    /// From rest: not far behind the departure, where the joint does not go on as it started
+    /// From rest: not far after the departure, where the joint does not go on as it started
     /// until the next step. Where it does, nothing needs to be known.
     fn leaving(&self, before: &Quiet, so_far: &SoFar) -> Option<StepMotion> {
         let moved = self.held().iter().map(|y| (y - before.level).abs()).fold(0.0, f64::max);
         let rest = Rest { moved, limit: self.limit_at_rest(before, so_far) };
         let first = self.step.saturating_sub(self.reach);
         if rest.lasts() && moved < so_far.range() {
-            // A reaction that comes behind the next step would not be seen.
+            // A reaction that comes after the next step would not be seen.
             let long = self.next.is_none() || self.held().len() >= self.look_back;
             let end = self.end();
             return long.then_some(StepMotion { first, latest: end, end, rest: Some(rest) });
         }
         let departed = self.step + before.departure(self.held(), PLAIN * moved)?;
         let delay = departed - self.step;
-        // Behind a rest that is shorter it might answer the step before.
+        // After a rest that is shorter it might answer the step before.
         if self.since > 0 && self.step - self.since < delay {
             return None;
         }

@@ -6,7 +6,7 @@ use crate::numerics::{Line, RunningLine};
 /// below which they tie and the earlier candidate wins. Rounding is four orders below.
 const TIE: f64 = 1e-12;
 
-/// All pairs of lines through a segment, the evidence behind a decision.
+/// All pairs of lines through a segment, the evidence for a decision.
 ///
 /// The segment is the matrix Φ of `rows` rows with β samples each. Candidate
 /// `f = 1 … rows − 1` fits one line to rows `1 … f` and another to rows `f+1 … rows`.
@@ -26,7 +26,7 @@ pub struct Candidates {
 }
 
 /// Weight of a candidate in the [spread](Candidates::spread): its squared error as a part of the
-/// best one's, to this power. The noise behind a low-pass is correlated, so that the power of
+/// best one's, to this power. The noise after a low-pass is correlated, so that the power of
 /// independent samples, half their number, would leave the best candidate alone. Chosen on
 /// synthetic records: from 4 to a tenth of the samples the order of doubt hardly changes.
 const POWER: f64 = 4.0;
@@ -55,7 +55,7 @@ impl Candidate {
 
 impl Candidates {
     /// Fits every pair of lines to `values`, the samples from `first_sample` on, in rows
-    /// of `beta`; what remains behind the last whole row is dropped.
+    /// of `beta`; what remains after the last whole row is dropped.
     ///
     /// Time and memory grow with the number of samples and candidates, not their product.
     pub fn search(values: &[f64], first_sample: usize, beta: usize) -> Self {

@@ -13,8 +13,8 @@ pub struct MethodSpec {
     pub source: Option<&'static str>,
     /// What it does, in a line of help.
     pub summary: &'static str,
-    /// Whether it finds the response behind the delays, over all trials of a joint, and gives each delay
-    /// an interval. The decisions of others depend on no sample behind the next step, and come in steps
+    /// Whether it finds the response after the delays, over all trials of a joint, and gives each delay
+    /// an interval. The decisions of others depend on no sample after the next step, and come in steps
     /// of β.
     pub has_intervals: bool,
 }
@@ -53,7 +53,7 @@ impl Method {
         ..ONSET
     });
 
-    /// The onset model of a speed that changes at once, or behind a lag or an oscillation.
+    /// The onset model of a speed that changes at once, or after a lag or an oscillation.
     pub const LAG_AWARE: Self = Self(&MethodSpec {
         id: "lag-aware",
         fits: "two lines that meet, seen through a lag or an oscillation",

@@ -31,7 +31,7 @@ pub(crate) fn input_steps(input: &[f64], min_step: f64) -> Vec<InputStep> {
     steps_beyond(min_step, input, 0)
 }
 
-/// The steps of more than `min_step`; the level of each shows `reach` samples behind its edge.
+/// The steps of more than `min_step`; the level of each shows `reach` samples after its edge.
 fn steps_beyond(min_step: f64, input: &[f64], reach: usize) -> Vec<InputStep> {
     let Some(&first) = input.first() else {
         return Vec::new();
@@ -80,7 +80,7 @@ pub(super) fn trial_steps(trial: &Trial, settings: &Settings) -> Vec<InputStep> 
     }
     let levels = Levels::of(input, trial.period().seconds());
     let steps = steps_beyond(levels.tolerance, &levels.values, levels.reach);
-    // Levels that are exact were commanded, and behind no filter.
+    // Levels that are exact were commanded, and after no filter.
     let tail = if levels.tolerance > 0.0 { longest } else { 0 };
     with_edges_merged(steps, longest, tail)
 }
@@ -96,7 +96,7 @@ fn with_edges_merged(steps: Vec<InputStep>, longest: usize, tail: usize) -> Vec<
     /// A level that is part of an edge lasts at most so many samples: one of a slower clock,
     /// seen at twice its rate.
     const LASTS: usize = 2;
-    /// Parts of an edge that its tail goes on by at most: an input that was measured behind a filter
+    /// Parts of an edge that its tail goes on by at most: an input that was measured after a filter
     /// comes to its level ever more slowly.
     const TAIL: f64 = 0.25;
     let rises = |step: &InputStep| step.after > step.before;

@@ -1,7 +1,7 @@
-//! Outputs that come to rest where their input says: the position of a servo behind the limit of
+//! Outputs that come to rest where their input says: the position of a servo after the limit of
 //! its rate.
 //!
-//! Behind its dead time such an output goes to `y = a + b·u` and stays there. Its arrival bends it
+//! After its dead time such an output goes to `y = a + b·u` and stays there. Its arrival bends it
 //! as much as its departure does, and is no reaction to a step of the input. What says anything of a step
 //! lies between the arrival of the step before and its own.
 

@@ -103,7 +103,7 @@ impl<'a> LeftOut<'a> {
     }
 
     /// Free runs over the parts: each piece by itself, or, where `trend` is what is off each time in
-    /// the same way, or there are no stops, pieces joined with those behind them, in several orders.
+    /// the same way, or there are no stops, pieces joined with those after them, in several orders.
     ///
     /// With a trend the model's stops are left out, as they would remove errors.
     pub(super) fn runs(&self, trend: Option<&Trend>) -> Vec<Run> {

@@ -155,10 +155,10 @@ impl Logged {
     }
 }
 
-/// Of the positive `levels`, the highest, and the one behind `edge` that is nearest to the middle
+/// Of the positive `levels`, the highest, and the one beyond `edge` that is nearest to the middle
 /// between.
 fn side(levels: impl Iterator<Item = f64>, edge: f64) -> Vec<f64> {
-    /// As parts of the highest level: how far a level that surely moves the joint lies behind the
+    /// As parts of the highest level: how far a level that surely moves the joint lies beyond the
     /// edge, and how far from the highest one that is another.
     const BEHIND: f64 = 0.1;
     const APART: f64 = 0.15;

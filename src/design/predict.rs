@@ -171,7 +171,7 @@ fn measured_margin(free_run: &FreeRunError, output: &[f64], period_s: f64) -> Ve
 }
 
 impl Prediction {
-    /// This one, and that of the trial behind it.
+    /// This one, and that of the trial after it.
     #[must_use]
     pub(super) fn followed_by(mut self, next: Self) -> Self {
         self.output.extend(next.output);

@@ -43,7 +43,7 @@ pub fn random_steps(
     Schedule::new(rig.period, drawing.holds)
 }
 
-/// A trial that is drawn behind others.
+/// A trial that is drawn after others.
 #[derive(Clone, Copy)]
 pub(super) struct Behind<'a> {
     /// The trials before, whose transitions count.
@@ -127,7 +127,7 @@ impl<'a> Drawing<'a> {
         Self { steps, rig, model, random, samples, holds, before, is_brought_back, settling_s }
     }
 
-    /// This draw behind other trials.
+    /// This draw after other trials.
     fn behind(mut self, Behind { before, draw, is_brought_back }: Behind<'_>) -> Self {
         /// Joints of one experiment, at most: streams of random numbers of another draw lie apart.
         const JOINTS: u64 = 1 << 32;

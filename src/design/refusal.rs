@@ -7,7 +7,7 @@ use crate::numerics::{decimal_exponent, to_multiple};
 #[non_exhaustive]
 pub enum PlanError {
     /// Fewer than two levels.
-    #[error("fewer than two are left of the levels; an input needs two different ones or more")]
+    #[error("fewer than two levels are left; an input needs at least two different ones")]
     TooFewLevels,
     /// The ends of the dead band are not known.
     #[error(
@@ -18,7 +18,7 @@ pub enum PlanError {
         /// Whether there is a model.
         has_model: bool,
     },
-    /// No hold fits behind the rest with which an input begins.
+    /// No hold fits after the rest with which an input begins.
     #[error("an input of {duration_s} s is too short for a rest and a hold of {hold_s} s after it")]
     HoldTooLong {
         /// The shortest hold, seconds.

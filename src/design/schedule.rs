@@ -17,17 +17,17 @@ pub struct Hold {
 pub struct Schedule {
     period: SamplePeriod,
     holds: Vec<Hold>,
-    /// The first hold of each trial behind the first.
+    /// The first hold of each trial after the first.
     borders: Vec<usize>,
 }
 
 impl Schedule {
-    /// `holds` one behind the other, in one trial.
+    /// `holds` one after the other, in one trial.
     pub fn new(period: SamplePeriod, holds: Vec<Hold>) -> Self {
         Self { period, holds, borders: Vec::new() }
     }
 
-    /// This schedule with another trial behind it.
+    /// This schedule with another trial after it.
     #[must_use]
     pub(super) fn followed_by(mut self, trial: &Self) -> Self {
         let behind = trial.borders.iter().map(|border| self.holds.len() + border);

@@ -18,7 +18,7 @@ pub(super) struct Stops {
 const NEAR: f64 = 0.02;
 
 /// A joint that moves by less than this part of what it went through within the time before, and
-/// within that behind, stands.
+/// within that after, stands.
 const STANDS: f64 = 0.01;
 const TIME_S: f64 = 0.25;
 
@@ -93,7 +93,7 @@ impl Stops {
         let near = samples_of(TIME_S, trial);
         let last = trial.len().saturating_sub(1);
         let at = |sample: usize| trial.output().get(sample.min(last)).copied().unwrap_or(0.0);
-        // Where it turns it is as far off before as behind.
+        // Where it turns it is as far off before as after.
         let moved = |sample: usize| {
             let (before, behind) = (at(sample.saturating_sub(near)), at(sample + near));
             (at(sample) - before).abs().max((behind - at(sample)).abs())

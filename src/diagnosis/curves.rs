@@ -1,7 +1,7 @@
 //! Curves without a law: how the measured speed depends on the delayed input, the angle and the time,
 //! beside what the model makes of the same.
 //!
-//! Behind the delay of the model the input is held; of each hold the settled part is cut into pieces,
+//! After the delay of the model the input is held; of each hold the settled part is cut into pieces,
 //! each with the slope `v` of the measured output. They are described by a product of free curves,
 //!
 //! ```text
@@ -142,7 +142,7 @@ fn pieces(record: &FitRecord<'_>, model: &JointModel, simulated: &[Simulated]) -
     trials.flat_map(of_trial).collect()
 }
 
-/// The pieces of one hold, which lasts over `span`, behind the part in which the joint may settle.
+/// The pieces of one hold, which lasts over `span`, after the part in which the joint may settle.
 fn of_hold(
     trial: &Trial,
     simulated: &Simulated,

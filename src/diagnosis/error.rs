@@ -51,7 +51,7 @@ impl ErrorFigures {
             let mean = measured.iter().sum::<f64>() / measured.len().max(1) as f64;
             spread += measured.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>();
         }
-        // Of an output that stands still nothing but rounding is left behind its mean.
+        // Of an output that stands still nothing but rounding is left without its mean.
         let stands_still =
             is_rounding(&record.joint().trials, (spread / samples.max(1) as f64).sqrt());
         let fit_percent = if stands_still {

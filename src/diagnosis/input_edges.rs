@@ -5,7 +5,7 @@
 //! `ε` later than that, moves the output of an integrating joint by what its speed changes by:
 //!
 //! ```text
-//! r(t) = −ε_i (v(t) − v_i)     behind its arrival, v_i being the speed before it
+//! r(t) = −ε_i (v(t) − v_i)     after its arrival, v_i being the speed before it
 //! ```
 //!
 //! and keeps it moved until the simulation restarts. The `ε` of each window are found by least
@@ -128,7 +128,7 @@ fn subtract_edges(
 /// By how much the output moves for each second that the step which arrives with sample `at` is
 /// later, less its mean in the window, as the residual is; another one arrives with sample `end`.
 fn moved(velocity: &[f64], at: usize, end: usize) -> Vec<f64> {
-    // The speed until sample `at` is that before the step, and of a part of an interval that behind.
+    // The speed until sample `at` is that before the step, and of a part of an interval that after.
     let before = velocity[at.saturating_sub(2)];
     let at_sample = |k: usize| if k < at { 0.0 } else { before - velocity[k.min(end) - 1] };
     let mut shape: Vec<f64> = (0..velocity.len()).map(at_sample).collect();

@@ -7,7 +7,7 @@
 //!
 //! 1. Shapes: velocities that a missing effect might add (of the level of the input, the
 //!    direction, the angle, the time, their products with the speed), integrated; and
-//!    transients behind each change of the input.
+//!    transients after each change of the input.
 //! 2. Noise: an autoregression is fitted to what the residual keeps after all shapes are
 //!    subtracted, so that a misfit is not mistaken for noise, and another to the residual as
 //!    it is, since the shapes also take some slow noise with them, though only so much. Orders

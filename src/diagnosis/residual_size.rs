@@ -150,7 +150,7 @@ mod tests {
         assert!(size(spiked) < 1.1 && size(burst) > 9.0);
     }
 
-    /// Noise of first order in training, and so many times it behind.
+    /// Noise of first order in training, and so many times it in validation.
     fn size(rho: f64, seed: u64, times: f64) -> ResidualSize {
         let values = noise(seed, rho, 12_000);
         let rmse = |values: &[f64]| {

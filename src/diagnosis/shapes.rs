@@ -16,7 +16,7 @@ const TIME_PARTS: usize = 8;
 /// Knots on the angle's range at which a sensor's error gets a shape of its own.
 const ANGLE_KNOTS: usize = 24;
 
-/// Time constants of transients behind a step, in seconds.
+/// Time constants of transients after a step, in seconds.
 const TRANSIENTS_S: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 
 /// The columns of [`super::lack_of_fit`]: for each shape, window and sample its value.

@@ -159,7 +159,7 @@ fn check_spec(spec: &Spec) -> Result<(), Fault> {
         return fault(part, text, "is empty");
     }
     let names = spec.parameters.iter().map(|parameter| parameter.name);
-    // Behind it may stand the condition in which it acts, or the signal that it depends on.
+    // After it may stand the condition in which it acts, or the signal that it depends on.
     let id = parts_of(spec.id).map_or(spec.id, |(effect, _)| effect);
     if let Some(name) = names.chain([id]).find(|name| !is_snake_case(name)) {
         return fault("name", name, "is not in snake case");

@@ -13,7 +13,7 @@
 //! Its output has a corner at each end of the band. An input held at few levels shows
 //! the ends only through the speeds at the levels outside.
 //!
-//! A limit of the flow lies behind the overlap, one of the command before it. The two differ where
+//! A limit of the flow acts after the overlap, one of the command before it. The two differ where
 //! the band is not symmetric, so that a search tries both.
 //!
 //! # References

@@ -11,7 +11,7 @@ pub struct Definition {
     pub summary: Option<String>,
     /// Where it acts.
     pub stage: Stage,
-    /// The signal behind it, as a function of signals, parameters and states.
+    /// The signal after it, as a function of signals, parameters and states.
     pub expression: String,
     /// What it remembers from moment to moment.
     pub states: Vec<OwnState>,

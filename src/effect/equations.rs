@@ -9,7 +9,7 @@
 /// A line gives a value to a number of the memory or to a name of its own, which the lines
 /// below it may use; a name of its own is given a value once. Besides the signals of its
 /// stage (those of an [expression](super::expression)) and its parameters a line may use the
-/// memory, as it is then. The last line gives a value to `out`: the signal behind the effect,
+/// memory, as it is then. The last line gives a value to `out`: the signal after the effect,
 /// or in the transport stage the seconds by which a change of the input arrives later.
 ///
 /// # Examples
@@ -30,7 +30,7 @@ pub struct Equations {
     pub settle: &'static str,
     /// What [`Effect::step`](super::Effect::step) does, or
     /// [`Effect::extra_delay_s`](super::Effect::extra_delay_s) in the transport stage: texts one
-    /// behind the other.
+    /// after the other.
     pub step: &'static [&'static str],
 }
 

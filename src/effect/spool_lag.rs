@@ -4,13 +4,13 @@
 //! time_constant · x' + x = in
 //! ```
 //!
-//! The equation is that of [`ActuatorLag`], before the curve of the valve instead of behind it:
+//! The equation is that of [`ActuatorLag`], before the curve of the valve instead of after it:
 //! here the spool has to leave the overlap before the joint moves, so that a lag adds to the
 //! delay of small openings more than to that of large ones, and a joint stops as soon as the spool
 //! is back in the overlap. Without an overlap, a limit or another effect on the input the two are
 //! the same, and the record shows which it is only where there is one.
 //!
-//! What is behind sees the mean opening over an interval, and not that it passes a corner of the
+//! What is after sees the mean opening over an interval, and not that it passes a corner of the
 //! valve's curve within it: the angle is off by up to `gain · x' · dt²/8` for each passage.
 //!
 //! # References
@@ -83,7 +83,7 @@ mod tests {
         let ln2 = std::f64::consts::LN_2;
         let expected = 10.0 * (2.0 - 0.2 * ln2 - 0.2) + 10.0 * 0.2 * (1.0 - ln2);
         assert!((way(&SpoolLag) - expected).abs() < 2e-3, "{} {expected}", way(&SpoolLag));
-        // A lag behind the overlap loses as much at the beginning as it gains at the end.
+        // A lag after the overlap loses as much at the beginning as it gains at the end.
         assert!((way(&ActuatorLag) - 20.0).abs() < 1e-6);
     }
 }

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The equation is that of [`RateLimit`], before the overlap and the limits of the valve instead of
-//! behind them: the spool crosses the overlap before the joint moves, so that the delay grows with
+//! after them: the spool crosses the overlap before the joint moves, so that the delay grows with
 //! the overlap over the rate, and a joint stops as soon as the spool is back in the overlap. Without
 //! an effect of the valve the two are the same.
 //!
@@ -60,7 +60,7 @@ mod tests {
     #[test]
     fn the_spool_crosses_the_overlap_first() {
         // 4 V at 10 V/s across an overlap of 1 V: from 0.1 s on the opening grows by 10 V/s to 3 V;
-        // back at 0 V it is closed 0.3 s behind the step.
+        // back at 0 V it is closed 0.3 s after the step.
         let overlap = Component::new(&super::super::DeadBand, vec![(-1.0).into(), 1.0.into()]);
         let slew = Component::new(&SpoolRateLimit, vec![0.1.into(), 0.0.into()]);
         let model = JointModel::integrator(10.0, 0.0).with(overlap.unwrap()).with(slew.unwrap());

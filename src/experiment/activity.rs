@@ -158,7 +158,7 @@ fn whole(label: &str) -> &str {
     label.split_once('#').map_or(label, |(whole, _)| whole)
 }
 
-/// The input of `trial` at a time, held from its last sample; zero before and behind it.
+/// The input of `trial` at a time, held from its last sample; zero before and after it.
 fn held(trial: &Trial, time_s: f64) -> f64 {
     /// Part of a period by which equal times may differ in rounding.
     const ROUNDING: f64 = 1e-3;

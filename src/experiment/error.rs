@@ -135,7 +135,7 @@ impl ReadError {
         Self { text, ..self }
     }
 
-    /// Says `more` behind all else.
+    /// Says `more` after all else.
     pub(super) fn with(self, more: &str) -> Self {
         Self { text: self.text + more, ..self }
     }

@@ -100,7 +100,7 @@ impl Budget {
         }
         let [needed, limit] = [needed, self.limit].map(in_words);
         let text = format!(
-            "reading it would need {needed} of memory, and {limit} are allowed; check that the \
+            "reading it would need {needed} of memory, but {limit} are allowed; check that the \
              file is a log"
         );
         Err(ReadError::new(ReadErrorKind::TooLarge, text))

@@ -63,7 +63,7 @@ pub(crate) fn nearest_name<'a>(
     best.filter(|(similarity, _)| *similarity > SIMILAR).map(|(_, name)| name)
 }
 
-/// ` (did you mean `…`?)`, behind what was not found; nothing where no name is near.
+/// ` (did you mean `…`?)`, after what was not found; nothing where no name is near.
 pub(crate) fn did_you_mean(nearest: Option<&str>) -> String {
     nearest.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
 }

@@ -9,7 +9,7 @@ const LATE_S: f64 = 1e4;
 /// What the log's clock shows where its times are counted from, in seconds; `first_s` is the time of
 /// its first row.
 fn origin_s(first_s: f64) -> f64 {
-    // Whole seconds, so that the digits behind the point are those of the log.
+    // Whole seconds, so that the digits after the point are those of the log.
     if first_s.is_finite() && first_s.abs() >= LATE_S { first_s.floor() } else { 0.0 }
 }
 

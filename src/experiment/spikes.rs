@@ -1,7 +1,7 @@
 //! Isolated spikes of the sensor, from the record alone.
 //!
 //! A sample, or two in a row, is a spike where it lies beyond all of the three samples before
-//! and the three behind it, further than these lie from one another and further than the
+//! and the three after it, further than these lie from one another and further than the
 //! sensor's noise reaches. It gets no weight in a fit, and a line in its place where delays are
 //! looked for. Whatever a model makes of a record, the samples
 //! that count are the same: costs of models are sums of the same squares, and compare.

@@ -138,7 +138,7 @@ fn named(column: usize, header: &Header) -> String {
     }
 }
 
-/// Whether a name is one of a time, also with a number behind it or that of a joint before it; or of a time and
+/// Whether a name is one of a time, also with a number after it or that of a joint before it; or of a time and
 /// of something else, as of a signal that has a clock of its own: `time_y`, `stamp_out`, `Time(1)`; `t_y` beside
 /// a signal `y`, as `t_oil` is a temperature.
 fn is_like_a_time(head: &Head, header: &Header) -> bool {
@@ -212,7 +212,7 @@ mod tests {
         assert_eq!(
             note(&["", "time_s", "u", "y", ""]),
             None,
-            "an index, and a mark behind the row"
+            "an index, and a separator after the row"
         );
         assert_eq!(note(&["T", "u", "y"]).as_deref(), Some("the times are those in `T`"));
     }

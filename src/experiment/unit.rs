@@ -110,7 +110,7 @@ pub(super) fn seconds_of(unit: &str) -> Option<f64> {
     TIMES.iter().find(|(names, ..)| is_in(names, unit)).map(|(_, _, seconds)| *seconds)
 }
 
-/// Name and unit of a header: a unit in square brackets is any text, one in round brackets or behind a
+/// Name and unit of a header: a unit in square brackets is any text, one in round brackets or after a
 /// slash must be known.
 pub(super) fn parted(text: &str) -> (&str, Option<String>) {
     let split = |open: char, close: char| {

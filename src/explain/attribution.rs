@@ -178,7 +178,7 @@ impl Grown<'_, '_> {
     }
 
     /// The exchanges that lead to a simpler model that leaves as little, and the models: one, or one after a lag or a rate limit was put to the other side of the valve. Where the model limits the
-    /// rate behind the valve and the plant before it, a gain by direction looks like a weight.
+    /// rate after the valve and the plant before it, a gain by direction looks like a weight.
     pub(super) fn simplified(
         &self,
         exchanged: &[(Exchange, FitOutcome)],

@@ -84,7 +84,7 @@ impl<'a, 'r> Judge<'a, 'r> {
     }
 
     /// Judges all of a ranking, of which the first that nothing speaks against is added and those
-    /// behind it are not; the place of the one that is added.
+    /// after it are not; the place of the one that is added.
     pub(super) fn judge_all(&self, ranking: &mut [Candidate]) -> Option<usize> {
         for candidate in &mut *ranking {
             candidate.judgement = self.judge(candidate);

@@ -79,7 +79,7 @@ fn shows_condition(record: &FitRecord<'_>, model: &JointModel, of: WithinTrials<
 
 /// Whether it is time to look for `effect`: what it refines is in the model, or is not to be
 /// looked for; or it needs no more parameters, and the model has a curve of the valve: a lag before that
-/// curve is another effect than one behind it.
+/// curve is another effect than one after it.
 pub(super) fn is_due(model: &JointModel, effect: &Spec, options: &Options) -> bool {
     let is_sought = |id| options.effects.iter().any(|effect| effect.spec().id == id);
     let has_curve = || has(model, |spec| spec.stage == Stage::Input && spec.is_steady);

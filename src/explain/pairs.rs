@@ -1,6 +1,6 @@
 //! Pairs of effects, for where no single one shows.
 //!
-//! An effect may only show once another one is there: a dead band behind a gain that was
+//! An effect may only show once another one is there: a dead band masked by a gain that was
 //! fitted without it, or two that cancel each other. Scores on a part of the record say which
 //! pairs are worth a survey, and the best few of these are fitted.
 

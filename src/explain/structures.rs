@@ -9,7 +9,7 @@
 //! and its largest flow, the areas of the cylinder, its ends; then the linkage, and the largest flow of
 //! each direction. Elsewhere it starts so where one effect after the other does not come near the noise:
 //! from the valve with its overlap, limit and directions; the same with a spool that slews or lags before
-//! them, or sticks; or with the linkage and weight of an arm behind it.
+//! them, or sticks; or with the linkage and weight of an arm after it.
 //!
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (valves and cylinders); Jelali, M., and Kroll, A.,

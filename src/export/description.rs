@@ -45,7 +45,7 @@ pub(super) struct Parameter {
 /// An effect of the model.
 #[derive(Clone, Debug)]
 pub(super) struct Exported {
-    /// Its id; where the model has it before, with something behind it.
+    /// Its id; where the model has it before, with something after it.
     pub(super) id: String,
     pub(super) summary: String,
     pub(super) equation: String,

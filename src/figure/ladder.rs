@@ -20,7 +20,7 @@ pub(crate) fn value(rung: &Rung, unit: Option<&str>) -> String {
     rung.error.map_or_else(|| "diverges".to_owned(), |error| measure(error, unit))
 }
 
-/// A row for each rung, and the `noise` of the sensor as a line; behind the longest bar there is so much
+/// A row for each rung, and the `noise` of the sensor as a line; beyond the longest bar there is so much
 /// `room` for its value, in its own length. Programs find the bars by `part`.
 pub(crate) fn panel(
     (name, part): (String, &'static str),

@@ -27,13 +27,13 @@ pub(crate) enum Role {
     Noise,
     /// A part of the record that deserves a look.
     Attention,
-    /// The revisions of a model behind the first one, which is [`Self::Model`].
+    /// The revisions of a model after the first one, which is [`Self::Model`].
     Revision(Revision),
     /// A colour of its own, which a recording has beside these: red, green, blue.
     Own(u8, u8, u8),
 }
 
-/// One of the colours of revisions behind the first, counted from 1 to [`Revision::COUNT`].
+/// One of the colours of revisions after the first, counted from 1 to [`Revision::COUNT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Revision(u8);
 

@@ -77,7 +77,7 @@ fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
 fn trial_starts(trials: &[Trial]) -> Vec<f64> {
     let times = || trials.iter().map(|trial| trial.time_s(1));
     let ends = trials.iter().map(|trial| trial.time_s(1) + length_s(trial));
-    // Times are rounded: an end may seem to lie a little behind the next start.
+    // Times are rounded: an end may seem to lie a little after the next start.
     let follow = ends
         .zip(trials.iter().skip(1))
         .all(|(end, next)| next.time_s(1) > end - 0.5 * next.period().seconds());

@@ -78,7 +78,7 @@ impl Follower {
     }
 }
 
-/// Samples of a time constant, and of a dead time, that hardly show behind a limited rate.
+/// Samples of a time constant, and of a dead time, that hardly show after a limited rate.
 const SAMPLES: f64 = 3.0;
 
 /// The rate of an output that mostly moves at its limit or rests, output units per second.

@@ -35,7 +35,7 @@ impl Problem<'_, '_> {
         self.here.get_or_init(|| self.record.evaluate_residuals(&self.model_now()))
     }
 
-    /// The residuals of the training windows, one behind the other; 0 at spikes.
+    /// The residuals of the training windows, one after the other; 0 at spikes.
     pub(super) fn residuals(&self) -> DVector<f64> {
         self.record.training(&self.here().residuals)
     }

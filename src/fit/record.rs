@@ -308,7 +308,7 @@ impl<'a> FitRecord<'a> {
         Self { windows: windows.collect(), ..self.clone() }
     }
 
-    /// This record without what lies behind the last training window of a trial, which is not
+    /// This record without what lies after the last training window of a trial, which is not
     /// simulated.
     pub(crate) fn for_training(&self) -> Self {
         let is_followed = |window: &&Window| {
@@ -329,7 +329,7 @@ impl<'a> FitRecord<'a> {
         self.part(Part::Training).map(|window| window.end - window.start).sum()
     }
 
-    /// The values of the training windows, one behind the other, times their weights.
+    /// The values of the training windows, one after the other, times their weights.
     pub(super) fn training(&self, values: &[Vec<f64>]) -> DVector<f64> {
         let mut all = Vec::with_capacity(self.training_samples());
         for window in self.part(Part::Training) {

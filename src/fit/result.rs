@@ -109,8 +109,7 @@ impl fmt::Display for Termination {
         f.write_str(match self {
             Self::Converged => "converged",
             Self::NoDescent => {
-                "stopped: the error is not smooth there, and no step lowers it; other initial \
-                 values may lead to a smaller one"
+                "stopped: no step lowers the error, which is not smooth there; other initial values may give a smaller error"
             }
             Self::NothingToFit => "nothing to fit",
             Self::OutOfPatience => "stopped after too many simulations",

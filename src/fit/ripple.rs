@@ -1,7 +1,7 @@
 //! The period, in output units, at which the speed of a joint ripples with its angle.
 //!
 //! While the input is held the joint moves along a line, and a gain `1 + a sin(2π y/p + φ)` adds to
-//! it about `−(a p/2π) cos(2π y/p + φ)`. Of each hold the part behind its start, less its own line,
+//! it about `−(a p/2π) cos(2π y/p + φ)`. Of each hold the part after its start, less its own line,
 //! is regressed on a cosine and a sine of the angle, all holds together, for many periods (Lomb,
 //! N. R., "Least-squares frequency analysis of unequally spaced data", Astrophysics and Space Science
 //! 39, 1976); the period that leaves least is where a fit of a ripple starts. Whether there is one

@@ -163,7 +163,7 @@ impl Run<'_> {
         sample as f64 * self.trial.period().seconds()
     }
 
-    /// By how much the start behind each restart is wrong: `Σ w g r / Σ w g²` over the samples of its
+    /// By how much the start after each restart is wrong: `Σ w g r / Σ w g²` over the samples of its
     /// windows that are for training, or of all where none is, with the slope `g` of the output to it
     /// (1 where there is none).
     fn shifts(&self, simulated: &[f64], slope: Option<&[f64]>) -> Vec<f64> {

@@ -46,7 +46,7 @@ pub(super) fn measured(trial: &Trial, sample: usize) -> Option<f64> {
 }
 
 impl Speed {
-    /// From the best parabola around `sample`, or behind the start of the trial.
+    /// From the best parabola around `sample`, or after the start of the trial.
     ///
     /// With `x` from the middle, and polynomials that are orthogonal on the grid, it is
     /// `a + b x + c (x² − mean x²)`, with the slope `b + 2 c x`.

@@ -36,7 +36,7 @@ fn with_rests(trial: &Trial, rests: &[usize], neutral: f64) -> Commands {
     if rests.contains(&0) { commands.begun_at(neutral) } else { commands }
 }
 
-/// The first sample of the trial, and those behind gaps, at which the joint rests though the input is
+/// The first sample of the trial, and those after gaps, at which the joint rests though the input is
 /// not `neutral` there.
 fn rests(trial: &Trial, neutral: f64) -> Vec<usize> {
     let gaps = trial.unlogged().iter().map(|gap| gap.end);

@@ -74,7 +74,7 @@ impl Split {
         if by_trial { Self::Trials } else { Self::Blocks }
     }
 
-    /// The stretches of `trial`, which has this place among the labels: the index behind the last
+    /// The stretches of `trial`, which has this place among the labels: the index after the last
     /// sample of each, and what it is for.
     fn stretches(self, trial: &Trial, place: usize) -> Vec<(usize, Part)> {
         /// The share for training of a trial too short for blocks.
@@ -141,7 +141,7 @@ pub struct Window {
     pub trial: usize,
     /// Index of its first sample.
     pub start: usize,
-    /// Index behind its last sample.
+    /// Index after its last sample.
     pub end: usize,
     /// What it is for.
     pub part: Part,

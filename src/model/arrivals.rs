@@ -74,7 +74,7 @@ impl Commands {
     }
 
     /// These changes where no more than one is within `block_s` seconds, counted from the first sample; of
-    /// several the mean level over the block acts from its start, and the last one behind it.
+    /// several the mean level over the block acts from its start, and the last one after it.
     #[must_use]
     pub(crate) fn in_blocks(&self, block_s: f64) -> Self {
         /// Part of a block by which times are rounded, at most.

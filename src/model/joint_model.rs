@@ -115,7 +115,7 @@ impl JointModel {
         Self { gain: gain.into(), delay: delay.into(), components: Vec::new() }
     }
 
-    /// This model with another effect behind those it has.
+    /// This model with another effect after those it has.
     ///
     /// Effects that it absorbs (see [`Spec::absorbs`](crate::effect::Spec::absorbs)) go,
     /// and leave it their values for parameters of the same name.
@@ -130,7 +130,7 @@ impl JointModel {
         model
     }
 
-    /// This model with one more effect, [added](Self::with) behind those of its stage, and also before
+    /// This model with one more effect, [added](Self::with) after those of its stage, and also before
     /// those that it may be [upstream of](crate::effect::Spec::upstream_of), where it has any.
     pub(crate) fn placements(&self, component: &Component) -> Vec<Self> {
         let behind = self.with(component.clone());

@@ -37,9 +37,9 @@ pub struct Simulated {
 /// - 5e-5: effects of the load that depend on angle or time, by the midpoint rule; an oil
 ///   column, whose period is that of the middle of each interval;
 /// - 1e-4: two effects of the dynamics, of which the second sees the mean of the first over
-///   each interval; the load or backlash behind a dynamic;
-/// - 5e-4: an end stop behind a dynamic, which the joint leaves at a sample; a corner of the
-///   valve's curve behind a lag of the spool, which passes it within an interval.
+///   each interval; the load or backlash after a dynamic;
+/// - 5e-4: an end stop after a dynamic, which the joint leaves at a sample; a corner of the
+///   valve's curve after a lag of the spool, which passes it within an interval.
 ///
 /// The last three fall with the square of the period.
 pub fn simulate(

@@ -14,7 +14,7 @@ const UNKNOWN_DELAY_S: f64 = 0.1;
 
 /// Plain integrators for `joint`: one gain, and delays from short to long.
 ///
-/// The gain is the regression of the output's slope behind each accepted step on the
+/// The gain is the regression of the output's slope after each accepted step on the
 /// input there, `Σ u·v / Σ u²`; the delays are the quartiles of the accepted ones.
 /// Without an accepted step they come from the whole record, as for an input that changes
 /// all the time.
@@ -81,7 +81,7 @@ fn between_samples(joint: &Joint, estimates: &[&TrialEstimate]) -> Option<Vec<Tr
     (delays(finer.iter()) >= delays(estimates.iter().copied())).then_some(finer)
 }
 
-/// The accepted steps, and the regression of the speed behind them on the input from `neutral` on.
+/// The accepted steps, and the regression of the speed after them on the input from `neutral` on.
 fn accepted(
     joint: &Joint,
     estimates: &[&TrialEstimate],

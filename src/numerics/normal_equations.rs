@@ -14,7 +14,7 @@ pub(crate) struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// Of `columns` of `length` samples each, one behind the other.
+    /// Of `columns` of `length` samples each, one after the other.
     pub(crate) fn of(columns: &[f64], length: usize) -> Self {
         let columns: Vec<&[f64]> = columns.chunks_exact(length.max(1)).collect();
         let size = columns.len();
@@ -54,7 +54,7 @@ impl NormalEquations {
         self.squares.get(column).is_some_and(stands)
     }
 
-    /// Eliminates `column` from all behind it: `A_rs −= A_cr A_cs / A_cc`.
+    /// Eliminates `column` from all after it: `A_rs −= A_cr A_cs / A_cc`.
     pub(crate) fn eliminate(&mut self, column: usize) {
         if !self.stands_alone(column) {
             return;

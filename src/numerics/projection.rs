@@ -12,12 +12,12 @@ use super::moments::{dot, with_each};
 pub(crate) struct Basis {
     /// Samples of a column.
     length: usize,
-    /// One column behind the other.
+    /// One column after the other.
     columns: Vec<f64>,
 }
 
 impl Basis {
-    /// Of `columns` of `length` samples each, one behind the other. A column whose distance
+    /// Of `columns` of `length` samples each, one after the other. A column whose distance
     /// from the span of those before it is not above `tolerance` of its own length is left out.
     pub(crate) fn of(columns: &[f64], length: usize, tolerance: f64) -> Self {
         let mut basis = Self { length, columns: Vec::with_capacity(columns.len()) };

@@ -12,7 +12,7 @@ pub(crate) fn to_multiple(value: f64, exponent: i32) -> f64 {
     to_multiple_by(value, exponent, f64::round)
 }
 
-/// `value` with so many digits behind the point.
+/// `value` with so many digits after the point.
 pub(crate) fn to_decimals(value: f64, decimals: i32) -> f64 {
     to_multiple(value, -decimals)
 }
@@ -27,7 +27,7 @@ pub(crate) fn to_digits(value: f64, digits: i32) -> f64 {
     to_digits_by(value, digits, f64::round)
 }
 
-/// `value` with so many significant digits, where `round` says what becomes of what is behind
+/// `value` with so many significant digits, where `round` says what becomes of what is after
 /// them: [`f64::ceil`] gives no number below `value`.
 pub(crate) fn to_digits_by(value: f64, digits: i32, round: impl Fn(f64) -> f64) -> f64 {
     if value == 0.0 || !value.is_finite() {

@@ -123,7 +123,7 @@ fn first_sample(layout: &JointLayout<'_>) -> Option<Moment> {
 }
 
 /// Shows the most different or most doubtful decision where the viewer opens: on the timeline of
-/// decisions before the first step, with its candidates behind it; on that of revisions; and at the
+/// decisions before the first step, with its candidates after it; on that of revisions; and at the
 /// `first_sample` where it opens on `time`.
 fn open_on_the_first(
     chunks: &mut Chunks,

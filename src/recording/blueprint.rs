@@ -147,7 +147,7 @@ impl Page {
         Self::Container { kind: ContainerKind::Vertical, name: name.into(), pages }
     }
 
-    /// Pages behind one another, of which the first one is open.
+    /// Pages in tabs, of which the first one is open.
     pub(super) fn tabs(name: impl Into<String>, pages: impl IntoIterator<Item = Self>) -> Self {
         let pages = pages.into_iter().map(|page| (1.0, page)).collect();
         Self::Container { kind: ContainerKind::Tabs, name: name.into(), pages }
@@ -171,7 +171,7 @@ impl Blueprint {
         application: &ApplicationId,
         id: &str,
     ) -> Result<Vec<LogMsg>, RecordError> {
-        /// Tabs that a screen has room for: behind more of them nobody finds the page on all.
+        /// Tabs that a screen has room for: after more of them nobody finds the page on all.
         const SEEN: usize = 10;
         let store = format!("{id}-views");
         let mut builder = Builder { id, chunks: Ids::of(&store).chunks(NAMESPACE), nodes: 0 };

@@ -37,7 +37,7 @@ pub enum RecordError {
         source: std::io::Error,
     },
     /// The viewer went away.
-    #[error("the viewer at {url} went away, and what was sent last may be lost")]
+    #[error("the connection to the viewer at {url} ended, and what was sent last may be lost")]
     Lost {
         /// Where it was.
         url: String,

@@ -30,7 +30,7 @@ const JOINTS: &str = "joints";
 pub(crate) struct Volume {
     /// Its name without folder.
     pub(crate) file: String,
-    /// How many joints are in it: those behind the joints of the files before it.
+    /// How many joints are in it: those after the joints of the files before it.
     pub(crate) joints: usize,
 }
 

@@ -40,7 +40,7 @@ impl<'c> Layers<'c> {
         Self { order: 100.0, ..self }
     }
 
-    /// These rows behind a copy of the last one, for which the index has a moment of its own.
+    /// These rows after a copy of the last one, for which the index has a moment of its own.
     pub(super) fn opening_on_last(self) -> Self {
         Self { opens_on_last: true, ..self }
     }

@@ -293,6 +293,6 @@ fn headline(judged: &ComparedJoint<'_>) -> String {
             format!("the model explains nothing of the motion; the error is {error}")
         }
         (_, Some(_)) => format!("{followed}the error is {error}"),
-        _ => "there is an error that is no noise".to_owned(),
+        _ => "there is an error beyond the noise".to_owned(),
     }
 }

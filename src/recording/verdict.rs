@@ -237,7 +237,7 @@ impl Facts<'_, '_> {
                 let by = if by.is_empty() { "a reviewer".to_owned() } else { by };
                 let note = if note.is_empty() { note } else { format!("\n> {note}\n") };
                 let program = self.program_headline().replacen("## ", "", 1);
-                // A heading of its own has no stop behind it.
+                // A heading of its own has no stop after it.
                 let program = program.replacen('\n', ".\n\n", 1);
                 let stop = if program.contains('\n') { "" } else { "." };
                 format!("## {said} (by {by})\n{note}\n**The program:** {program}{stop}\n")
@@ -376,8 +376,8 @@ impl Facts<'_, '_> {
             }
             // Of a delay between samples the end of its interval counts.
             Condition::BeforeInput => {
-                let of = if self.segment.decision.fine.is_some() { "at most " } else { "" };
-                (said(&|q| format!("q = {of}{q}")), needed("≥ p ="))
+                let sign = if self.segment.decision.fine.is_some() { "≤" } else { "=" };
+                (said(&|q| format!("q {sign} {q}")), needed("≥ p ="))
             }
             Condition::SlopeChange => (output("", "/sample"), needed("≥")),
             Condition::ShortHold => (said(&|hold| format!("{hold} samples")), needed("≥")),

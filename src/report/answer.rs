@@ -139,7 +139,7 @@ fn windows(found: &DeadTime) -> Option<String> {
     };
     let (count, all) = (known.len(), found.windows.len());
     Some(format!(
-        "window by window {least:.3} to {most:.3} s, known in {count} of {all} windows{differ}"
+        "in windows of the record {least:.3} to {most:.3} s, determined in {count} of {all}{differ}"
     ))
 }
 

@@ -21,7 +21,7 @@ pub(crate) fn columns_table(survey: &Survey, options: &[String], mended: &[Strin
     for (place, options) in options.iter().enumerate() {
         lines.push(format!("{}: {options}", if place == 0 { "as options" } else { "or" }));
     }
-    lines.extend(mended.iter().map(|what| format!("where it is read: {what}")));
+    lines.extend(mended.iter().map(|what| format!("on reading: {what}")));
     for line in lines {
         text += &line;
         text.push('\n');

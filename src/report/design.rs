@@ -120,7 +120,7 @@ pub(super) fn order(order: Order) -> &'static str {
     }
 }
 
-/// A column of a joint: its name, a value for each sample of the joint's input, and the value behind
+/// A column of a joint: its name, a value for each sample of the joint's input, and the value after
 /// the end of a trial, where others go on; not a number: an empty cell.
 type Column<'a> = (String, &'a DesignedJoint, Vec<f64>, f64);
 

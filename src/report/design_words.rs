@@ -52,13 +52,13 @@ fn headline(joint: &DesignedJoint) -> String {
     if let Some(Discrimination { ids: [one, other], design, .. }) = &joint.discrimination {
         if !design.explores.is_empty() {
             return format!(
-                "{name}: {duration} that explore, before an input distinguishes {one} from {other}: \
+                "{name}: an input of {duration} explores, before one distinguishes {one} from {other}: \
                  {levels}, each held for {hold}, {steps} steps."
             );
         }
         let order = order(design.order);
         return format!(
-            "{name}: {duration} distinguish {one} from {other}: {order} of {levels}, each held for \
+            "{name}: an input of {duration} distinguishes {one} from {other}: {order} of {levels}, each held for \
              {hold}, {steps} steps."
         );
     }

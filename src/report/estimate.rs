@@ -96,7 +96,7 @@ fn low_pass_text(settings: &Settings) -> String {
     )
 }
 
-/// The response of a joint behind its dead times in words, where the method fits one and onsets are
+/// The response of a joint after its dead times in words, where the method fits one and onsets are
 /// delays.
 pub(super) fn onset_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     let model = joint.onset_model().filter(|model| model.obstacle().is_none())?;
@@ -109,7 +109,7 @@ pub(super) fn onset_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     Some(format!("{}: {response}{agree}\n", joint.joint.name))
 }
 
-/// The response behind the dead times in words, with what it leaves over.
+/// The response after the dead times in words, with what it leaves over.
 pub(crate) fn onset_sentence(model: &OnsetModel) -> String {
     let parameters = model.parameters();
     let value = |name: &str| {
@@ -341,7 +341,7 @@ fn input_json(EstimatedJoint { estimate, .. }: EstimatedJoint<'_>) -> Value {
     joined([json!({ "kind": kind }), json!(estimate.motion)])
 }
 
-/// The response behind the dead times.
+/// The response after the dead times.
 fn onset_json(model: &OnsetModel) -> Value {
     json!({
         "shape": model.shape(),

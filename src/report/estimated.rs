@@ -38,7 +38,7 @@ impl<'a> EstimatedJoint<'a> {
         })
     }
 
-    /// The response behind its dead times, where the method fits one.
+    /// The response after its dead times, where the method fits one.
     pub fn onset_model(&self) -> Option<&OnsetModel> {
         self.estimate.estimated().find_map(|trial| trial.onset_model.as_deref())
     }

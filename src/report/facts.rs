@@ -61,7 +61,7 @@ pub(crate) enum Unit {
     /// A length of time in samples.
     Samples,
     Seconds,
-    /// The output's, with what stands behind it.
+    /// The output's, with what stands after it.
     Output(&'static str),
 }
 
@@ -150,7 +150,7 @@ impl<V: Copy> Fact<V> {
     }
 }
 
-/// The number of a sample: to two digits behind the point where it lies between two.
+/// The number of a sample: to two digits after the point where it lies between two.
 fn sample_text(value: &Value) -> String {
     match value.as_f64() {
         Some(between) if between.fract() != 0.0 => format!("{between:.2}"),

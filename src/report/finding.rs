@@ -10,7 +10,7 @@ use crate::model::Component;
 use crate::study::JointEstimate;
 use crate::wording::{measure, percent, rounded};
 
-/// A joint, the verdict on its model, and the race behind it.
+/// A joint, the verdict on its model, and the ranking it follows from.
 #[derive(Clone, Copy, Debug)]
 pub struct Finding<'a> {
     /// The model that the verdict is about.
@@ -209,7 +209,7 @@ impl Consequence<'_> {
         let shares: Vec<String> = doubtful.iter().map(share).collect();
         (!shares.is_empty()).then(|| {
             format!(
-                "Doubtful: {}. Each removes less than half of the squared error beyond the noise \
+                "Doubtful: {}. Such an effect removes less than half of the squared error beyond the noise \
                  that the model has without it, so it may only imitate an effect outside the \
                  catalogue.",
                 shares.join(", ")

@@ -58,7 +58,7 @@ impl FolderReport {
             .flat_map(|log| array(&log.document, "joints").map(move |joint| (log, joint)))
     }
 
-    /// The decisions of all logs: the columns of `--decisions` behind one for the log.
+    /// The decisions of all logs: the columns of `--decisions` after one for the log.
     pub(crate) fn decisions(&self) -> DataTable {
         let all_runs = self.logs.iter().flat_map(runs);
         let methods = all_runs.map(|run| run.pointer("/settings/method").and_then(Value::as_str));

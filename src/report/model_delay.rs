@@ -13,7 +13,7 @@ const FEWEST: usize = 3;
 /// Standard errors that a fitted delay is off at most by chance.
 const BY_CHANCE: f64 = 3.0;
 
-/// Why a fitted delay is shorter than those measured: a step seems late by the lag behind it, too.
+/// Why a fitted delay is shorter than those measured: a step seems late by the lag after it, too.
 fn why_shorter(of: &AssessedModel) -> String {
     let is_lag = |component: &&Component| {
         matches!(component.effect().spec().stage, Stage::Spool | Stage::Dynamics)
@@ -47,7 +47,7 @@ pub(super) fn model_delay(of: &AssessedModel, measured: EstimatedJoint<'_>) -> O
 }
 
 /// Of a fitted delay among those that were measured, the kinds of steps whose typical delay is another
-/// by more than both are uncertain and than a sample: what the model has behind its delay, as play or
+/// by more than both are uncertain and than a sample: what the model has after its delay, as play or
 /// friction, makes a step seem early or late to who looks at the output alone.
 fn apart(delay: &Parameter, measured: EstimatedJoint<'_>) -> Option<String> {
     let leeway = BY_CHANCE * delay.std_error?;

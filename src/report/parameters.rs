@@ -154,7 +154,7 @@ fn is_of_name(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// A number as it is written behind `before`: in brackets where it would run into a sign or
+/// A number as it is written after `before`: in brackets where it would run into a sign or
 /// another number.
 fn in_place(value: f64, before: &str) -> String {
     if is_unlimited(value) {

@@ -113,7 +113,7 @@ impl OtherResult {
 }
 
 fn document(text: &str, path: &Path) -> Result<Document, FileError> {
-    let json = FileError::unreadable(path, "this is no whole result of an estimate");
+    let json = FileError::unreadable(path, "this is not a complete result of `estimate`");
     let value: serde_json::Value = serde_json::from_str(text).map_err(&json)?;
     let schema = value.get("schema").and_then(serde_json::Value::as_str);
     if schema != Some(SCHEMA) {

@@ -27,7 +27,7 @@ fn to_digits(value: f64, significant: i32) -> String {
     tidy(&format!("{value:.decimals$}"))
 }
 
-/// Removes trailing zeros behind a decimal point.
+/// Removes trailing zeros after a decimal point.
 fn tidy(text: &str) -> String {
     let (mantissa, exponent) = text.split_at(text.find('e').unwrap_or(text.len()));
     if mantissa.contains('.') {
@@ -37,12 +37,12 @@ fn tidy(text: &str) -> String {
     format!("{mantissa}{exponent}")
 }
 
-/// `value` with so many digits behind the point, without trailing zeros.
+/// `value` with so many digits after the point, without trailing zeros.
 pub(crate) fn to_place(value: f64, decimals: i32) -> String {
     number(to_decimals(value, decimals))
 }
 
-/// A unit as it is written behind a number: ` V`, or nothing.
+/// A unit as it is written after a number: ` V`, or nothing.
 pub(crate) fn unit_suffix(unit: Option<&str>) -> String {
     unit.map_or_else(String::new, |unit| format!(" {unit}"))
 }

@@ -32,7 +32,7 @@ impl Log {
         Self { lines: text.lines().map(cells).collect() }
     }
 
-    /// The joints in the order of `places`; each has two columns behind the time.
+    /// The joints in the order of `places`; each has two columns after the time.
     fn in_order(&self, places: &[usize]) -> Self {
         let reorder = |cells: &Vec<String>| {
             let pairs = places.iter().flat_map(|place| &cells[2 * place + 1..2 * place + 3]);

@@ -129,6 +129,16 @@ fn leads_somewhere(page: &Path, link: &str) -> bool {
 }
 
 #[test]
+fn the_glossary_has_at_most_forty_terms_in_order() {
+    let text = fs::read_to_string("docs/glossary.md").unwrap();
+    let terms = text.lines().filter_map(|line| line.strip_prefix("**")?.split("**").next());
+    let terms: Vec<String> = terms.map(str::to_lowercase).skip(1).collect();
+    // The first is of Greek letters.
+    assert!((30..40).contains(&terms.len()), "{}", terms.len());
+    assert!(terms.is_sorted(), "{terms:?}");
+}
+
+#[test]
 fn every_example_is_in_the_readme() {
     let readme = fs::read_to_string("README.md").unwrap();
     for entry in fs::read_dir("examples").unwrap() {

@@ -51,7 +51,7 @@ fn completions_of_every_shell_know_every_command() {
     }
 }
 
-/// What bash offers behind some words, or `None` without bash.
+/// What bash offers after some words, or `None` without bash.
 fn offered(words: &[&str]) -> Option<Vec<String>> {
     let line = words.iter().map(|word| format!("'{word}'")).collect::<Vec<_>>().join(" ");
     let script = format!(
@@ -310,10 +310,7 @@ fn columns_says_what_is_mended_in_the_log() {
         ["the newest row is first", "wraps at a turn of 360 deg", "1 cell is empty or NaN"];
     assert_eq!(mended.len(), expected.len(), "{mended:?}");
     for (line, says) in mended.iter().zip(expected) {
-        assert!(
-            line.contains(says) && table.contains(&format!("where it is read: {line}")),
-            "{table}"
-        );
+        assert!(line.contains(says) && table.contains(&format!("on reading: {line}")), "{table}");
     }
 }
 

@@ -329,10 +329,10 @@ fn a_pipe_under_the_name_of_a_result_is_not_waited_for() {
     assert!(make());
     let again = workspace.run("estimate logs --results kept");
     assert_eq!(again.status, Some(1));
-    again.says("not a file, and results are files of their own; remove it");
+    again.says("a result must be a file of its own; remove it");
     // It was no result, and is gone.
     assert!(make());
-    workspace.run("merge kept").says("not a file, and a result is one; remove it");
+    workspace.run("merge kept").says("a result must be a file, and this is none; remove it");
 }
 
 #[test]
@@ -351,7 +351,7 @@ fn a_link_under_the_name_of_a_model_is_not_written_through() {
     fs::write(workspace.path("other.csv"), "a log").unwrap();
     let again = workspace.run(command);
     assert_eq!(again.status, Some(2));
-    again.says("not a file, and results are files of their own; remove it");
+    again.says("a result must be a file of its own; remove it");
     assert_eq!(workspace.read("other.csv"), "a log");
 }
 

@@ -1,4 +1,4 @@
-//! Delays between samples with their intervals: the broken line, and the lag behind it.
+//! Delays between samples with their intervals: the broken line, and the lag after it.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -158,7 +158,7 @@ fn a_joint_that_never_reacts_has_no_delay() {
     }
 }
 
-/// A stroke from one side to the other and its end, 0.2 s late behind two lags of 0.05 s, under a
+/// A stroke from one side to the other and its end, 0.2 s late after two lags of 0.05 s, under a
 /// load that depends on the angle.
 fn stroke_under_load(number: u32) -> Trial {
     let direction = if number.is_multiple_of(2) { 1.0 } else { -1.0 };

@@ -216,7 +216,7 @@ fn a_lookup_without_a_delay_is_not_written() {
     assert!(text.contains("j: no delay table: the input never changes"), "{text}");
 }
 
-/// `??/` is a backslash in C99, and would free the quotation mark behind it.
+/// `??/` is a backslash in C99, and would free the quotation mark after it.
 #[test]
 fn a_trigraph_in_a_name_ends_no_text() {
     let folder = tempfile::tempdir().unwrap();

@@ -84,7 +84,7 @@ fn seconds_are_right_for_each_trial() {
         (Some(0.4), Some(0.1))
     );
     let joint = &found["joints"][0];
-    // A segment ends a longest delay and α behind its step.
+    // A segment ends a longest delay and α after its step.
     assert!(ends(joint, "0").contains(&50), "{:?}", ends(joint, "0"));
     assert!(ends(joint, "1").contains(&25), "{:?}", ends(joint, "1"));
     let text = run(folder.path(), &["estimate", "log.csv", "-q", "--max-delay", "0.4s"]);

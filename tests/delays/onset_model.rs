@@ -20,7 +20,7 @@ enum Plant {
     Lag(f64),
     /// The speed through a pair of poles with this period in seconds and damping.
     Oscillation(f64, f64),
-    /// The same behind a first-order lag with this time constant.
+    /// The same after a first-order lag with this time constant.
     LagOscillation(f64, f64, f64),
     /// The speed through a lag of this time constant where it grows, of this where it falls.
     LagByDirection(f64, f64),

@@ -29,7 +29,7 @@ struct Plant {
 
 const PLAIN: Plant = Plant { time_constant_s: 3.0, further_s: 0.0, noise: 0.02 };
 
-/// A record of twenty steps of 1 to 4, each behind a dead time of its own; and the dead times in
+/// A record of twenty steps of 1 to 4, each after a dead time of its own; and the dead times in
 /// samples.
 fn record(plant: Plant, seed: u32) -> (Trial, Vec<f64>) {
     let mut next = random(seed);

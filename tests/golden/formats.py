@@ -256,7 +256,7 @@ def ros():
                 sends.append(("/valve", time, {"layout": layout, "data": list(volts[k])}))
             sends.append((topic, time, content))
     mcap(HERE / "pauses.mcap", sends)
-    # The arm has a topic of commands of its own, which begins in the middle, and behind it the states
+    # The arm has a topic of commands of its own, which begins in the middle, and after it the states
     # tell of a bucket.
     late = []
     for topic, time, content in messages:
@@ -276,7 +276,7 @@ def ros():
         "boom.input": volts[2:, 0], "boom.output": angles[2:, 0],
         "arm.input": volts[2:, 1], "arm.output": angles[2:, 1]})
     gripped = volts[2:, 0].copy()
-    # 7 ms behind a state the next command is not out yet: commands come 3 ms before theirs.
+    # 7 ms after a state the next command is not out yet: commands come 3 ms before theirs.
     write_csv(HERE / "grip.csv", {
         "time_s": [(k * TICK + 7_000_000) / 1e9 for k in range(2, samples)],
         "grip.input": gripped, "grip.output": [k / 4 for k in range(2, samples)]})

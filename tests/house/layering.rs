@@ -61,7 +61,7 @@ fn files_of(folder: &Path) -> House {
     House::of(files.iter().map(|(path, text)| (path.as_str(), text.clone())))
 }
 
-/// Imports of a module from one behind it in [`ORDER`], as sentences.
+/// Imports of a module from one after it in [`ORDER`], as sentences.
 fn upward(house: &House) -> Vec<String> {
     let place =
         |module: &Module| ORDER.iter().position(|name| module.first().is_some_and(|m| m == name));

@@ -241,7 +241,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
 
 #[test]
 fn where_the_output_follows_the_input_no_error_is_one_of_the_speed() {
-    // A first order of 0.3 s behind 0.1 s, which saturates at the highest of its levels.
+    // A first order of 0.3 s after 0.1 s, which saturates at the highest of its levels.
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let mut log = "time_s,boom.input,boom.output\n".to_owned();
     let (mut y, mut level, mut late) = (0.0, 0.0, vec![0.0; 10]);

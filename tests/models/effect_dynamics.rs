@@ -68,7 +68,7 @@ fn agree(found: &[f64], expected: &[f64], tolerance: f64) -> Result<(), TestCase
     Ok(())
 }
 
-/// `holds` behind `effect`.
+/// `holds` after `effect`.
 fn behind(effect: &dyn Effect, parameters: &[f64], holds: &[Hold]) -> Vec<Hold> {
     let outputs = means(effect, parameters, holds);
     outputs.into_iter().zip(holds).map(|(output, (_, dt_s))| (output, *dt_s)).collect()

@@ -31,7 +31,7 @@ fn a_fitted_integrator_is_as_wrong_as_was_promised() {
     ] {
         let scenario = Scenario::new(&[name], strength, Noise::white(NOISE), 11).unwrap();
         // The noise is in the log, too, and in where each step begins. The fit restarts in
-        // long holds, behind which a slow error has grown.
+        // long holds, after which a slow error has grown.
         let expected = scenario.error_over_noise.hypot(1.0);
         let found = fitted_error(&scenario);
         assert!((0.7..1.1).contains(&(found / expected)), "{name}: {found}, not {expected}");

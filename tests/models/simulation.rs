@@ -303,7 +303,7 @@ fn swing(state: &mut [f64; 2], input: f64, omega: f64, damping: f64, h: f64) {
 }
 
 /// One step of a speed with inertia and friction, which at most stops it; what is left
-/// of the step behind a stop is another one.
+/// of the step after a stop is another one.
 fn braked(speed: f64, input: f64, p: &[f64], h: f64) -> f64 {
     let part = 0.5 * h / p[2];
     let driven = |input: f64, viscous: f64| {

@@ -14,7 +14,7 @@ use tauscope::units::SamplePeriod;
 use crate::sample::size;
 
 /// 160 s at 100 Hz in steps of 1 ms: a delay of 0.06 s, a spool that slews at 6 V/s, an overlap from −0.2
-/// to 0.35 V, a limit 1.6 V behind it, and a gain of 8 deg/s/V that is 1.4 times as large downward.
+/// to 0.35 V, a limit 1.6 V after it, and a gain of 8 deg/s/V that is 1.4 times as large downward.
 fn valve(seed: u64) -> Joint {
     const SAMPLES: usize = 16_000;
     let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -130,7 +130,7 @@ fn export(model: &JointModel) {
 }
 
 /// An effect of a user's own: its stage on the first line, its expression, of the parameters
-/// `a` and `b`, behind it.
+/// `a` and `b`, after it.
 pub fn expression(bytes: &[u8]) -> bool {
     let Ok(text) = std::str::from_utf8(bytes) else { return false };
     let (stage, expression) = text.split_once('\n').unwrap_or(("input", text));

@@ -627,7 +627,7 @@ mod mcap {
         };
         let ((whole, _), (slow, notes)) = (steps_s("zstd.mcap"), steps_s("slow_states.mcap"));
         assert_eq!(slow.len(), whole.len());
-        // Where all states are there, a step is at the first of them behind the command.
+        // Where all states are there, a step is at the first of them after the command.
         assert!(
             slow.iter().zip(&whole).all(|(slow, whole)| (slow - whole).abs() < 0.011),
             "{slow:?}"

@@ -167,7 +167,7 @@ def by_duty(tauscope, folder, name):
     found = {}
     for label, (t, u, y) in logged.items():
         p = np.flatnonzero(np.diff(u))[0] + 1
-        # Up to where the input ends: behind it the joint stands.
+        # Up to where the input ends: after it the joint stands.
         end = p + np.flatnonzero(np.diff(u[p:]))[0] if np.any(np.diff(u[p:])) else len(u)
         simulated = models[words(label)].simulate(u[:end], t[1] - t[0], y[0])
         # The same way for both.

@@ -162,7 +162,7 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
     // What comes next is drawn through the points, but where nothing does.
     let next = back.rows("/boom/revision/sheet/proposed", strips, |cell| cell.len());
     assert!(next.iter().map(|(times, _)| times["revision"]).eq(0..whole(count) - 1));
-    // A dead band shows in the speeds, a lag only in what is left behind a step.
+    // A dead band shows in the speeds, a lag only in the residual after a step.
     let titles = back.rows("/boom/revision/sheet/texts", "Points2D:labels", |cell| {
         cell.as_string::<i32>().iter().flatten().collect::<Vec<_>>().join("\n")
     });

@@ -69,7 +69,7 @@ const MODELS: [View; 3] = [
     ("words", 930..1270, 110..400),
 ];
 
-/// A picture that is taken behind some steps.
+/// A picture that is taken after some steps.
 struct Look {
     page: &'static str,
     steps: &'static [Step],

@@ -19,7 +19,7 @@ use tauscope::report::ReportedSweep;
 use tauscope::study::{SweptJoint, sweep_joints};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
-/// An ideal joint and one behind a lag, which `lag-aware` alone tells from delay.
+/// An ideal joint and one after a lag, which `lag-aware` alone tells from delay.
 struct Swept {
     experiment: Experiment,
     grid: Grid,
@@ -165,7 +165,7 @@ fn the_picture_has_a_row_per_combination_and_a_column_per_step() {
             }
         }
     }
-    // The last third is `lag-aware`, whose delays are shorter behind the lag where a straight response
+    // The last third is `lag-aware`, whose delays are shorter after the lag where a straight response
     // fits far from its onset alone.
     let steps = swept.steps(1);
     let shorter = back.points("/boom/sheet/shorter").len();

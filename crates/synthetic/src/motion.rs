@@ -116,7 +116,7 @@ impl<'a> Motion<'a> {
         self.settle_behind(Stage::Sensor, self.joint.start);
     }
 
-    /// Settles the effects of a stage; the signal behind them where `signal` has long been held.
+    /// Settles the effects of a stage; the signal after them where `signal` has long been held.
     fn settle_behind(&mut self, stage: Stage, signal: f64) -> f64 {
         let at = self.at_angle(&self.state, self.now_s);
         let effects = self.effects.iter().zip(&mut self.state.of_effects);

@@ -16,7 +16,7 @@ struct Carried {
     is_hidden: bool,
 }
 
-/// The whole page.
+/// A section of `docs/accuracy.md`.
 pub(crate) fn page(counts: Counts, judged: &[Judged]) -> String {
     let mut text = head(counts, judged.len());
     for (soft, title) in [(false, "Sharp valves"), (true, "Soft valves")] {
@@ -24,7 +24,7 @@ pub(crate) fn page(counts: Counts, judged: &[Judged]) -> String {
         if carried.is_empty() {
             continue;
         }
-        let _ = writeln!(text, "\n## {title}\n");
+        let _ = writeln!(text, "\n### {title}\n");
         text +=
             "| threshold | hidden effects kept | not there, of all kept |\n| --- | --- | --- |\n";
         for threshold in THRESHOLDS {
@@ -47,16 +47,16 @@ pub(crate) fn page(counts: Counts, judged: &[Judged]) -> String {
 fn head(counts: Counts, records: usize) -> String {
     let Counts { two, three, first_seed, .. } = counts;
     format!(
-        "# When an effect has a practical consequence
+        "## When an effect has a practical consequence
 
 Made by
 
 ```sh
 cargo run --release --no-default-features --example statistics -- hidden-effect-table --consequence \\
-    --two {two} --three {three} --first-seed {first_seed} > docs/consequence.md
+    --two {two} --three {three} --first-seed {first_seed}
 ```
 
-`improve` removes effects whose share of the error is below a threshold, 3 %. This page shows what
+`improve` removes effects whose share of the error is below a threshold, 3 %. The tables show what
 other thresholds would do, from `improve --refine` on {records} simulated records with two or three hidden
 effects ([hidden_effect_table.md](hidden_effect_table.md)), half of them with a soft valve, its corners
 rounded over {SOFT_EDGE} of the largest level.

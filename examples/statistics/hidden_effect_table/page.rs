@@ -210,11 +210,13 @@ fn confusion(pairs: &[Pair<'_>]) -> String {
     let columns: Vec<&str> = CATALOGUE.into_iter().chain(verdicts).collect();
     let rows = CATALOGUE.into_iter().chain(["nothing"]).chain(OUTSIDE);
     let mut text = "\n## Hidden (down) and named first (across)\n\n```text\n".to_owned();
-    let numbers = (1..=columns.len()).map(|number| format!("{number:4}"));
+    let numbers = (1..=columns.len() + 1).map(|number| format!("{number:4}"));
     let _ = writeln!(text, "{:24}{}", "", numbers.collect::<Vec<_>>().concat());
     for (number, hidden) in (1..).zip(rows) {
-        let count = |column: &&str| asked.iter().filter(|pair| **pair == (hidden, *column)).count();
-        let counts = columns.iter().map(|column| match count(column) {
+        let named = || asked.iter().filter(|pair| pair.0 == hidden).map(|pair| pair.1);
+        let count = |column: &&str| named().filter(|name| name == column).count();
+        let others = named().filter(|name| !columns.contains(name)).count();
+        let counts = columns.iter().map(count).chain([others]).map(|count| match count {
             0 => format!("{:>4}", "."),
             count => format!("{count:4}"),
         });
@@ -222,8 +224,12 @@ fn confusion(pairs: &[Pair<'_>]) -> String {
             if number <= CATALOGUE.len() { format!("{number:2}") } else { "  ".to_owned() };
         let _ = writeln!(text, "{number} {hidden:21}{}", counts.collect::<Vec<_>>().concat());
     }
-    let [adequate, unexplained] = [CATALOGUE.len() + 1, CATALOGUE.len() + 2];
-    let _ = writeln!(text, "\n{adequate}: `adequate`; {unexplained}: `unexplained`\n```");
+    let [adequate, unexplained, other] = [1, 2, 3].map(|place| CATALOGUE.len() + place);
+    let _ = writeln!(
+        text,
+        "\n{adequate}: `adequate`; {unexplained}: `unexplained`; {other}: an effect without a \
+         column, which the list at the end names\n```"
+    );
     text
 }
 

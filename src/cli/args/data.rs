@@ -36,8 +36,8 @@ fn help() -> String {
 /// How logs are read.
 #[derive(Args, Debug)]
 pub(crate) struct ReadingArgs {
-    /// A joint to use, by name; or `NAME=INPUT_COLUMN:OUTPUT_COLUMN` in a foreign log.
-    /// May be repeated
+    /// A joint to use, by name; or `NAME=INPUT_COLUMN:OUTPUT_COLUMN` where the columns have other
+    /// names. May be repeated
     #[arg(long, value_name = "NAME[=IN:OUT]")]
     joint: Vec<String>,
 
@@ -53,7 +53,8 @@ pub(crate) struct ReadingArgs {
     #[arg(long, value_name = "SECONDS", value_parser = number::period)]
     sample_period: Option<SamplePeriod>,
 
-    /// A TOML file that maps the columns of a foreign log
+    /// A TOML file that says which columns are the time and the inputs and outputs, as `tauscope
+    /// columns -w` writes it
     #[arg(long, value_name = "FILE")]
     columns: Option<PathBuf>,
 
@@ -110,10 +111,10 @@ impl DataArgs {
     /// When there are several, or when gaps are to be filled: trials get new names at each.
     pub(crate) fn only_file(&self) -> anyhow::Result<PathBuf> {
         let [path] = self.data.as_slice() else {
-            bail!("expected one log, and {} are given", self.data.len());
+            bail!("expected one log, but {} are given", self.data.len());
         };
         if path.is_dir() {
-            bail!("{}: expected a log, and this is a folder", path.display());
+            bail!("{}: expected a log, but this is a folder", path.display());
         }
         if path.metadata().is_ok_and(|found| !found.is_file()) {
             bail!(

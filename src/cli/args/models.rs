@@ -20,8 +20,8 @@ const DEFAULT: &str = "model.toml";
 #[derive(Args, Debug)]
 pub(crate) struct ModelFileArgs {
     /// The model file (TOML, schema `tauscope/model/1`). It is revised in place: values
-    /// change, comments and whatever else was written by hand stay. Where it is not there
-    /// yet, it is made; joints that it has not start as plain integrators
+    /// change, comments and whatever else was written by hand stay. If it does not exist, it is
+    /// created; joints that are not in it start as plain integrators
     #[arg(short, long, value_name = "MODEL.toml")]
     model: Option<PathBuf>,
 

@@ -65,7 +65,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
 fn write(survey: &Survey, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
     let name = path.display();
     if survey.map.joints.is_empty() {
-        warn(&[format!("--write {name}: not written: no columns of a joint are recognised")]);
+        warn(&[format!("--write {name}: not written: no columns of a joint are recognized")]);
         return Ok(());
     }
     let mapping = survey.map.to_toml();

@@ -20,7 +20,7 @@ use crate::cli::run::{Shown, Start, Study, as_it_is};
 
 /// Say which physical effect a model lacks
 ///
-/// The model is fitted. If its misfit is more than noise, every effect of the catalogue is
+/// The model is fitted. If a lack of fit is shown, every effect of the catalogue is
 /// added to it in turn and fitted, and they are ranked by the error on data that were not
 /// fitted. Without a model file each joint starts as a plain integrator.
 #[derive(ClapArgs, Debug)]
@@ -28,7 +28,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     data: DataArgs,
 
-    /// The model file (TOML, schema `tauscope/model/1`). Joints that it has not start as
+    /// The model file (TOML, schema `tauscope/model/1`). Joints that are not in it start as
     /// plain integrators; its candidates are tried, too
     #[arg(short, long, value_name = "MODEL.toml")]
     model: Option<PathBuf>,

@@ -48,12 +48,12 @@ pub(crate) struct Args {
     #[arg(long, value_name = "UNIT")]
     input_unit: Option<String>,
 
-    /// Unit of the output: `rad`, `mrad` and `rev` are angles of their own, and all others are
-    /// taken for degrees where gravity acts [default: that of the log, or degrees]
+    /// Unit of the output: `rad`, `mrad`, `rev` or degrees; where gravity acts, any other unit is
+    /// taken for degrees [default: that of the log, or degrees]
     #[arg(long, value_name = "UNIT")]
     output_unit: Option<String>,
 
-    /// Say nothing of what was written
+    /// No notices
     #[arg(short, long)]
     quiet: bool,
 }

@@ -22,9 +22,9 @@ use crate::cli::run::{Progress, Shown, Start, Study};
 
 /// Add to a model what it lacks, effect by effect
 ///
-/// After each effect, those that were added before and have become useless are removed
-/// again; effects that the model file had stay. It ends when no lack of fit is shown, or
-/// when no effect accounts for it. Ctrl-C ends it after the revision at hand.
+/// After each effect, those added before that have become superfluous are removed; effects
+/// that the model file had stay. It ends when no lack of fit is shown, or when no effect
+/// accounts for it. Ctrl-C ends it after the current revision.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
     #[command(flatten)]

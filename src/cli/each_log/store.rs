@@ -45,7 +45,7 @@ impl Kept {
         let name = path.display();
         // A pipe would be waited for, and a device has no end.
         if path.metadata().is_ok_and(|found| !found.is_file()) {
-            bail!("{name}: not a file, and a result is one; remove it");
+            bail!("{name}: a result must be a file, and this is none; remove it");
         }
         let text = std::fs::read(path).with_context(|| format!("{name}: cannot be read"))?;
         let kept: Self = serde_json::from_slice(&text)
@@ -87,7 +87,7 @@ pub(crate) fn is_foreign(path: &Path) -> bool {
 /// that nobody reads.
 pub(crate) fn check_own_file(path: &Path) -> anyhow::Result<()> {
     if path.symlink_metadata().is_ok_and(|found| !found.is_file()) {
-        bail!("{}: not a file, and results are files of their own; remove it", path.display());
+        bail!("{}: a result must be a file of its own; remove it", path.display());
     }
     Ok(())
 }

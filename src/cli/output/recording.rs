@@ -80,8 +80,7 @@ impl Recording<'_> {
         let path = path.display();
         let ends = parts.first().zip(parts.last());
         let said = ends.map(|(first, last)| format!("{first} … {last}")).unwrap_or_default();
-        verbosity
-            .say("recording", format!("{path}; look at it with: rerun {path}; joints: {said}"));
+        verbosity.say("recording", format!("{path}; open it with: rerun {path}; joints: {said}"));
         Ok(())
     }
 
@@ -166,7 +165,7 @@ impl Recorded<'_> {
             write_file(path, |file| self.write(file))?;
         }
         let path = path.display();
-        verbosity.say("recording", format!("{path}; look at it with: rerun {path}"));
+        verbosity.say("recording", format!("{path}; open it with: rerun {path}"));
         Ok(())
     }
 

@@ -259,7 +259,7 @@ fn far_off(joint: &Joint, what: &str, of: fn(&Trial) -> &[f64]) -> Option<String
 fn spikes(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     let count = !(estimate.settings.paper || estimate.settings.grows);
     let spikes = Some(joint).filter(|_| count).and_then(spikes_of)?;
-    Some(format!("{spikes}: replaced by interpolation before delays are estimated"))
+    Some(format!("{spikes}: interpolated for delays, excluded from fits and errors of models"))
 }
 
 /// That there are isolated spikes in the output of a joint, where there are any.

@@ -1,5 +1,7 @@
 //! A command on logs, from reading them to its exit status.
 
+use std::sync::Once;
+
 use serde::Serialize;
 
 use super::estimates::Estimates;
@@ -24,6 +26,7 @@ pub(crate) struct Session<'a> {
     pub(crate) beside: Vec<OtherResult>,
     own: OwnSettings,
     run: &'a RunArgs,
+    notes: Once,
 }
 
 impl<'a> Session<'a> {
@@ -38,7 +41,8 @@ impl<'a> Session<'a> {
         let own = OwnSettings::of(options)?;
         let experiment = read(data.given(), options)?;
         let (review, beside) = (Review::default(), Vec::new());
-        Ok(Self { experiment, stream, command, review, beside, own, run })
+        let notes = Once::new();
+        Ok(Self { experiment, stream, command, review, beside, own, run, notes })
     }
 
     /// With what reviewers said of the decisions.
@@ -99,10 +103,19 @@ impl<'a> Session<'a> {
     /// logs themselves.
     pub(crate) fn warn(&self, failures: &[String], notes: &[String]) {
         warn(failures);
-        let own = self.own.notes(&self.experiment);
-        for note in self.experiment.notes.iter().chain(notes).chain(&own) {
+        self.say_notes();
+        for note in notes.iter().chain(&self.own.notes(&self.experiment)) {
             self.verbosity().say("note", note);
         }
+    }
+
+    /// Says how the logs were read, once.
+    pub(crate) fn say_notes(&self) {
+        self.notes.call_once(|| {
+            for note in &self.experiment.notes {
+                self.verbosity().say("note", note);
+            }
+        });
     }
 
     /// Prints the results, and ends what viewers are sent.

@@ -97,6 +97,11 @@ impl<'a> Study<'a> {
         self.session.verbosity()
     }
 
+    /// Says how the logs were read, once.
+    pub(crate) fn say_notes(&self) {
+        self.session.say_notes();
+    }
+
     /// Results that are shown beside the delays.
     pub(crate) fn beside(&self) -> &[OtherResult] {
         &self.session.beside
@@ -166,20 +171,20 @@ impl<'a> Study<'a> {
         text: impl FnOnce() -> String,
         json: impl FnOnce() -> J,
     ) -> anyhow::Result<Completion> {
-        self.session.warn(failures, &notes_on_models(self.joints()));
+        // A report has said it with the delays.
+        let has_said = self.session.command == "report" && !self.settings.paper;
+        let notes = notes_on_models(self.joints(), !has_said);
+        self.session.warn(failures, &notes);
         self.session.end(Completion::without(failures), text, json)
     }
 }
 
-/// What models are not held against in the records of `joints`.
-fn notes_on_models(joints: &[Joint]) -> Vec<String> {
+/// What fits and errors of models leave out in the records of `joints`; spikes are named `with_spikes`
+/// alone.
+fn notes_on_models(joints: &[Joint], with_spikes: bool) -> Vec<String> {
     let note = |joint: &Joint| {
-        let spikes = spikes_of(joint).map(|spikes| {
-            format!(
-                "{spikes}: excluded from fits and \
-                 errors"
-            )
-        });
+        let spikes = Some(joint).filter(|_| with_spikes).and_then(spikes_of);
+        let spikes = spikes.map(|spikes| format!("{spikes}: excluded from fits and errors"));
         let noise = joint.trials.property::<Mended>().has_noisy_input.then(|| {
             "the input has noise or glitches: models use the levels at which it is held".to_owned()
         });

@@ -31,7 +31,7 @@ pub(crate) fn asked_about(mut arguments: impl Iterator<Item = OsString>) -> Opti
     if name != IMPORTER {
         return None;
     }
-    // Options come with their values behind them, the file before or behind them.
+    // Options come with their values after them, the file before or after them.
     let mut file = None;
     while let Some(argument) = arguments.next() {
         let text = argument.to_string_lossy().into_owned();

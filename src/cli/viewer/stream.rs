@@ -73,7 +73,7 @@ impl StreamArgs {
         };
         if let Some(live) = live.as_ref().filter(|live| live.is_served()) {
             let url = live.url();
-            verbosity.say("serving", format!("look at it with: rerun --connect {url}"));
+            verbosity.say("serving", format!("open it with: rerun --connect {url}"));
         }
         Ok(Stream(live.map(Into::into)))
     }

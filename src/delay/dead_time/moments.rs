@@ -6,7 +6,7 @@ use super::record::Whitened;
 use super::response::{Lags, NUMERATORS, Numerators};
 use crate::numerics::{NormalEquations, dot};
 
-/// Products of the columns behind two lags with each other and with the changes of the output,
+/// Products of the columns after two lags with each other and with the changes of the output,
 /// for delays of a range of whole samples; sums over the rows.
 ///
 /// The products of two columns that are a samples late differ from those that are one sample
@@ -104,7 +104,7 @@ impl Moments {
                 let values = late(column, &(start..end), from + delay);
                 self.with_changes[delay * columns + j] += dot(values, changes);
                 self.sums[delay * columns + j] += sum;
-                // A sample later the window gains one row in front and loses one behind.
+                // A sample later the window gains one row in front and loses one at the back.
                 sum += at(column, start, from + delay) - at(column, end, from + delay);
             }
         }
@@ -144,7 +144,7 @@ impl Moments {
         (self.squared_change - self.change * self.change / self.rows.max(1.0)).max(0.0)
     }
 
-    /// The squared error of the best curve behind `numerators`, and a constant.
+    /// The squared error of the best curve with `numerators`, and a constant.
     pub(super) fn error(&self, numerators: &Numerators) -> f64 {
         self.equations(numerators).map_or(f64::INFINITY, |mut equations| {
             (0..self.columns).for_each(|column| equations.eliminate(column));
@@ -152,7 +152,7 @@ impl Moments {
         })
     }
 
-    /// The squared error of the first column behind `numerators` times a gain, and a constant; and
+    /// The squared error of the first column with `numerators` times a gain, and a constant; and
     /// the gain, zero where the column says nothing.
     pub(super) fn gain(&self, numerators: &Numerators) -> (f64, f64) {
         let Some(driven) = self.driven(numerators) else { return (f64::INFINITY, 0.0) };
@@ -166,7 +166,7 @@ impl Moments {
         ((total - together * together / spread).max(0.0), together / spread)
     }
 
-    /// The equations of all columns behind `numerators`; the constant is projected out.
+    /// The equations of all columns with `numerators`; the constant is projected out.
     fn equations(&self, numerators: &Numerators) -> Option<NormalEquations> {
         let Driven { products, sums, with_changes } = self.driven(numerators)?;
         let target = self.columns;
@@ -178,7 +178,7 @@ impl Moments {
         }))
     }
 
-    /// The sums of the columns behind `numerators`; none of a dead time that was not asked for.
+    /// The sums of the columns with `numerators`; none of a dead time that was not asked for.
     fn driven(&self, numerators: &Numerators) -> Option<Driven> {
         let columns = self.columns;
         let delay = numerators.first.checked_sub(self.from)?;
@@ -219,7 +219,7 @@ fn at(column: &[f64], k: usize, by: usize) -> f64 {
     k.checked_sub(1 + by).and_then(|k| column.get(k)).copied().unwrap_or(0.0)
 }
 
-/// Sums over the rows of the columns behind a dead time.
+/// Sums over the rows of the columns with a dead time.
 struct Driven {
     /// Of the products of two columns, for `i ≤ j` at `i · columns + j`.
     products: Vec<f64>,

@@ -46,7 +46,7 @@ impl Samples {
 }
 
 /// Turns samples into the coefficients of the cubic spline through them, `(c_(k−1) + 4 c_k + c_(k+1))/6`
-/// being the samples, which are held before the first and behind the last.
+/// being the samples, which are held before the first and after the last.
 fn spline(values: &mut [f64]) {
     // The root of 1 + 4 z + z² within the unit circle.
     let z = 3.0_f64.sqrt() - 2.0;
@@ -98,7 +98,7 @@ impl Whitened {
         self.columns.len()
     }
 
-    /// The columns behind the poles of `lags`: `v_k = x_k + (a + b) v_(k−1) − a b v_(k−2)`.
+    /// The columns after the poles of `lags`: `v_k = x_k + (a + b) v_(k−1) − a b v_(k−2)`.
     pub(super) fn lagged(&self, lags: Lags) -> Vec<Vec<f64>> {
         let [a, b] = lags.poles();
         // The fixed point of the recursion for an input that was held before.
@@ -129,7 +129,7 @@ pub(super) fn whitening(covariances: &[f64], samples: usize) -> Vec<f64> {
     std::iter::once(1.0).chain(memory.coefficients.iter().map(|a| -a)).collect()
 }
 
-/// `values` behind a filter; the first was held before.
+/// `values` after a filter; the first was held before.
 pub(super) fn whiten(values: &[f64], filter: &[f64]) -> Vec<f64> {
     let first = values.first().copied().unwrap_or(0.0);
     let at = |k: usize, back: usize| {
@@ -142,7 +142,7 @@ pub(super) fn whiten(values: &[f64], filter: &[f64]) -> Vec<f64> {
 /// A column, in the rows of each part of the record.
 pub(super) type Rows = Vec<Vec<f64>>;
 
-/// The regression behind one dead time and lags, over all rows.
+/// The regression after one dead time and lags, over all rows.
 pub(super) struct Design {
     /// A constant, and what the input stands for.
     pub(super) columns: Vec<Rows>,

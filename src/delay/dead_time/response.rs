@@ -1,4 +1,4 @@
-//! How an output follows its input behind a dead time: two lags, perhaps an integrator.
+//! How an output follows its input after a dead time: two lags, perhaps an integrator.
 //!
 //! In samples, with the dead time `d` and the time constants `a ≥ b`,
 //!
@@ -83,7 +83,7 @@ impl Lags {
 }
 
 /// Samples by which the coefficients that numerators multiply are ahead: a spline depends on those of two
-/// samples behind.
+/// samples later.
 pub(super) const AHEAD: usize = 2;
 
 /// Numerators that can be other than 0: three of two poles, one for a part of a sample, and one for each
@@ -120,7 +120,7 @@ impl Numerators {
         // (1 − a q)(1 − b q) R, differenced: what remains is finitely long.
         let numerator = |m: usize| before(m, 0) - (a + b) * before(m, 1) + a * b * before(m, 2);
         let mut values = [0.0; NUMERATORS];
-        // Coefficients of the spline, or a sample of the input in them, two behind.
+        // Coefficients of the spline, or a sample of the input in them, two later.
         let (shares, later): (&[f64], usize) =
             if structure.is_smooth { (&[1.0], 0) } else { (&[1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0], 1) };
         for m in 0..count {

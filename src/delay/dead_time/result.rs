@@ -7,12 +7,12 @@ use serde::Serialize;
 pub struct DeadTime {
     /// What the record says.
     pub finding: Finding,
-    /// The lag behind the dead time: by how much a slow motion is late beyond it. None where
+    /// The lag after the dead time: by how much a slow motion is late beyond it. None where
     /// nothing was fitted.
     pub lag_s: Option<f64>,
     /// The part of the changes of the output, whitened, that the input explains.
     pub explained: f64,
-    /// Whether the speed follows the input, as behind a valve; else the output does.
+    /// Whether the speed follows the input, as after a valve; else the output does.
     pub integrates: bool,
     /// How often an interval is to hold the true dead time.
     pub confidence: f64,
@@ -31,7 +31,7 @@ pub struct DeadTime {
 pub enum Finding {
     /// There is one.
     Known(Bounds),
-    /// None is distinguishable from the lag behind it: the interval holds 0.
+    /// None is distinguishable from the lag after it: the interval holds 0.
     LagOnly(Bounds),
     /// It cannot be estimated.
     Unknown(Unknown),

@@ -77,7 +77,7 @@ impl Known<'_> {
         starts.map(window).collect()
     }
 
-    /// What the input stands for, behind the lags.
+    /// What the input stands for, after the lags.
     fn prediction(&self, trial: &Whitened) -> Vec<f64> {
         let lagged = trial.lagged(self.best.lags);
         let mut sum = vec![0.0; trial.changes.len()];

@@ -16,7 +16,7 @@ use super::spec::Method;
 pub(crate) use next_reaction::end_at_the_next_step;
 
 impl Method {
-    /// The response behind the dead times that the `trials` of a joint share, where the method looks
+    /// The response after the dead times that the `trials` of a joint share, where the method looks
     /// for it.
     pub(super) fn shared(
         self,

@@ -1,8 +1,8 @@
-//! Whether breakpoints are reactions to the steps behind theirs.
+//! Whether breakpoints are reactions to the steps after theirs.
 //!
 //! A segment of Algorithm 1 reaches α samples beyond the next step. Where a joint reacts within α,
 //! the reaction to that step lies in it, too, and may bend the output more than the step's own. The
-//! next segment then begins behind its own reaction, which it cannot find, and so on to the end of
+//! next segment then begins after its own reaction, which it cannot find, and so on to the end of
 //! the record: every delay is a hold, and the next delay.
 //!
 //! The change of slope shows to which step a breakpoint belongs, since it is proportional to the
@@ -15,14 +15,14 @@
 
 use crate::delay::decision::Decision;
 
-/// Breakpoints behind the next step from which on the question is asked.
+/// Breakpoints after the next step from which on the question is asked.
 const FEWEST: usize = 3;
 
 /// By how much more of the changes of slope the next steps must explain. Levels that alternate leave
 /// both alike. Chosen: records of three levels and more differ by far more.
 const MORE: f64 = 0.1;
 
-/// Whether the breakpoints of `decisions` that lie about or behind the next step, in rows of `beta`
+/// Whether the breakpoints of `decisions` that lie about or after the next step, in rows of `beta`
 /// samples, are reactions to it.
 pub(super) fn answer_the_next_step(decisions: &[Decision], beta: usize) -> bool {
     let change = |decision: &Decision| decision.input_step.after - decision.input_step.before;

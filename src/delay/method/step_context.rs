@@ -62,7 +62,7 @@ impl StepContext<'_> {
         gradual_onset(values, &from, self.settings.interval)
     }
 
-    /// `p_(i+1)`: the sample of the next step, or the one behind the trial's last.
+    /// `p_(i+1)`: the sample of the next step, or the one after the trial's last.
     pub(super) fn next_sample(&self) -> usize {
         self.trial.steps.get(self.index + 1).map_or(self.output().len() + 1, |next| next.sample)
     }
@@ -162,7 +162,7 @@ impl StepContext<'_> {
         let Some((low, high)) = self.settings.output_limits else {
             return (None, None, Outcome::NotChecked);
         };
-        // Not the rest that the joint starts from, which may be at a stop; what comes behind the
+        // Not the rest that the joint starts from, which may be at a stop; what comes after the
         // departure is the reaction.
         let rest = self.motion().filter(|motion| motion.rest.is_some());
         let resting = rest.map_or(0, |motion| (motion.latest + 1).saturating_sub(segment.first));

@@ -1,6 +1,6 @@
 //! About which delay all onsets of a joint have, before anything is known of its response.
 //!
-//! For each common delay `d` every window has a broken line whose corner is `d` behind its step,
+//! For each common delay `d` every window has a broken line whose corner is `d` after its step,
 //! and a straight line. What the corners gain over all windows is their likelihood ratio,
 //!
 //! ```text

@@ -351,7 +351,7 @@ mod tests {
     use super::*;
     use crate::numerics::testing::uniform;
 
-    /// Behind a first-order lag of 4 samples.
+    /// After a first-order lag of 4 samples.
     fn lagged() -> Dynamics<3> {
         let a = Square::<3>::new(0.0, 1.0, 0.0, 0.0, -0.25, 0.25, 0.0, 0.0, 0.0);
         Dynamics::new(a, State::<3>::new(0.0, 0.0, 1.0), None, Steady::any(), 100)

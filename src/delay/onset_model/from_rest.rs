@@ -1,20 +1,20 @@
-//! The onset of a motion that gathers speed from rest: a ramp behind a lag of its own.
+//! The onset of a motion that gathers speed from rest: a ramp after a lag of its own.
 //!
 //! ```text
 //! y_k = A + B·k + c·r((k − τ)/T; n) + e_k        n = 0, 1, … 5
 //! r(z; n) = z·P(n, z) − n·P(n + 1, z)            for z > 0, else 0
 //! ```
 //!
-//! Behind a dead time τ an output that rests, or creeps at an even speed `B`, starts in a way of
+//! After a dead time τ an output that rests, or creeps at an even speed `B`, starts in a way of
 //! its own: `r` is the answer of `n` equal lags in a row, of time constant `T`, to a ramp, with
 //! the incomplete gamma function `P(n, z) = 1 − e^(−z)·Σ_(j<n) z^j/j!`. It begins as `z^(n+1)`
-//! and goes over into a line: `n = 0` where the speed steps, 1 behind a first-order lag, and as
+//! and goes over into a line: `n = 0` where the speed steps, 1 after a first-order lag, and as
 //! `T` grows a power of the time. So τ is found without a lag that other steps share, which
 //! strokes do not show.
 //!
-//! Only the start is of that shape. The window ends as far behind the departure, the first sample
-//! that is plainly off the rest, as the departure is behind the onset; sooner, while the residual
-//! behind the step has more than [`LACKING`] times the variance of the rest before it. For every
+//! Only the start is of that shape. The window ends as far after the departure, the first sample
+//! that is plainly off the rest, as the departure is after the onset; sooner, while the residual
+//! after the step has more than [`LACKING`] times the variance of the rest before it. For every
 //! τ, `n` and `T` the rest is linear; the interval holds every τ whose squared error, at its best
 //! `n` and `T`, is within `t²·s²·g` of the least one, where `g = 1 + 2·Σ ρ_j` is how much less
 //! residuals that remember each other say than as many independent ones.
@@ -42,7 +42,7 @@ const PARAMETERS: usize = 5;
 /// Fewest samples of rest.
 const FEWEST: usize = 8;
 
-/// Samples behind the departure, at least: as many as make one.
+/// Samples after the departure, at least: as many as make one.
 const BEHIND: usize = 3;
 
 /// Each shorter window, in parts of what the one before reaches beyond the departure.
@@ -63,8 +63,8 @@ pub(in crate::delay) struct FromRest {
     pub(in crate::delay) departed: usize,
 }
 
-/// The delay of a step behind `start.rest` of `values`, with an interval that holds the true one as
-/// often as `confidence` says. `None` for less than eight samples of rest, three behind the departure,
+/// The delay of a step after `start.rest` of `values`, with an interval that holds the true one as
+/// often as `confidence` says. `None` for less than eight samples of rest, three after the departure,
 /// or no position.
 pub(in crate::delay) fn gradual_onset(
     values: &[f64],
@@ -78,7 +78,7 @@ pub(in crate::delay) fn gradual_onset(
     }
     let at_rest = Window::of(values.get(..rest)?);
     let variance = at_rest.sse / (rest as f64 - 2.0);
-    // No window reaches farther behind the departure than that is behind the first position.
+    // No window reaches farther after the departure than that is after the first position.
     let farthest = departed + BEHIND.max(departed.saturating_sub(start.positions.start) + 1);
     let longest = farthest.min(values.len());
     let shapes = shapes(longest, values.len());
@@ -140,7 +140,7 @@ impl Window {
     }
 }
 
-/// A shape, at every part of a sample behind its onset.
+/// A shape, at every part of a sample after its onset.
 type Table = Vec<f64>;
 
 /// The shapes that are tried over `samples`, with time constants up to half of `all`.
@@ -163,7 +163,7 @@ fn shapes(samples: usize, all: usize) -> Vec<Table> {
     tables
 }
 
-/// A shape for an onset at `position`, and the first sample behind it.
+/// A shape for an onset at `position`, and the first sample after it.
 fn behind(table: &[f64], position: f64) -> (usize, impl Iterator<Item = f64>) {
     let first = ceil_to_index(position);
     let part = ((first as f64 - position) * FINENESS as f64).round();
@@ -223,7 +223,7 @@ impl<'a> Profile<'a> {
         self.tried.iter().copied().min_by(|a, b| a.sse.total_cmp(&b.sse))
     }
 
-    /// The delay behind the sample `origin` with its interval, where noise has at least this `variance`.
+    /// The delay after the sample `origin` with its interval, where noise has at least this `variance`.
     fn onset(&self, variance: f64, (origin, confidence): (f64, f64)) -> Option<FineDelay> {
         let best = self.best()?;
         let samples = self.window.residuals.len();

@@ -1,7 +1,7 @@
 //! One onset model: a window, a response, a profile.
 //!
 //! A step of the input changes the speed of a joint, or the level to which its output settles,
-//! behind a dead time of its own. What follows is a response that all steps of the joint share: its
+//! after a dead time of its own. What follows is a response that all steps of the joint share: its
 //! [`Shape`](shape::Shape), with one or two parameters. In the window of a step everything but the
 //! onset and these parameters is linear; the onset is a profile of the squared error, which may have
 //! its least before the step, and its interval is where the profile is not plainly worse.

@@ -37,7 +37,7 @@ const NEAR: f64 = 0.25;
 const PLAIN: f64 = 0.7;
 const WORSE: f64 = 0.03;
 
-/// The response that all steps of a joint share behind the dead time that each has of its own.
+/// The response that all steps of a joint share after the dead time that each has of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OnsetModel {
     /// The period of the trials that it was found in.
@@ -64,7 +64,7 @@ pub struct OnsetModel {
     /// Median width of the intervals of the clear onsets, samples.
     width: f64,
     /// Parts of the clear onsets whose whole interval is before their step, and of those that are
-    /// behind the next step.
+    /// after the next step.
     early: f64,
     late: f64,
     /// Whether the output comes to rest where its input says, or at stops.
@@ -80,14 +80,14 @@ struct OfKind {
     shared: f64,
 }
 
-/// Why onsets are no delays of this output behind this input.
+/// Why onsets are no delays of this output to this input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Obstacle {
     /// The sizes of the onsets do not go with the steps of the input.
     Unrelated,
     /// Onsets come before their steps, by so many seconds at the median.
     Leads(f64),
-    /// Onsets come behind the next step, so many seconds late at the median.
+    /// Onsets come after the next step, so many seconds late at the median.
     BeyondHolds(f64),
 }
 
@@ -113,7 +113,7 @@ pub struct StepOnset {
     pub explained: f64,
     /// How often noise alone looks as much like an onset.
     pub p_value: f64,
-    /// Whether the output comes to rest behind the onset.
+    /// Whether the output comes to rest after the onset.
     pub rests: bool,
 }
 
@@ -377,7 +377,7 @@ impl OnsetModel {
         self.shapes.of(self.usual()).parameters(self.period.seconds())
     }
 
-    /// How late a steady motion is behind its onset, seconds; none where the speed changes at once or the
+    /// How late a steady motion is after its onset, seconds; none where the speed changes at once or the
     /// output comes to rest.
     pub fn lag_s(&self) -> Option<f64> {
         let lag = self.shapes.of(self.usual()).mean() * self.period.seconds();

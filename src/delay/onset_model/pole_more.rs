@@ -26,7 +26,7 @@ impl Search {
         };
         let Some(fewer) = fewer else { return Vec::new() };
         let straight = self.begun(fewer, &self.beginnings(fewer));
-        // Holds that seem curved may be straight ones behind a pole more.
+        // Holds that seem curved may be straight ones after a pole more.
         let curved = straight.as_ref().filter(|_| fewer.shape.curved).map(|it| {
             let shape = Shape { curved: true, ..it.shape };
             self.refined(self.evaluate(shape, it.onsets.clone(), it.typical, 2), ROUNDS)
@@ -94,7 +94,7 @@ impl Search {
 
 impl Shape {
     /// A first-order way to a level with a second pole, which is so large a part of the first: of the same
-    /// mean, or behind a dead time that is without it.
+    /// mean, or after a dead time that is without it.
     fn settling_pair(&self, ratio: f64) -> [(Self, f64); 2] {
         // ω² = 1/(T₁T₂) and 2ζω = (T₁ + T₂)/(T₁T₂).
         let first = self.logs[0].exp() / (1.0 + ratio);
@@ -112,7 +112,7 @@ impl Shape {
         self.triple([omega, self.logs[1], ratio.ln() - omega])
     }
 
-    /// The mean of this one as that of a lag, and a pair with `ω T = r` behind it.
+    /// The mean of this one as that of a lag, and a pair with `ω T = r` after it.
     fn behind_lag(&self, ratio: f64, zeta: f64) -> (Self, f64) {
         let lag = self.mean().ln();
         self.triple([ratio.ln() - lag, zeta.ln(), lag])
@@ -135,7 +135,7 @@ mod tests {
     const DELAY: f64 = 12.6;
     const NOISE: f64 = 0.03;
 
-    /// An integrator behind a lag of `lag` samples and an oscillation.
+    /// An integrator after a lag of `lag` samples and an oscillation.
     fn run(omega: f64, zeta: f64, lag: f64) -> Run {
         const PARTS: u32 = 50;
         let h = f64::from(PARTS).recip();

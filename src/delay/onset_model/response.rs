@@ -36,7 +36,7 @@ pub(super) fn bend(unit: f64, longest: usize) -> Dynamics<2> {
     dynamics(Square::<2>::new(0.0, unit.recip(), 0.0, 0.0), 1..1, longest)
 }
 
-/// Dynamics whose speed `s` is the state behind those that follow it; where there is a state more, holds
+/// Dynamics whose speed `s` is the state after those that follow it; where there is a state more, holds
 /// are curved, and it is the rate of the speed.
 fn dynamics<const N: usize>(
     generator: Square<N>,
@@ -58,7 +58,7 @@ fn dynamics<const N: usize>(
     Dynamics::new(generator, unit(speed), nuisance, Steady(steady), longest)
 }
 
-/// An integrator behind lags of one pole each.
+/// An integrator after lags of one pole each.
 fn chain<const N: usize>(h: f64, lags: &[f64]) -> Square<N> {
     let mut a = Square::<N>::zeros();
     a[(0, 1)] = h;
@@ -71,7 +71,7 @@ fn chain<const N: usize>(h: f64, lags: &[f64]) -> Square<N> {
     a
 }
 
-/// An integrator behind a pair of poles and a third one.
+/// An integrator after a pair of poles and a third one.
 fn triple<const N: usize>(
     h: f64,
     (omega, zeta, lag): (f64, f64, f64),
@@ -85,7 +85,7 @@ fn triple<const N: usize>(
     dynamics(a, 1..4, longest)
 }
 
-/// An integrator behind a pair of poles.
+/// An integrator after a pair of poles.
 fn pair<const N: usize>(h: f64, omega: f64, zeta: f64) -> Square<N> {
     let mut a = Square::<N>::zeros();
     (a[(0, 1)], a[(1, 2)]) = (h, omega);

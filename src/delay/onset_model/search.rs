@@ -56,7 +56,7 @@ pub(super) struct Search {
     pub(super) families: &'static [Family],
 }
 
-/// A shape with the onsets behind it.
+/// A shape with its onsets.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     pub(super) shape: Shape,
@@ -118,7 +118,7 @@ impl Search {
         Pass { responses, shapes, reach: self.reach, typical, noise: self.noise, before }
     }
 
-    /// All onsets so many samples behind their steps.
+    /// All onsets so many samples after their steps.
     pub(super) fn starting(&self, delay: f64) -> Vec<Onsets> {
         self.runs.iter().map(|run| Onsets::behind(run, delay)).collect()
     }
@@ -130,7 +130,7 @@ impl Search {
         median(&delays.collect::<Vec<f64>>())
     }
 
-    /// The onsets behind a shape, found in `passes` from where they are taken to be at first.
+    /// The onsets of a shape, found in `passes` from where they are taken to be at first.
     pub(super) fn evaluate(
         &self,
         shape: Shape,
@@ -201,7 +201,7 @@ impl Search {
         pairs.map(|(run, onsets)| onsets.held(run, &pass)).collect()
     }
 
-    /// Each onset of `held` as it was, and as it is behind `shape`.
+    /// Each onset of `held` as it was, and as it is with `shape`.
     fn moved(&self, held: &[Onsets], shape: Shape, typical: f64) -> Vec<(Onset, Onset)> {
         let pass = self.pass(Shapes::shared(shape), typical);
         let of_run = |(run, was): (&Run, &Onsets)| {
@@ -427,7 +427,7 @@ impl Search {
         best
     }
 
-    /// Where onsets behind a shape are taken to be at first, with their typical delay.
+    /// Where onsets of a shape are taken to be at first, with their typical delay.
     fn starts(&self, shape: Shape, bend: &Candidate) -> Vec<(Vec<Onsets>, f64)> {
         /// Delays that are compared in a hold, and the longest lead among them.
         const PER_HOLD: i32 = 12;
@@ -514,6 +514,6 @@ const DISTANCES: (f64, f64) = (1e-3, 0.15);
 /// it is so only near them.
 const FARTHEST: [f64; 2] = [0.45, 0.05];
 
-/// Rounds of Newton's method at most, and those behind which a candidate is near its least.
+/// Rounds of Newton's method at most, and those after which a candidate is near its least.
 pub(super) const ROUNDS: usize = 12;
 pub(super) const NEAR: usize = 5;

@@ -1,6 +1,6 @@
 //! The responses that a joint may have: one entry each.
 //!
-//! A shape is the response of the output to a step of the input behind the dead time. All but two
+//! A shape is the response of the output to a step of the input after the dead time. All but two
 //! are the integral of a speed that follows through a lag; times in samples:
 //!
 //! ```text
@@ -63,7 +63,7 @@ pub(super) struct Shape {
     pub(super) family: Family,
     /// Whether the speed changes within holds.
     pub(super) curved: bool,
-    /// `ln T`, or `ln ω` and `ln ζ`, with `ln T` behind them where there is a third pole, or `ln r`;
+    /// `ln T`, or `ln ω` and `ln ζ`, with `ln T` after them where there is a third pole, or `ln r`;
     /// times in samples.
     pub(super) logs: [f64; MOST],
 }
@@ -140,7 +140,7 @@ impl Shape {
         }
     }
 
-    /// How late a steady motion is behind its onset.
+    /// How late a steady motion is after its onset.
     pub(super) fn mean(&self) -> f64 {
         match self.family {
             Family::Bend | Family::Settling | Family::SettlingPair | Family::Slew => 0.0,
@@ -150,7 +150,7 @@ impl Shape {
         }
     }
 
-    /// How late a steady motion is behind a pair of poles.
+    /// How late a steady motion is after a pair of poles.
     fn pair_mean(&self) -> f64 {
         2.0 * (self.logs[1] - self.logs[0]).exp()
     }

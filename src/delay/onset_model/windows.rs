@@ -1,6 +1,6 @@
 //! The windows of a joint's steps, and one pass over them.
 //!
-//! The window of a step runs from the onset before it to the onset behind it, so that it holds one
+//! The window of a step runs from the onset before it to the onset after it, so that it holds one
 //! onset, its own; each pass finds every onset between its neighbours, which the next pass takes
 //! for the ends of the windows.
 
@@ -36,7 +36,7 @@ pub(super) struct Step {
     pub(super) at: f64,
     pub(super) before: f64,
     pub(super) after: f64,
-    /// The first and behind the last sample that says something of it.
+    /// The first, and one after the last, sample that says something of it.
     pub(super) first: f64,
     pub(super) end: f64,
     /// The last position that its onset may have.
@@ -131,7 +131,7 @@ pub(super) struct Pass {
 }
 
 impl Onsets {
-    /// All of them so many samples behind their steps.
+    /// All of them so many samples after their steps.
     pub(super) fn behind(run: &Run, delay: f64) -> Self {
         Self::at(run.steps.iter().map(|step| step.at + delay).collect())
     }
@@ -183,7 +183,7 @@ impl Onsets {
         }
     }
 
-    /// Moves the onsets up to the step `last` to the next step each, as far as they lie behind it, and
+    /// Moves the onsets up to the step `last` to the next step each, as far as they lie after it, and
     /// finds another for the first of these steps, if less is left over then.
     fn shift(&mut self, run: &Run, last: usize, pass: &Pass) {
         /// Steps of a chain at most (chosen).
@@ -228,7 +228,7 @@ impl Pass {
     /// The window of a step, given where the onsets are taken to be.
     pub(super) fn window(&self, run: &Run, positions: &[f64], index: usize) -> (usize, usize) {
         /// Samples of the first and the last window at least, where the record may hold a reaction to
-        /// what came before it, or, of an output that leads its input, to what comes behind it.
+        /// what came before it, or, of an output that leads its input, to what comes after it.
         const FEWEST: f64 = 10.0;
         let n = run.output.len();
         if run.is_window {

@@ -14,7 +14,7 @@ use crate::numerics::median;
 pub struct RunDelays {
     /// A place for each step of all trials, in order.
     pub steps: Vec<Option<ReportedDelay>>,
-    /// The lag behind the dead time that it found, seconds.
+    /// The lag after the dead time that it found, seconds.
     pub lag_s: Option<f64>,
     /// Whether the medians of its kinds of steps differ by more than is uncertain.
     pub kinds_differ: bool,
@@ -60,7 +60,7 @@ pub struct RunSummary {
     pub disagreements: usize,
     /// Of the steps that most agree on, the part where it agrees with them.
     pub agrees: Option<f64>,
-    /// The lag behind the dead time that it found, seconds.
+    /// The lag after the dead time that it found, seconds.
     #[serde(rename = "lag_mean_s")]
     pub lag_s: Option<f64>,
 }

@@ -40,12 +40,12 @@ impl Axis {
         self.cuts.len() + 1
     }
 
-    /// Where the part begins; no number for the first part and behind the last one.
+    /// Where the part begins; no number for the first part and after the last one.
     pub(super) fn bound(&self, part: u8) -> Option<f64> {
         self.cuts.get(usize::from(part).checked_sub(1)?).copied()
     }
 
-    /// Whether `bound` is between the cuts before and behind the beginning of `part`.
+    /// Whether `bound` is between the cuts before and after the beginning of `part`.
     pub(super) fn is_near(&self, part: u8, bound: Option<f64>) -> bool {
         match (self.bound(part), bound) {
             (None, None) => true,
@@ -59,7 +59,7 @@ impl Axis {
     }
 }
 
-/// The part of `value`, or one behind the last for NaN. There are fewer than 256.
+/// The part of `value`, or one after the last for NaN. There are fewer than 256.
 fn part(cuts: &[f64], value: f64) -> u8 {
     let part =
         if value.is_nan() { cuts.len() + 1 } else { cuts.partition_point(|cut| *cut <= value) };

@@ -52,7 +52,7 @@ pub struct Units {
 pub struct RecordError {
     /// A column, or `segments`.
     pub what: &'static str,
-    /// The first value or segment that is no finite number, of no known trial, or not behind the
+    /// The first value or segment that is no finite number, of no known trial, or not after the
     /// one before; the length of a column with another one.
     pub index: usize,
     /// Samples of the residual.
@@ -180,7 +180,7 @@ impl Samples {
     }
 }
 
-/// The index of the first segment that is not behind the one before it.
+/// The index of the first segment that is not after the one before it.
 fn misplaced(segments: &[Range<usize>], samples: usize) -> Option<usize> {
     let mut end = 0;
     for (index, segment) in segments.iter().enumerate() {

@@ -25,7 +25,7 @@ pub struct WorstSegment {
 }
 
 /// At most `count` segments of `record`, the one with the largest share of the square of `residual`
-/// first: the values at its samples, one behind the other, of this simulation or another one.
+/// first: the values at its samples, one after the other, of this simulation or another one.
 ///
 /// Only those are named whose share is above what an even spread over the samples gives. Where any
 /// is, the one with the largest residual of all is among them, whatever its share: a short spike has

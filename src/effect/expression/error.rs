@@ -56,7 +56,7 @@ pub enum DefinitionError {
     NotNeutral {
         /// The signal in front of it.
         signal: f64,
-        /// The signal behind it.
+        /// The signal after it.
         found: f64,
     },
 }

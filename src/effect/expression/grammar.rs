@@ -79,7 +79,7 @@ pub enum Problem {
         /// All names there are.
         known: String,
     },
-    /// A number has parentheses behind it.
+    /// A number has parentheses after it.
     #[error("`{0}` is not a function; a product is written with `*`")]
     NotAFunction(String),
     /// A function has none.
@@ -96,7 +96,7 @@ pub enum Problem {
         found: usize,
     },
     /// It is longer than any that can be read.
-    #[error("it has {0} characters, and must not have more than {LONGEST}")]
+    #[error("it has {0} characters; at most {LONGEST} are allowed")]
     TooLong(usize),
     /// Too many parentheses within one another.
     #[error("more than {DEEPEST} parentheses are open")]

@@ -16,7 +16,7 @@
 //! `-x^2` is `-(x^2)`, `2^3^2` is `2^(3^2)`. A condition is 1 or 0, and every number but 0
 //! counts as true.
 //!
-//! The result is the signal behind the effect: of the transport stage the seconds by which
+//! The result is the signal after the effect: of the transport stage the seconds by which
 //! a change of the input arrives later, 0 being neutral. Where the result is not a finite
 //! number, the effect does nothing.
 //!

@@ -2,7 +2,7 @@
 //! jumps, and which rows follow one another.
 //!
 //! A stamp is `t_k = a + T·n_k + d_k + j_k` with the place `n_k` of row `k` on an even grid, a
-//! slow drift `d_k` and a jitter `j_k`. Lost rows show as a jump that the rows behind it keep;
+//! slow drift `d_k` and a jitter `j_k`. Lost rows show as a jump that the rows after it keep;
 //! a stamp that is only late is made good by the next ones.
 
 mod evenness;
@@ -41,7 +41,7 @@ pub(super) struct Clock {
     pub(super) jitter: f64,
     /// Largest jitter, in periods, and its row.
     pub(super) largest: (f64, usize),
-    /// Short gaps: how many, the longest in periods, and the row behind the first.
+    /// Short gaps: how many, the longest in periods, and the row after the first.
     pub(super) gaps: Option<(usize, usize, usize)>,
     pub(super) found: Found,
 }

@@ -4,7 +4,7 @@ use super::period::Typical;
 use super::run::{Fault, JUMP, Run};
 use crate::numerics::median;
 
-/// Rows behind a jump that are asked whether it lasts.
+/// Rows after a jump that are asked whether it lasts.
 const LOOK_AHEAD: usize = 5;
 
 /// Whether the stamps, sorted, are those of one clock without a gap, and none is there twice.
@@ -65,8 +65,8 @@ impl Found {
     }
 
     /// `rows` without those that are there twice: a row at the time of the one before it,
-    /// between steps as usual, and not made good by those behind it, as a rounded stamp is: the last
-    /// row, behind which there is none, only where it has the same stamp.
+    /// between steps as usual, and not made good by those after it, as a rounded stamp is: the last
+    /// row, after which there is none, only where it has the same stamp.
     /// Of two with one stamp the later stays: where they differ, it says what holds from then on.
     pub(super) fn once(
         &mut self,
@@ -133,7 +133,7 @@ fn earliness(run: &Run, times: &[f64], period: f64) -> f64 {
     median(&phases).zip(phases.first()).map_or(0.0, |(usual, last)| usual - last)
 }
 
-/// Rows that are missing before the row at `index`, as far as the rows behind it say so; the
+/// Rows that are missing before the row at `index`, as far as the rows after it say so; the
 /// one before it comes `early` by so many periods.
 fn lost_before(
     index: usize,

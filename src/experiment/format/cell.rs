@@ -7,7 +7,7 @@ use crate::experiment::table::BadCell;
 /// those with `ind` and `nan` the C libraries' of Windows.
 const MISSING: &str = "na n/a nv null none nan - \\n nan(ind) nan(snan) 1.#ind 1.#qnan 1.#snan";
 
-/// What spreadsheet programs write for a value that is none, behind a `#`.
+/// What spreadsheet programs write for a value that is none, after a `#`.
 const NO_VALUES: [&str; 12] = [
     "N/A", "NV", "REF!", "BEZUG!", "DIV/0!", "VALUE!", "WERT!", "NAME?", "NUM!", "ZAHL!", "NULL!",
     "SPILL!",
@@ -149,7 +149,7 @@ impl DecimalMarks {
     }
 
     /// The row, the index and the text of the first cell of `column` whose mark may stand between
-    /// thousands, where nothing says that it does not: `1,000` behind `999`, and no `0,5` anywhere.
+    /// thousands, where nothing says that it does not: `1,000` after `999`, and no `0,5` anywhere.
     pub(super) fn doubtful(&self, column: usize) -> Option<&(u64, usize, String)> {
         let whole = self.columns.get(column).filter(|whole| whole.without_mark)?;
         whole.with_mark.as_ref().filter(|_| !self.is_decimal)

@@ -76,7 +76,7 @@ pub(super) fn seconds_of_compact_date(text: &str) -> Option<f64> {
     Some(seconds(civil.timestamp()) + behind)
 }
 
-/// `10:00:01.250`, with the milliseconds behind a point that some loggers write behind a colon.
+/// `10:00:01.250`, with the milliseconds after a point that some loggers write after a colon.
 fn with_point(text: &str) -> String {
     let parts = text.rsplit_once(':').filter(|(before, _)| before.matches(':').count() == 2);
     let digits = |behind: &str| behind.bytes().take_while(u8::is_ascii_digit).count();

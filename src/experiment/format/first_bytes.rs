@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::experiment::error::ReadError;
 
-/// Whether these are the first bytes of MATLAB 5 to 7, or of 7.3, which is HDF5 behind a
+/// Whether these are the first bytes of MATLAB 5 to 7, or of 7.3, which is HDF5 after a
 /// header of 512 bytes or alone.
 pub(super) fn is_matlab(start: &[u8]) -> bool {
     start.starts_with(b"MATLAB 5.0 MAT-file") || is_matlab_73(start)

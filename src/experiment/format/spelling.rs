@@ -127,7 +127,7 @@ fn header_among(above: &[Row], (width, ends_blank): (usize, bool), mark: u8) -> 
         if found.is_some() && *numbers > 0 {
             break;
         }
-        // A mark behind the last cell makes none.
+        // A mark after the last cell makes none.
         let has_one_more =
             cells.len() == width + 1 && cells.iter().next_back().is_some_and(<[u8]>::is_empty);
         let has_one_less = cells.len() + 1 == width && ends_blank;
@@ -235,7 +235,7 @@ pub(super) fn is_remark(record: &csv::ByteRecord, delimiter: u8) -> bool {
         && !is_over_lines(record)
 }
 
-/// Whether a cell goes over several lines: behind a quotation mark that is never closed lies the
+/// Whether a cell goes over several lines: after a quotation mark that is never closed lies the
 /// rest of the table.
 pub(super) fn is_over_lines(record: &csv::ByteRecord) -> bool {
     record.iter().any(|cell| cell.trim_ascii().contains(&b'\n'))

@@ -339,7 +339,7 @@ mod tests {
 
     #[test]
     fn dates_of_both_epochs_are_the_same_days() {
-        // Noon of the first of March 2024, and a millisecond before the midnight behind it.
+        // Noon of the first of March 2024, and a millisecond before the midnight after it.
         for part in [0.5, 1.0 - 1.0 / 86_400_000.0] {
             let from_1900 = 45_352.0 + part;
             let date = |value, is_1904| {

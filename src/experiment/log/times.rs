@@ -160,7 +160,7 @@ impl Log<'_> {
         }
     }
 
-    /// Refuses times whose unit changes: what is behind the change would be another experiment.
+    /// Refuses times whose unit changes: what is after the change would be another experiment.
     fn check_one_unit(&self, column: usize, values: &[f64]) -> Result<(), ReadError> {
         let Some(index) = unit_change(values) else { return Ok(()) };
         let [before, time] =

@@ -82,7 +82,7 @@ fn spread(times: &[f64]) -> Option<Vec<f64>> {
     let mut before: Option<f64> = None;
     for packet in times.chunk_by(|a, b| (0.0..=JUMP * middle).contains(&(b - a))) {
         let (came, rows) = (packet[packet.len() - 1], packet.len() as f64);
-        // Behind a break, and where the clock starts anew, it is known to a period how far rows are apart.
+        // After a break, and where the clock starts anew, it is known to a period how far rows are apart.
         let since = before.map(|before| came - before);
         let since = since.filter(|since| (0.0..=BREAK * usual).contains(since));
         let apart = since.map_or(period, |since| since / rows);

@@ -33,7 +33,7 @@ pub(super) fn put_back(log: &Log<'_>, joint: &JointLayout) -> Option<Mended> {
     Some(Mended { values, note: Some(note) })
 }
 
-/// The jumps of the output of a joint. Rows behind a gap lie as far apart as the joint moved there, and where the clock
+/// The jumps of the output of a joint. Rows after a gap lie as far apart as the joint moved there, and where the clock
 /// starts anew so does the record. Of what wraps it is not known.
 fn shifts(log: &Log<'_>, joint: &JointLayout) -> Option<Shifts> {
     let (inputs, outputs) = (log.parts(joint.input.column)?, log.parts(joint.output.column)?);
@@ -108,14 +108,14 @@ impl Shifts {
         (jumps <= most && are_apart).then_some(found)
     }
 
-    /// The indices behind the jumps of an output.
+    /// The indices after the jumps of an output.
     fn jumps(self, output: &[f64]) -> impl Iterator<Item = usize> {
         let pairs = output.windows(2).zip(1..);
         pairs.filter(move |(pair, _)| (pair[1] - pair[0]).abs() >= self.least).map(|(_, row)| row)
     }
 
     /// Takes the jumps out of `output`: the change of the row before is taken for that of the jump's. The
-    /// indices behind them, with how far they go.
+    /// indices after them, with how far they go.
     fn put_back(self, output: &mut [f64]) -> Vec<(usize, f64)> {
         let rows: Vec<usize> = self.jumps(output).collect();
         let size = |row: usize| {

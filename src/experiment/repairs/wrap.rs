@@ -34,7 +34,7 @@ pub(super) struct Wrap {
 const MOTION: f64 = 0.25;
 const JUMP: f64 = 0.75;
 
-/// Times a turn that it goes through at most: noise and offsets come behind the turn.
+/// Times a turn that it goes through at most: noise and offsets come after the turn.
 const BEYOND: f64 = 1.02;
 
 impl Wrap {
@@ -129,7 +129,7 @@ struct Outlier {
     is_between: bool,
 }
 
-/// The known ones of `values` that are more than `step` from those before and behind.
+/// The known ones of `values` that are more than `step` from those before and after.
 fn outliers(values: &[f64], step: f64) -> Vec<Outlier> {
     if step.is_infinite() {
         return Vec::new();
@@ -247,7 +247,7 @@ fn seen(trials: &[Vec<f64>], range: f64, unit: Option<&str>) -> Option<f64> {
 }
 
 /// The turn of each jump through the `range`: its height and the way gone meanwhile. None of a jump against
-/// which the output does not plainly move, before it and behind it.
+/// which the output does not plainly move, before it and after it.
 fn turns_at_jumps(trial: &[f64], range: f64) -> Vec<f64> {
     /// Samples whose motion is looked at, and the part of the range that it goes through, at least.
     const NEAR: usize = 20;
@@ -261,7 +261,7 @@ fn turns_at_jumps(trial: &[f64], range: f64) -> Vec<f64> {
         let behind = &trial[at..to.min(at + NEAR)];
         let moved = |part: &[f64]| -jump.signum() * (part[part.len() - 1] - part[0]);
         let moves = moved(before).min(moved(behind)) >= LEAST * range;
-        // From the middle of what is before to that of what is behind, by the slopes of both.
+        // From the middle of what is before to that of what is after, by the slopes of both.
         let (before, behind) = (line(before), line(behind));
         let way = |(line, samples): &(RunningLine, usize)| 0.5 * line.slope() * *samples as f64;
         let apart = behind.0.mean() - before.0.mean() - way(&before) - way(&behind);

@@ -108,12 +108,14 @@ impl Survey {
         let mut open = Vec::new();
         if time.is_none() {
             open.push(
-                "no column is a time: name it, or give `sample_period` in seconds".to_owned(),
+                "no column is a time: name one with `--time COLUMN`, or give `--sample-period SECONDS`"
+                    .to_owned(),
             );
         }
         if joints.is_empty() {
             open.push(
-                "neither names nor data show which columns are the input and the output of a joint"
+                "neither names nor data show which columns are the input and the output of a joint: \
+                 name them with `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN`"
                     .to_owned(),
             );
         }

@@ -99,7 +99,7 @@ impl Signal {
     pub(super) fn is_rate_of(&self, position: &Self) -> bool {
         /// Rows that are summed, for which the noise of the position counts the less the more they are.
         const OVER: [usize; 3] = [5, 20, 80];
-        /// Rows that the speed may be before or behind the position's.
+        /// Rows that the speed may be before or after the position's.
         const SHIFT: usize = 20;
         /// Rows that are looked at, spread over the record.
         const ROWS: usize = 2_000;

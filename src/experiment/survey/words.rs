@@ -189,7 +189,7 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// A word and the number behind it: `u` and `1` of `u1`.
+/// A word and the number after it: `u` and `1` of `u1`.
 pub(super) fn parts(word: &str) -> Vec<String> {
     let stem = word.trim_end_matches(|letter: char| letter.is_ascii_digit());
     let number = word.strip_prefix(stem).unwrap_or("");

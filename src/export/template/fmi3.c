@@ -1,4 +1,4 @@
-/* The joint {{ joint | plain }} behind the functions of FMI 3.0, for co-simulation.
+/* The joint {{ joint | plain }} with the functions of FMI 3.0, for co-simulation.
  *
  * The types are those of the standard, written out, so that nothing else is needed to
  * compile this file. */

@@ -5,7 +5,7 @@
  * {{ line | plain }}
 {% endfor %}
  *
- *     dy/dt = gain * s, where s is the input, delay seconds late, behind its effects
+ *     dy/dt = gain * s, where s is the input, delay seconds late, after its effects
  *
  * In C99, without allocation:
  *

@@ -4,7 +4,7 @@ function varargout = {{ name }}(command, varargin)
 %   {{ line }}
 {% endfor %}
 %
-%   dy/dt = gain * s, where s is the input, delay seconds late, behind its effects
+%   dy/dt = gain * s, where s is the input, delay seconds late, after its effects
 %
 %   y = {{ name }}('simulate', u, period_s, y0)   the output for each sample of u, from y0 on
 %   y = {{ name }}('simulate', u, period_s, y0, p, others)

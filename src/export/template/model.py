@@ -4,7 +4,7 @@
 {{ line | plain }}
 {% endfor %}
 
-    dy/dt = gain * s, where s is the input, delay seconds late, behind its effects
+    dy/dt = gain * s, where s is the input, delay seconds late, after its effects
 
 A whole record at once, or sample by sample:
 

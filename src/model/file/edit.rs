@@ -52,7 +52,7 @@ pub(super) fn is_empty(item: &Item) -> bool {
         || item.as_array().is_some_and(Array::is_empty)
 }
 
-/// Adds an entry in the form that the others have, behind an empty line if they are.
+/// Adds an entry in the form that the others have, after an empty line if they are.
 pub(super) fn push(table: &mut dyn TableLike, key: &str, mut entry: Table) -> Option<()> {
     if !table.contains_key(key) {
         table.insert(key, Item::ArrayOfTables(ArrayOfTables::new()));

@@ -25,7 +25,7 @@ pub struct Fitted {
     pub verdict: Option<String>,
     /// The errors of the model before its first revision.
     pub start: Option<RevisionErrors>,
-    /// The parameters by name, that of an effect behind its id: `dead_band.upper`.
+    /// The parameters by name, that of an effect after its id: `dead_band.upper`.
     #[serde(default)]
     pub parameters: BTreeMap<String, FittedParameter>,
 }

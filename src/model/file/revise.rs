@@ -19,7 +19,7 @@ impl ModelFile {
     /// This file with `model` for `joint`, whose history goes on with `revision`.
     ///
     /// Values are replaced in place. Effects that the model no longer has go, with the
-    /// comments above them; those that it has beyond the file's come behind the others. A
+    /// comments above them; those that it has beyond the file's come after the others. A
     /// joint that the file has not is added. Numbers are written with as many digits as it
     /// takes to read the same ones.
     ///
@@ -46,7 +46,7 @@ impl ModelFile {
     /// let errors = RevisionErrors { validation_rmse: Some(0.06), ..<_>::default() };
     /// let revision = Revision { revision: 1, added, errors, ..<_>::default() };
     ///
-    /// let behind = r#"[[joint.boom.effect]]
+    /// let after = r#"[[joint.boom.effect]]
     /// kind = "dead_band"
     /// parameters = { lower = -0.6, upper = 0.6 }
     /// [[joint.boom.history]]
@@ -54,7 +54,7 @@ impl ModelFile {
     /// added = "dead_band"
     /// validation_rmse = 0.06
     /// "#;
-    /// assert_eq!(file.revised("boom", &banded, &revision)?.text(), text.to_owned() + behind);
+    /// assert_eq!(file.revised("boom", &banded, &revision)?.text(), text.to_owned() + after);
     /// # Ok::<(), tauscope::model::ModelError>(())
     /// ```
     pub fn revised(
@@ -207,7 +207,7 @@ impl Writer<'_> {
         Some(())
     }
 
-    /// The indices in the file of the first components, in their order; those behind them
+    /// The indices in the file of the first components, in their order; those after them
     /// are not in it.
     fn indices(&self, entries: &[&mut dyn TableLike], components: &[Component]) -> Vec<usize> {
         let mut next = 0;

@@ -19,14 +19,14 @@ use crate::wording::hanging;
 pub(crate) struct Conclusion {
     /// The verdict in one sentence.
     pub(crate) headline: String,
-    /// What is behind it, question by question.
+    /// What it rests on, question by question.
     pub(crate) passages: Vec<Passage>,
     /// Commands that do what it proposes.
     pub(crate) commands: Vec<String>,
 }
 
 impl Conclusion {
-    /// What is behind it, without the questions.
+    /// What it rests on, without the questions.
     pub(crate) fn sentences(&self) -> String {
         let texts: Vec<String> = self.passages.iter().map(Passage::text).collect();
         texts.join(" ")

@@ -83,11 +83,17 @@ fn anchor(index: usize, joint: &Joint) -> String {
     format!("joint-{}-{}", index + 1, slug(&joint.name))
 }
 
-/// What `report` prints: a line or two per joint.
+/// What `report` prints: a line or two per joint, and the next command of a report on delays alone.
 pub(crate) fn report_text(report: &Report<'_>) -> String {
     let lines = report.sentences().into_iter();
-    lines.map(|(joint, sentence)| [joint, ": ", &sentence, "\n"].concat()).collect()
+    let lines = lines.map(|(joint, sentence)| [joint, ": ", &sentence, "\n"].concat());
+    let next =
+        report.with_models.map(|command| format!("what next:\n  {command}  {WITH_MODELS}\n"));
+    lines.chain(next).collect()
 }
+
+/// What a report has that was made with a model of each joint.
+const WITH_MODELS: &str = "also a model of each joint, and the effects that it lacks";
 
 pub(super) fn origin(report: &Report<'_>) -> Vec<Block> {
     let mut blocks = vec![Block::section("How this was made", "how-this-was-made")];
@@ -96,6 +102,10 @@ pub(super) fn origin(report: &Report<'_>) -> Vec<Block> {
         env!("CARGO_PKG_VERSION")
     )));
     blocks.push(Block::Code(report.command.to_owned()));
+    if let Some(command) = report.with_models {
+        blocks.push(Block::text(format!("This command reports {WITH_MODELS}:")));
+        blocks.push(Block::Code(command.to_owned()));
+    }
     blocks.push(Block::Table(files(&report.experiment.sources)));
     if !report.notes.is_empty() {
         blocks.push(Block::List(report.notes.to_vec()));

@@ -86,7 +86,7 @@ fn equations(compared: &ComparedJoint<'_>) -> String {
     lines.join("\n")
 }
 
-/// What a signal is called behind so many effects.
+/// What a signal is called after so many effects.
 fn behind(name: &str, effects: usize) -> &str {
     if effects == 0 { name } else { "out" }
 }

@@ -391,7 +391,7 @@ fn cross<P>(place: P, role: Role) -> Cross<P, i32> {
     Cross::new(place, fine(4), stroke(role, 1.8))
 }
 
-/// Shades of the revisions behind the first one, on light and on dark ground: the hues that the
+/// Shades of the revisions after the first one, on light and on dark ground: the hues that the
 /// recording has.
 const REVISIONS: [(u32, u32); Revision::COUNT as usize] = [
     (0x00_7F5C, 0x00_9E73),

@@ -27,6 +27,8 @@ pub(crate) struct Report<'a> {
     pub(crate) split: Option<Split>,
     /// The command that makes this report.
     pub(crate) command: &'a str,
+    /// The command that also reports models, where none were asked for.
+    pub(crate) with_models: Option<&'a str>,
     /// The recording that belongs to it.
     pub(crate) recording: Option<RecordingFile<'a>>,
     /// What a person should know who looks at the numbers.

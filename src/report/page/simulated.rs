@@ -172,7 +172,7 @@ pub(crate) fn worst_panel(
     })
 }
 
-/// The samples of a segment, with a part of it before and behind.
+/// The samples of a segment, with a part of it before and after.
 fn around(values: &[f64], trial: &Trial, worst: &WorstSegment) -> Vec<Place> {
     let room = 0.5 * (worst.end_s - worst.start_s).max(trial.period().seconds());
     let (from, to) = (worst.start_s - room, worst.end_s + room);

@@ -7,7 +7,7 @@ use crate::figure::{Axis, Mark, Place, Role, Shape, Span, thinned_to};
 const POINTS: f64 = 1500.0;
 
 /// When each trial of a joint is: as in the log where trials follow one another there, else
-/// each behind the one before it.
+/// each after the one before it.
 pub(crate) struct Timeline<'a> {
     trials: &'a [Trial],
     /// What is added to the times of each trial, seconds.

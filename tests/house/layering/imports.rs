@@ -40,9 +40,9 @@ struct File {
     used: Vec<Vec<String>>,
     /// Paths in bodies and signatures, as written, but for `Self`, which is its type.
     named: BTreeSet<Vec<String>>,
-    /// Methods of `impl` blocks, each behind its type's path as written.
+    /// Methods of `impl` blocks, each after its type's path as written.
     methods: BTreeSet<Vec<String>>,
-    /// Methods that are called on `self`, each behind its type's path as written.
+    /// Methods that are called on `self`, each after its type's path as written.
     of_self: BTreeSet<Vec<String>>,
     /// Methods that are called on anything.
     called: BTreeSet<String>,
@@ -109,7 +109,7 @@ impl House {
         self.files.iter().flat_map(of).collect()
     }
 
-    /// The method at the end of a path behind its type; `None` where that is another crate's.
+    /// The method at the end of a path after its type; `None` where that is another crate's.
     fn method(&self, from: &Module, file: &File, path: &[String]) -> Option<Method> {
         let (name, of) = path.split_last()?;
         let (last, before) = of.split_last()?;
@@ -343,7 +343,7 @@ fn rooted(first: &str, module: &Module) -> Option<Module> {
     }
 }
 
-/// `rest` behind `start`, where `super` leads up.
+/// `rest` after `start`, where `super` leads up.
 fn climbed(mut start: Module, rest: &[String]) -> Vec<String> {
     for part in rest {
         if part == "super" {

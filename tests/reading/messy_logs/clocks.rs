@@ -228,7 +228,7 @@ fn with(header: &str, time: impl Fn(usize) -> String) -> String {
     text
 }
 
-/// Seconds of a minute, with two digits behind the point.
+/// Seconds of a minute, with two digits after the point.
 fn seconds(k: usize) -> String {
     format!("{:02}.{:02}", k / 100 % 60, k % 100)
 }

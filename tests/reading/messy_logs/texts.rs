@@ -135,7 +135,7 @@ pub(crate) fn cells_and_rows() -> Vec<Messy> {
     ]
 }
 
-/// The first two lines once more behind so many.
+/// The first two lines once more after so many.
 fn said_again(log: &str, behind: usize) -> String {
     let (mut made, head): (String, Vec<&str>) = (String::new(), log.lines().take(2).collect());
     for (index, line) in log.lines().enumerate() {
@@ -193,10 +193,10 @@ pub(crate) fn programs() -> Vec<Messy> {
     ]
 }
 
-/// Names as some programs write them, with a blank behind each mark.
+/// Names as some programs write them, with a blank after each mark.
 const QUOTED: &str = "\"time_s\", \"boom.input [V]\", \"boom.output [deg]\"";
 
-/// Marks between cells behind the last one, and within numbers.
+/// Marks between cells after the last one, and within numbers.
 pub(crate) fn marks() -> Vec<Messy> {
     let rows = clean();
     let all = plain(&rows);

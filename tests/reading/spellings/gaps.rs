@@ -42,7 +42,7 @@ fn resampling_takes_the_last_input_that_was_logged() {
 const SPARSE: &str = "time_s,boom.input,boom.output\n\
     0,1,0\n1,1,1\n2,3,2\n3,3,\n4,3,\n5,,\n6,,6\n7,,7\n8,4,8\n";
 
-/// Behind the gap the input is still the last one logged.
+/// After the gap the input is still the last one logged.
 fn holds_the_input_over_the_gap(joint: &Joint) {
     assert_eq!(labels(joint), ["1#1", "1#2"]);
     assert_eq!(inputs(joint), [[1.0, 1.0, 3.0], [3.0, 3.0, 4.0]]);

@@ -35,17 +35,17 @@ impl Instance {
         REGISTRY.iter().position(|row| row.twin.name == self.twin.name)
     }
 
-    /// The signal behind it.
+    /// The signal after it.
     pub(crate) fn act(&self, signal: f64, at: &At, states: &States, rates: &mut States) -> f64 {
         (self.twin.act)(&self.numbers, signal, at, states, rates)
     }
 
-    /// The signal behind it, where it has neither states nor sees the joint.
+    /// The signal after it, where it has neither states nor sees the joint.
     pub(crate) fn pass(&self, signal: f64, at: &At) -> f64 {
         self.act(signal, at, &States::default(), &mut States::default())
     }
 
-    /// The signal behind it after `signal` has long been held, and the states then.
+    /// The signal after it after `signal` has long been held, and the states then.
     pub(crate) fn settle(&self, signal: f64, at: &At, states: &mut States) -> f64 {
         (self.twin.settle)(&self.numbers, signal, at, states)
     }

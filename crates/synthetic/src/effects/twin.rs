@@ -67,9 +67,9 @@ pub(crate) struct Twin {
     pub(super) related: fn(&Numbers, &Clock) -> Option<(usize, &'static str)>,
     /// An effect that does not act beside it.
     pub(super) instead_of: Option<&'static str>,
-    /// Puts the states where a signal that is long held has brought them; the signal behind.
+    /// Puts the states where a signal that is long held has brought them; the signal after.
     pub(crate) settle: fn(&Numbers, f64, &At, &mut States) -> f64,
-    /// The signal behind an effect with these numbers, for the signal before it and the states
+    /// The signal after an effect with these numbers, for the signal before it and the states
     /// of the effect; the last is where the derivatives of the states go.
     pub(crate) act: fn(&Numbers, f64, &At, &States, &mut States) -> f64,
     /// Direction of motion at a level of the valve, 0 at rest, where it was the last one before.

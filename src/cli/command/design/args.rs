@@ -13,9 +13,9 @@ use crate::numerics::to_decimals;
 /// Design the next experiment: an input to play
 ///
 /// Random steps, as Albrecht and Taylor advise: a finite set of levels, repeated, held for
-/// random times, from each level to each other about as often. With a model the joint stays in
-/// the range that it may have. `--separate A,B` makes the shortest input that separates two
-/// effects, and says how surely.
+/// random times, with all transitions about equally often. With a model the output stays in the
+/// allowed range. `--separate A,B` makes the shortest input that distinguishes two effects, and
+/// gives the probability that it does.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
     #[arg(help = data_help(), value_name = "DATA")]
@@ -79,7 +79,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "cross|avoid|LO,HI", value_parser = band, allow_hyphen_values = true)]
     pub(super) dead_band: Option<Band>,
 
-    /// Two effects to separate. The model has one of them, or a log is given
+    /// Two effects to distinguish. The model has one of them, or a log is given
     #[arg(
         long, value_name = "EFFECT,EFFECT", value_delimiter = ',',
         conflicts_with_all = ["levels", "dead_band"]

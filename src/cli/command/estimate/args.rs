@@ -59,7 +59,7 @@ pub(crate) struct FollowArgs {
     #[arg(long = "follow")]
     pub(crate) is_on: bool,
 
-    /// End, too, when the log has not grown for so long
+    /// Also end when the log has not grown for this long
     #[arg(long, value_name = "SECONDS", value_parser = number::threshold, requires = "is_on")]
     pub(crate) idle: Option<f64>,
 }

@@ -41,12 +41,12 @@ pub(crate) struct Args {
 #[derive(ClapArgs, Debug)]
 pub(super) struct ModelArgs {
     /// Report this model, too (TOML, schema `tauscope/model/1`). One that `improve` made from
-    /// these logs is shown as it is, with the ladder of its history; any other is fitted,
-    /// starting at its values. Joints that it has not start as plain integrators
+    /// these logs is shown as it is, with the errors of its history; any other is fitted,
+    /// starting at its values. Joints that are not in it start as plain integrators
     #[arg(short, long, value_name = "MODEL.toml")]
     pub(super) model: Option<PathBuf>,
 
-    /// Add to the model what it lacks, and report the ladder of errors. Without a model
+    /// Add to the model what it lacks, and report the error of each revision. Without a model
     /// each joint starts as a plain integrator; no model file is written
     #[arg(long)]
     pub(super) improve: bool,

@@ -14,16 +14,18 @@ use crate::report::estimate::estimate_table;
 use crate::report::improve::improve_text;
 use crate::report::page::report::Report;
 
-/// Prints what was measured and its delays, as soon as they are known: models take longer.
+/// Prints how the log was read, what was measured and its delays, as soon as they are known: models
+/// take longer.
 pub(super) fn show_delays(args: &Args, study: &Study<'_>) -> anyhow::Result<()> {
     if args.output.run.format == Format::Json {
         return Ok(());
     }
+    study.say_notes();
     let joints = estimated(study.experiment(), &study.estimates);
     let extent = extent_table(study.joints());
     console::print(&format!("{extent}\n{}\n", estimate_table(&joints, &study.settings)))?;
-    let said = "searching for the effects that the models lack; Ctrl-C stops the search and keeps \
-                what was found";
+    let said = "searching for the effects that the models lack, which takes seconds, or minutes for \
+                a long log; Ctrl-C stops the search and keeps what was found";
     study.verbosity().say("improving", said);
     Ok(())
 }

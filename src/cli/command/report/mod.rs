@@ -12,6 +12,7 @@ use crate::delay::Automatic;
 use crate::experiment::{Joint, Source};
 use crate::explain::{Improvement, Options, Revision, Verdict};
 use crate::model::{LogHash, ModelFile};
+use crate::report::answer::input_note;
 use crate::report::page::compose::{report_json, report_text};
 use crate::report::page::report::{RecordingFile, Report};
 use crate::report::review_page::review_page;
@@ -221,6 +222,9 @@ impl Reported<'_> {
         let recording = recording_name
             .as_deref()
             .map(|name| RecordingFile { name, bytes: embedded.as_deref() });
+        let command = command();
+        let has_models = args.model.improve || args.model.model.is_some();
+        let with_models = (!has_models).then(|| format!("{command} --improve"));
         let report = Report {
             heading: args.output.heading(),
             experiment,
@@ -230,13 +234,18 @@ impl Reported<'_> {
             against: &against,
             revised: revised.as_ref().map(ModelFile::text),
             split: args.model.protocol.split(),
-            command: &command(),
+            command: &command,
+            with_models: with_models.as_deref(),
             recording,
             notes: &notes,
             failures,
         };
-        // Those on the logs are said at the end, as by every command.
-        for note in notes.iter().skip(experiment.notes.len()) {
+        // Those on the logs are said by the session.
+        // The tables are printed with what is said of the inputs.
+        let with_tables = joints.iter().filter(|_| self.shown == Shown::Everything);
+        let printed: Vec<String> = with_tables.filter_map(input_note).collect();
+        let others = notes.iter().skip(experiment.notes.len());
+        for note in others.filter(|note| !printed.contains(note)) {
             study.verbosity().say("note", note);
         }
         if let Some(target) = target {

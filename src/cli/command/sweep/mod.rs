@@ -36,7 +36,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     data: DataArgs,
 
-    /// How a breakpoint is found
+    /// The methods by which delays are found
     #[arg(long, value_name = "NAMES", default_value_t = Values::all(), value_parser = methods)]
     method: Values<Method>,
 

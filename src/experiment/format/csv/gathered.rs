@@ -32,7 +32,7 @@ pub(super) struct Gathered<'w> {
     /// Rows of words and of zero bytes, which belong to the table if rows of numbers follow.
     held_back: Vec<(csv::ByteRecord, Place)>,
     /// Whether one among those of numbers says what the header or the rows of words below it say, where logs
-    /// were put behind one another or a logger writes its header anew.
+    /// were put after one another or a logger writes its header anew.
     repeats_head: bool,
     /// The rows of words below the header.
     above: Vec<(csv::ByteRecord, Place)>,
@@ -139,7 +139,7 @@ impl<'w> Gathered<'w> {
         Ok(())
     }
 
-    /// Refuses a row of more or fewer cells than the first one. That one may have a mark behind its last
+    /// Refuses a row of more or fewer cells than the first one. That one may have a mark after its last
     /// cell which the header does not have, or the other way round; such a mark makes no cell.
     fn check_width(&mut self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
         let (headers, found) = (&self.wanted.head.headers, record.len());
@@ -163,7 +163,7 @@ impl<'w> Gathered<'w> {
     }
 
     /// Refuses a row one cell of which holds further rows: a quotation mark in it is never closed, or far
-    /// behind.
+    /// after.
     fn check_quotation(&self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
         let Place { row, lines, .. } = place;
         let marks = self.wanted.head.headers.len().saturating_sub(1);

@@ -17,7 +17,7 @@ pub(super) fn check_header_size(cells: usize, budget: &Budget) -> Result<(), Rea
     /// Memory of a name, and of what is looked for in its column (measured: 180 to 250 bytes).
     const HEADER_SIZE: usize = 256;
     if cells > MOST {
-        let reason = format!("its header has {cells} cells, and {MOST} are the most");
+        let reason = format!("its header has {cells} cells; at most {MOST} are read");
         return Err(ReadError::format(A_TABLE, reason, "leave out columns"));
     }
     budget.take_values(cells, HEADER_SIZE)
@@ -44,7 +44,7 @@ pub(super) fn check_last_name(
     }
     let header = head.header_row;
     let reason = format!(
-        "row {header} has {names} names and a mark behind the last, and row {row} has {cells} cells"
+        "row {header} has {names} names and a separator after the last, and row {row} has {cells} cells"
     );
     Err(ReadError::format(A_TABLE, reason, "name each column"))
 }

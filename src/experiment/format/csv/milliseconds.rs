@@ -1,4 +1,4 @@
-//! Times of day whose milliseconds have no leading zeros: `9:59:50.10` is 10 ms behind the second, not
+//! Times of day whose milliseconds have no leading zeros: `9:59:50.10` is 10 ms after the second, not
 //! 100.
 
 /// What the decimals of the times say.

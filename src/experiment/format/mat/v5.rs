@@ -128,7 +128,7 @@ impl Bytes<'_> {
         }
         let size = self.u32()? as usize;
         let data = self.take(size)?;
-        // Elements start at multiples of eight bytes; behind the last one nothing need be.
+        // Elements start at multiples of eight bytes; after the last one nothing need be.
         self.take((size.next_multiple_of(8) - size).min(self.data.len()))?;
         Ok((kind, data))
     }
@@ -204,7 +204,7 @@ fn array(
     found: &mut Vec<Variable>,
 ) -> Result<(), ReadError> {
     if depth > DEEPEST {
-        return fault("structures lie too deep in one another");
+        return fault("structures are nested too deeply");
     }
     let mut dims = vec![0, 0];
     // An empty array may have no bytes.

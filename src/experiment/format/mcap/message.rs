@@ -145,7 +145,10 @@ impl<'a, E: CdrEndian> Decoding<'a, E> {
         depth: usize,
     ) -> Result<Value<'a>, Error> {
         if depth > DEEPEST {
-            return Err(refused(format!("`{}` lies too deep in itself or other types", spec.name)));
+            return Err(refused(format!(
+                "`{}` is nested too deeply in itself or in other types",
+                spec.name
+            )));
         }
         let left = self.fields.checked_sub(1 + spec.fields.len());
         self.fields = left.ok_or_else(|| refused("it has too many fields".to_owned()))?;
@@ -248,7 +251,7 @@ mod tests {
     use super::super::fields::each_number;
     use super::*;
 
-    /// Two joints of which each has a list of values, behind an image.
+    /// Two joints of which each has a list of values, after an image.
     const DEFINITION: &str = "string[] joint_names\nuint16[] image\nPart[] parts\nfloat64[2] pair\nbool on\n\
         ================================================================================\n\
         MSG: demo/Part\nstring[] names\nfloat32[] values\n";

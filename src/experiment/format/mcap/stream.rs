@@ -142,7 +142,7 @@ fn strings_fit(opcode: u8, data: &[u8]) -> bool {
     for _ in 0..strings {
         rest = rest.and_then(block).map(|(_, rest)| rest);
     }
-    // Behind those of a channel is a map of strings.
+    // After those of a channel is a map of strings.
     match rest {
         Some(rest) if opcode == op::CHANNEL => block(rest).is_some_and(|(map, _)| are_strings(map)),
         rest => rest.is_some(),
@@ -156,7 +156,7 @@ fn are_strings(mut data: &[u8]) -> bool {
     data.is_empty()
 }
 
-/// As many bytes as the number before them says, and what is behind them.
+/// As many bytes as the number before them says, and what is after them.
 fn block(data: &[u8]) -> Option<(&[u8], &[u8])> {
     let (length, rest) = data.split_first_chunk::<4>()?;
     rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)
