@@ -32,7 +32,7 @@ pub(super) enum Scope {
 const FINALISTS: usize = 9;
 
 /// Effects that are fitted before it is asked whether one of them can be added.
-const FITTED_AT_ONCE: usize = 3;
+const FITTED_AT_ONCE: usize = 4;
 
 /// What the cost of a finalist may be after the survey, in parts of the least. Chosen: with 1.3 six
 /// measured joints get the same models in 96 % of the time.

@@ -101,11 +101,21 @@ pub fn rough_survey(
     let coarse = record.for_training().coarser_for(model);
     let _turn = turn::wait_for(coarse.training_samples() * space.free.len());
     let short = coarse.shortened();
+    // Between which levels an effect jumps is chosen on the whole record: few of its steps decide, and the
+    // part that is fitted may have none of them.
+    let whole = space.has_jumps().then(|| record.coarser_for(model).unsplit().shortened());
     let place = |search: Search<'_, '_>| {
+        let mut search = search;
+        if let Some(whole) = &whole {
+            search = search.onto(whole).across_flats().onto(&short);
+            search.cost = search.problem.cost();
+        }
         (Survey { model: search.problem.model_now(), cost: search.cost }, search.slopes)
     };
     let searches = rough(&short, &coarse, model, &space, range);
-    Ok(RoughSurvey { places: searches.into_iter().map(place).collect() })
+    let mut places: Vec<_> = searches.into_iter().map(place).collect();
+    places.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
+    Ok(RoughSurvey { places })
 }
 
 /// The rest of a survey that has `begun`: the best of where descents from its places end; none where it
@@ -121,13 +131,7 @@ pub fn end_survey(
         let coarse = record.for_training().coarser_for(model);
         let samples = coarse.training_samples();
         let _turn = turn::wait_for(samples * space.free.len());
-        // Between which levels an effect jumps is chosen on the whole record: few of its steps decide, and
-        // the part that is fitted may have none of them.
-        let whole = space.has_jumps().then(|| record.coarser_for(model).unsplit().shortened());
-        let mut search = Search::new(&coarse, model, &space, plain(model)).knowing(slopes.clone());
-        if let Some(whole) = &whole {
-            search = search.onto(whole).across_flats().onto(&coarse);
-        }
+        let search = Search::new(&coarse, model, &space, plain(model)).knowing(slopes.clone());
         let search = search.descended(comparing(samples));
         Survey { model: search.problem.model_now(), cost: search.cost }
     });
