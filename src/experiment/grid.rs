@@ -16,8 +16,8 @@ pub struct Repair {
     /// Fill gaps up to this many seconds; longer ones split the trial in two. None: gaps of
     /// a few samples are filled.
     pub fill_s: Option<f64>,
-    /// Refuse times that are not uniform and cells that are empty: what is made of them
-    /// depends on the whole log, which may still grow.
+    /// Leave out a last line without an end, and refuse times that are not uniform and cells that are empty:
+    /// what is made of them depends on the whole log, which may still grow.
     #[serde(skip)]
     pub as_it_stands: bool,
 }
@@ -28,10 +28,6 @@ const UNIFORMITY: f64 = 0.01;
 
 /// Digits of a period: 0.01 s out of times that are binary sums.
 const DIGITS: usize = 9;
-
-/// Without a stated limit, resampling does not bridge gaps longer than this many
-/// periods: a line drawn over a pause would look like a measurement.
-const RESAMPLE_GAP_PERIODS: f64 = 10.0;
 
 /// Samples of one trial that are still handled: 8 GB as numbers.
 const MOST_SAMPLES: f64 = 1e9;
@@ -97,8 +93,7 @@ impl Grid {
         }
         let median = median(&steps).ok_or(Fault::SingleRow)?;
         if let Some(period) = repair.resample {
-            let default_gap = RESAMPLE_GAP_PERIODS * period.seconds().max(median);
-            let longest_gap_s = repair.fill_s.unwrap_or(default_gap);
+            let longest_gap_s = repair.longest_gap_s(period.seconds().max(median));
             return Self::of_parts(period, vec![Part::resampled(times.to_vec(), longest_gap_s)]);
         }
         let places = place_rows(&steps, median, repair)?;
@@ -109,14 +104,6 @@ impl Grid {
             SamplePeriod::from_seconds(as_written(period, DIGITS)).ok_or(Fault::SingleRow)?;
         let longest_gap_s = repair.longest_gap_s(period.seconds());
         Self::of_parts(period, vec![Part::at_places(start_s, &places, longest_gap_s)])
-    }
-
-    /// A grid on which row follows row, where the log has no times.
-    pub(super) fn of_rows(rows: usize, period: SamplePeriod, repair: Repair) -> Self {
-        let longest_gap_s = repair.longest_gap_s(period.seconds());
-        let places: Vec<usize> = (0..rows).collect();
-        let part = Part::at_places(0.0, &places, longest_gap_s);
-        Self { period, parts: vec![part] }
     }
 
     /// The grid of some `parts`.
