@@ -1,6 +1,6 @@
 //! The times of a log: how its clock counts, its grids, and what is odd about them.
 
-use super::cells::{Log, Times};
+use super::cells::Log;
 use super::unit_change::unit_change;
 use crate::experiment::clock::{Fault, is_period};
 use crate::experiment::error::{ReadError, ReadErrorKind};
@@ -21,7 +21,8 @@ impl Log<'_> {
             TimeSource::Times(column, scale) => (column, scale),
             TimeSource::SampleNumbers(column, period) => (column, Some(period.seconds())),
             TimeSource::Rows(period) => {
-                self.times = Times::Rows(period);
+                let rows = self.trials.iter().flat_map(|trial| 0..trial.end - trial.start);
+                self.times = rows.map(|row| row as f64 * period.seconds()).collect();
                 return Ok(());
             }
         };
@@ -31,7 +32,7 @@ impl Log<'_> {
         let counting = Counting::of(column, values, scale.filter(|_| !are_dates));
         let times: Vec<f64> = values.iter().map(|value| counting.seconds_of(*value)).collect();
         self.check_times(column, &times)?;
-        self.times = Times::Stamps(times);
+        self.times = times;
         let is_number = matches!(self.layout.time, TimeSource::SampleNumbers(..));
         self.counting = Some(counting).filter(|_| !is_number);
         Ok(())
@@ -50,10 +51,6 @@ impl Log<'_> {
 
     /// The grid of each trial, and what was done to lay it.
     pub(super) fn grids(&self, options: Repair) -> Result<(Vec<Grid>, Vec<String>), ReadError> {
-        if let Times::Rows(period) = self.times {
-            let grid = |trial: &TrialRows| Grid::of_rows(trial.end - trial.start, period, options);
-            return Ok((self.trials.iter().map(grid).collect(), Vec::new()));
-        }
         let trials = 0..self.trials.len();
         let times: Vec<&[f64]> = trials.filter_map(|trial| self.times_of(trial)).collect();
         let number = |trial: usize, row: usize| {
