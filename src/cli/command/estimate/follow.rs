@@ -291,9 +291,9 @@ mod tests {
     }
 
     /// Rows of the only trial that the whole lines of a log with these bytes have.
-    fn rows_of(name: &str, bytes: &[u8]) -> usize {
+    fn rows_of(bytes: &[u8]) -> usize {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(name);
+        let path = folder.path().join("log.csv");
         std::fs::write(&path, bytes).unwrap();
         let log = Followed::of(&path, &asked(&path)).unwrap();
         log.experiment().joints.first().map_or(0, |joint| joint.trials[0].len())
@@ -341,7 +341,7 @@ mod tests {
         let text = "\u{feff}t,a.input,a.output,\u{a15}\u{150a}\n0,1,2,\n1,1,3,\u{150a}\n";
         for to_bytes in [u16::to_le_bytes, u16::to_be_bytes] {
             let bytes: Vec<u8> = text.encode_utf16().flat_map(to_bytes).collect();
-            let rows = |left: usize| rows_of("log.csv", &bytes[..bytes.len() - left]);
+            let rows = |left: usize| rows_of(&bytes[..bytes.len() - left]);
             assert_eq!([0, 1, 2, 3, 4, 6].map(rows), [2, 0, 0, 0, 0, 0], "one row makes no trial");
         }
     }
@@ -358,7 +358,7 @@ mod tests {
             ("4,0,6,\n", 0),
         ] {
             log.push_str(text);
-            assert_eq!(rows_of("log.csv", log.as_bytes()), rows, "{text}");
+            assert_eq!(rows_of(log.as_bytes()), rows, "{text}");
         }
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn show_delays(args: &Args, study: &Study<'_>) -> anyhow::Result<()> 
     if args.output.run.format == Format::Json {
         return Ok(());
     }
-    let joints = estimated(study.experiment(), &study.estimates);
+    let joints = estimated(&study.experiment, &study.estimates);
     let extent = extent_table(study.joints());
     console::print(&format!("{extent}\n{}\n", estimate_table(&joints, &study.settings)))?;
     let said = "searching for the effects that the models lack; Ctrl-C stops the search and keeps \

@@ -7,12 +7,9 @@ use super::fields::{each_number, first_field};
 use super::message::Value;
 use crate::experiment::clock::between_restarts;
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::Budget;
+use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::table::Wanted;
 use crate::numerics::median;
-
-/// Memory of a number: itself, a copy, and what its vector has to spare.
-const NUMBER_SIZE: usize = 3 * size_of::<f64>();
 
 /// Time in nanoseconds by which a step may come late, and by which rows are apart then.
 const LATE: i64 = 10_000_000;
