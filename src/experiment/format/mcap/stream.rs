@@ -55,7 +55,8 @@ pub(super) fn each_record(
                 }
             }
             Err(error) => {
-                if let McapError::RecordTooLarge { len, .. } = error {
+                if let McapError::RecordTooLarge { len, .. } | McapError::ChunkTooLarge(len) = error
+                {
                     budget.check(len.min(LARGEST_RECORD))?;
                 }
                 return Err(error.into());
