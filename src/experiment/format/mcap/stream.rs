@@ -10,8 +10,8 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 
-/// A record larger than this is a sign of damage: memory is not asked for it.
-const LARGEST_RECORD: u64 = 1 << 30;
+/// A record larger than this is a sign of damage. The crate mcap 0.26 takes the memory that one claims.
+const LARGEST_RECORD: u64 = 1 << 28;
 
 /// Why a file is refused.
 pub(super) fn refused(reason: impl Display, remedy: &str) -> ReadError {
