@@ -50,8 +50,8 @@ pub(super) fn each_record(
                 reader.notify_read(count);
             }
             Ok(LinearReadEvent::Record { opcode, data }) => {
-                if [op::SCHEMA, op::CHANNEL, op::MESSAGE].contains(&opcode) {
-                    visit(mcap::parse_record(opcode, data)?)?;
+                if let Some(record) = parsed(opcode, data)? {
+                    visit(record)?;
                 }
             }
             Err(error) => {
@@ -64,4 +64,77 @@ pub(super) fn each_record(
         }
     }
     Ok(())
+}
+
+/// A record, where it is one that is of use.
+fn parsed(opcode: u8, data: &[u8]) -> Result<Option<Record<'_>>, McapError> {
+    match opcode {
+        op::SCHEMA | op::CHANNEL | op::MESSAGE if strings_fit(opcode, data) => {
+            mcap::parse_record(opcode, data).map(Some)
+        }
+        op::SCHEMA | op::CHANNEL => Err(McapError::UnexpectedEof),
+        _ => Ok(None),
+    }
+}
+
+/// Whether the strings of a record lie within it: the crate takes memory for a string before it looks
+/// whether it is there, so that four bytes that claim four gigabytes would end the program.
+fn strings_fit(opcode: u8, data: &[u8]) -> bool {
+    let head = match opcode {
+        op::SCHEMA => 2,
+        op::CHANNEL => 4,
+        _ => return true,
+    };
+    let mut rest = data.get(head..);
+    for _ in 0..2 {
+        rest = rest.and_then(block).map(|(_, rest)| rest);
+    }
+    // Behind those of a channel is a map of strings.
+    match rest {
+        Some(rest) if opcode == op::CHANNEL => block(rest).is_some_and(|(map, _)| are_strings(map)),
+        rest => rest.is_some(),
+    }
+}
+
+fn are_strings(mut data: &[u8]) -> bool {
+    while let Some((_, rest)) = block(data) {
+        data = rest;
+    }
+    data.is_empty()
+}
+
+/// As many bytes as the number before them says, and what is behind them.
+fn block(data: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (length, rest) = data.split_first_chunk::<4>()?;
+    rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(text: &str) -> Vec<u8> {
+        let length = u32::try_from(text.len()).unwrap();
+        [&length.to_le_bytes()[..], text.as_bytes()].concat()
+    }
+
+    #[test]
+    fn a_string_that_is_longer_than_its_record_does_not_fit() {
+        let topics = [text("a/topic"), text("cdr")].concat();
+        let entries = [text("key"), text("value")].concat();
+        let map = [&u32::try_from(entries.len()).unwrap().to_le_bytes()[..], &entries].concat();
+        let channel = [&[1, 0, 1, 0][..], &topics, &map].concat();
+        assert!(matches!(parsed(op::CHANNEL, &channel), Ok(Some(Record::Channel(_)))));
+        // The last byte of each length.
+        for place in [7, 18, 25, 29, 36] {
+            let mut forged = channel.clone();
+            assert_eq!(forged[place], 0);
+            forged[place] = 0x7f;
+            assert!(parsed(op::CHANNEL, &forged).is_err(), "{place}");
+        }
+        let schema = [&[1, 0][..], &topics, &[0; 4]].concat();
+        assert!(matches!(parsed(op::SCHEMA, &schema), Ok(Some(Record::Schema { .. }))));
+        assert!(parsed(op::SCHEMA, &topics).is_err());
+        assert!(matches!(parsed(op::HEADER, &[]), Ok(None)), "of no use");
+    }
 }
