@@ -40,15 +40,22 @@ struct Unread {
 
 /// Opens the log and looks at its messages.
 pub(super) fn open(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
+    let (file, size) = opened(path)?;
     let mut topics = Topics::default();
-    let file = BufReader::new(File::open(path)?);
-    stream::each_record(file, budget, |record| topics.look_at(record, budget))
+    stream::each_record(file, size, budget, |record| topics.look_at(record, budget))
         .and_then(|()| topics.check())?;
     let places = topics.places();
     let headers = places.iter().map(|place| topics.header(place)).collect();
     let unread = std::mem::take(&mut topics.left);
     let rows = Box::new(Unread { path: path.to_owned(), topics, places });
     Ok((Head { headers, header_row: 0, unread }, rows))
+}
+
+/// The file, and its length in bytes.
+fn opened(path: &Path) -> Result<(BufReader<File>, u64), ReadError> {
+    let file = File::open(path)?;
+    let size = file.metadata()?.len();
+    Ok((BufReader::new(file), size))
 }
 
 impl Rows for Unread {
@@ -96,8 +103,8 @@ impl Unread {
                 messages.want(*topic, field, index);
             }
         }
-        let file = BufReader::new(File::open(&self.path)?);
-        stream::each_record(file, wanted.budget, |record| match record {
+        let (file, size) = opened(&self.path)?;
+        stream::each_record(file, size, wanted.budget, |record| match record {
             Record::Message { header, data } => {
                 self.take(&header, &data, clock, (&mut messages, wanted.budget))
             }
