@@ -119,7 +119,7 @@ impl<'a> Draw<'a> {
         let (mut by_label, mut by_whole) = (HashMap::new(), HashMap::new());
         for trial in trials {
             by_label.entry(trial.label()).or_insert_with(Vec::new).push(trial);
-            by_whole.entry(whole(trial.label())).or_insert_with(Vec::new).push(trial);
+            by_whole.entry(Trial::whole_label(trial.label())).or_insert_with(Vec::new).push(trial);
         }
         Self { other, most, by_label, by_whole }
     }
@@ -127,7 +127,7 @@ impl<'a> Draw<'a> {
     /// Its trials that may run at the same time as one labelled `label`: the one with this
     /// label; else the parts of the same trial, which were split where one joint has a gap.
     fn at_the_time_of(&self, label: &str) -> &[&'a Trial] {
-        let parts = || self.by_whole.get(whole(label));
+        let parts = || self.by_whole.get(Trial::whole_label(label));
         self.by_label.get(label).or_else(parts).map_or(&[], Vec::as_slice)
     }
 
@@ -151,11 +151,6 @@ impl<'a> Draw<'a> {
             *value += drawn;
         }
     }
-}
-
-/// The label of the trial that `label` is a part of: `a` of `a#2`.
-fn whole(label: &str) -> &str {
-    label.split_once('#').map_or(label, |(whole, _)| whole)
 }
 
 /// The input of `trial` at a time, held from its last sample; zero before and after it.

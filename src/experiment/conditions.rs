@@ -21,7 +21,7 @@ pub(crate) fn has_word(label: &str, word: &str) -> bool {
 
 fn words(label: &str) -> impl Iterator<Item = &str> {
     // What is after `#` counts the parts into which a trial was cut.
-    let whole = label.split_once('#').map_or(label, |(whole, _)| whole);
+    let whole = Trial::whole_label(label);
     whole.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty())
 }
 

@@ -110,6 +110,20 @@ impl ReadError {
         Self { row, ..self }
     }
 
+    /// It is about the row with this index in its trial: see [`Self::in_trial`].
+    pub(super) fn at_index(self, index: usize) -> Self {
+        self.in_row(index as u64 + 1)
+    }
+
+    /// As one of the trial with this `label`, a row of which is called by `number`; what is wrong with all of
+    /// the trial names it.
+    pub(super) fn in_trial(self, label: &str, number: impl Fn(usize) -> u64) -> Self {
+        let is_of_all = matches!(self.kind, ReadErrorKind::Empty | ReadErrorKind::TooManySamples);
+        let text = if is_of_all { format!("trial `{label}` {}", self.text) } else { self.text };
+        let index = self.row.checked_sub(1).and_then(|index| usize::try_from(index).ok());
+        Self { text, row: index.map_or(0, number), ..self }
+    }
+
     /// It is about this column.
     pub(super) fn in_column(self, column: impl Into<String>) -> Self {
         Self { column: Some(column.into()), ..self }

@@ -21,10 +21,6 @@ pub(super) fn no_shorter(seconds: f64) -> f64 {
 
 /// Whether both are parts of the same trial.
 fn are_of_one(before: &Trial, behind: &Trial) -> bool {
-    stem(before.label()).is_some() && stem(before.label()) == stem(behind.label())
-}
-
-/// The name of the trial that this is a part of.
-fn stem(label: &str) -> Option<&str> {
-    label.rsplit_once('#').map(|(stem, _)| stem)
+    let whole = Trial::whole_label(before.label());
+    whole != before.label() && whole == Trial::whole_label(behind.label())
 }

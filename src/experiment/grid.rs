@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use super::clock::{Fault, filled_s};
+use super::clock::{filled_s, not_increasing, single_row};
+use super::error::{ReadError, ReadErrorKind};
 use crate::numerics::{as_written, median};
 use crate::units::{SamplePeriod, floor_to_index};
 
@@ -16,8 +17,8 @@ pub struct Repair {
     /// Fill gaps up to this many seconds; longer ones split the trial in two. None: gaps of
     /// a few samples are filled.
     pub fill_s: Option<f64>,
-    /// Refuse times that are not uniform and cells that are empty: what is made of them
-    /// depends on the whole log, which may still grow.
+    /// Leave out a last line without an end, and refuse times that are not uniform and cells that are empty:
+    /// what is made of them depends on the whole log, which may still grow.
     #[serde(skip)]
     pub as_it_stands: bool,
 }
@@ -28,10 +29,6 @@ const UNIFORMITY: f64 = 0.01;
 
 /// Digits of a period: 0.01 s out of times that are binary sums.
 const DIGITS: usize = 9;
-
-/// Without a stated limit, resampling does not bridge gaps longer than this many
-/// periods: a line drawn over a pause would look like a measurement.
-const RESAMPLE_GAP_PERIODS: f64 = 10.0;
 
 /// Samples of one trial that are still handled: 8 GB as numbers.
 const MOST_SAMPLES: f64 = 1e9;
@@ -90,15 +87,14 @@ pub(super) struct Piece {
 impl Grid {
     /// Lays the grid over rows at `times`, in seconds, where these are uniform but for rows that are lost
     /// and may be filled, or another period is asked for.
-    pub(super) fn lay(times: &[f64], repair: Repair) -> Result<Self, Fault> {
+    pub(super) fn lay(times: &[f64], repair: Repair) -> Result<Self, ReadError> {
         let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         if let Some(row) = steps.iter().position(|&step| step <= 0.0 || step.is_nan()) {
-            return Err(Fault::NotIncreasing { row: row + 1 });
+            return Err(not_increasing(times, row + 1));
         }
-        let median = median(&steps).ok_or(Fault::SingleRow)?;
+        let median = median(&steps).ok_or_else(single_row)?;
         if let Some(period) = repair.resample {
-            let default_gap = RESAMPLE_GAP_PERIODS * period.seconds().max(median);
-            let longest_gap_s = repair.fill_s.unwrap_or(default_gap);
+            let longest_gap_s = repair.longest_gap_s(period.seconds().max(median));
             return Self::of_parts(period, vec![Part::resampled(times.to_vec(), longest_gap_s)]);
         }
         let places = place_rows(&steps, median, repair)?;
@@ -106,27 +102,24 @@ impl Grid {
         let span = times.last().copied().unwrap_or_default() - start_s;
         let period = span / places.last().copied().unwrap_or(1) as f64;
         let period =
-            SamplePeriod::from_seconds(as_written(period, DIGITS)).ok_or(Fault::SingleRow)?;
+            SamplePeriod::from_seconds(as_written(period, DIGITS)).ok_or_else(single_row)?;
         let longest_gap_s = repair.longest_gap_s(period.seconds());
         Self::of_parts(period, vec![Part::at_places(start_s, &places, longest_gap_s)])
-    }
-
-    /// A grid on which row follows row, where the log has no times.
-    pub(super) fn of_rows(rows: usize, period: SamplePeriod, repair: Repair) -> Self {
-        let longest_gap_s = repair.longest_gap_s(period.seconds());
-        let places: Vec<usize> = (0..rows).collect();
-        let part = Part::at_places(0.0, &places, longest_gap_s);
-        Self { period, parts: vec![part] }
     }
 
     /// The grid of some `parts`.
     ///
     /// # Errors
-    /// [`Fault::TooMany`] where it would have more samples than can be handled.
-    pub(super) fn of_parts(period: SamplePeriod, parts: Vec<Part>) -> Result<Self, Fault> {
+    /// [`ReadErrorKind::TooManySamples`] where it would have more samples than can be handled.
+    pub(super) fn of_parts(period: SamplePeriod, parts: Vec<Part>) -> Result<Self, ReadError> {
         let grid = Self { period, parts };
         let (samples, period) = (grid.length(), period.seconds());
-        if samples > MOST_SAMPLES { Err(Fault::TooMany { samples, period }) } else { Ok(grid) }
+        if samples <= MOST_SAMPLES {
+            return Ok(grid);
+        }
+        let text =
+            format!("would have {samples:e} samples on a grid of {period} s; check the times");
+        Err(ReadError::new(ReadErrorKind::TooManySamples, text))
     }
 
     pub(super) fn period(&self) -> SamplePeriod {
@@ -282,7 +275,7 @@ impl Signals {
 const MOST_PLACES: f64 = 1e12;
 
 /// The place of each row on a grid of `period`, from the steps between rows.
-fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, Fault> {
+fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, ReadError> {
     let mut places = Vec::with_capacity(steps.len() + 1);
     places.push(0);
     let mut place = 0;
@@ -294,11 +287,12 @@ fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, 
         let countable = periods < MOST_PLACES;
         let lost_rows = repair.fill_s.is_some() && (uniform || pause) && countable;
         if !(lost_rows || uniform && periods < 1.5) {
-            return Err(Fault::NotUniform {
-                row: index + 1,
-                step,
-                period: as_written(period, DIGITS),
-            });
+            let period = as_written(period, DIGITS);
+            let text = format!(
+                "this sample comes {step} s after the one before, but the period is {period} s (median)"
+            );
+            let kind = ReadErrorKind::NotUniform { step, period };
+            return Err(ReadError::new(kind, text).at_index(index + 1));
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
         let periods = periods as usize;
@@ -340,12 +334,16 @@ mod tests {
 
     #[test]
     fn the_row_that_is_off_is_named() {
-        let lay = |times: &[f64]| Grid::lay(times, Repair::default());
-        assert_eq!(lay(&[0.0, 0.1, 0.1]), Err(Fault::NotIncreasing { row: 2 }));
-        assert_eq!(lay(&[0.0, 0.1, 0.05]), Err(Fault::NotIncreasing { row: 2 }));
-        assert_eq!(lay(&[0.0]), Err(Fault::SingleRow));
-        let off = lay(&[0.0, 0.1, 0.2, 0.3, 0.5, 0.6]);
-        assert!(matches!(off, Err(Fault::NotUniform { row: 4, .. })), "{off:?}");
+        for (times, says, row) in [
+            (&[0.0, 0.1, 0.1][..], "must increase", 3),
+            (&[0.0, 0.1, 0.05], "must increase", 3),
+            (&[0.0], "one row only", 1),
+            (&[0.0, 0.1, 0.2, 0.3, 0.5, 0.6], "but the period is 0.1 s", 5),
+        ] {
+            let fault = Grid::lay(times, Repair::default()).unwrap_err();
+            assert_eq!(fault.row(), Some(row), "{fault}");
+            assert!(fault.to_string().contains(says), "{fault}");
+        }
     }
 
     #[test]

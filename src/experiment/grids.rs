@@ -1,6 +1,7 @@
 //! The grids of a log whose clock is not uniform, and what its reader should know of them.
 
-use super::clock::{Clock, Evenness, Fault, Run, filled_s};
+use super::clock::{Clock, Evenness, Run, filled_s, is_mended, single_row};
+use super::error::ReadError;
 use super::grid::{Grid, Part, Repair};
 use crate::numerics::as_written;
 use crate::units::SamplePeriod;
@@ -24,17 +25,18 @@ pub(super) fn grids(
     trials: &[&[f64]],
     repair: Repair,
     number: &dyn Fn(usize, usize) -> u64,
-) -> Result<(Vec<Grid>, Vec<String>), (usize, Fault)> {
+) -> Result<(Vec<Grid>, Vec<String>), (usize, ReadError)> {
     let mut uniform = Vec::new();
     let mut fault = None;
     for (trial, times) in trials.iter().enumerate() {
-        let grid = Grid::lay(times, repair).map_err(|fault| (trial, fault));
-        fault = fault.or(grid.as_ref().err().copied());
+        let grid = Grid::lay(times, repair).map_err(|found| {
+            fault.get_or_insert((trial, found));
+        });
         uniform.push(grid.ok());
     }
     match fault {
         None => return Ok((uniform.into_iter().flatten().collect(), Vec::new())),
-        Some(fault) if repair.as_it_stands || !fault.1.is_mended() => return Err(fault),
+        Some(fault) if repair.as_it_stands || !is_mended(&fault.1) => return Err(fault),
         Some(_) => {}
     }
     let mut clocks = Vec::new();
@@ -103,7 +105,7 @@ fn rounded(period: f64, tolerance: f64) -> f64 {
 }
 
 /// The grid of a trial.
-fn grid(clock: &Clock, times: &[f64], period: f64, repair: Repair) -> Result<Grid, Fault> {
+fn grid(clock: &Clock, times: &[f64], period: f64, repair: Repair) -> Result<Grid, ReadError> {
     let longest_gap_s = repair.fill_s.unwrap_or_else(|| filled_s(period));
     let is_even = clock.evenness != Evenness::Uneven && repair.resample.is_none();
     let part = |run: &Run| {
@@ -115,7 +117,7 @@ fn grid(clock: &Clock, times: &[f64], period: f64, repair: Repair) -> Result<Gri
         }
     };
     let parts = clock.runs.iter().map(part).collect();
-    Grid::of_parts(SamplePeriod::from_seconds(period).ok_or(Fault::SingleRow)?, parts)
+    Grid::of_parts(SamplePeriod::from_seconds(period).ok_or_else(single_row)?, parts)
 }
 
 /// A run on a grid that lies anew over its times.

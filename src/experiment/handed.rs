@@ -153,40 +153,30 @@ impl Digested {
 
 /// Opens a log in memory.
 fn open(log: &Rc<HandedLog>, budget: Budget) -> Result<OpenTable, ReadError> {
+    if log.columns.is_empty() {
+        return Err(ReadError::empty());
+    }
     let headers = log.columns.iter().map(|column| Header::parse(&column.name)).collect();
-    let rows = same_length(log)?;
-    let rows = Box::new(Unread { log: Rc::clone(log), rows, budget });
-    Ok(OpenTable { head: Head::without_lines(headers), rows })
+    let rows = Box::new(Unread(Rc::clone(log)));
+    Ok(OpenTable::new((Head::without_lines(headers), rows), budget))
 }
 
-/// A log whose columns have so many rows.
-struct Unread {
-    log: Rc<HandedLog>,
-    rows: usize,
-    budget: Budget,
-}
+struct Unread(Rc<HandedLog>);
 
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let values = |place: &usize| self.log.columns.get(*place).map(|column| &column.values);
+        let values = |place: &usize| self.0.columns.get(*place).map(|column| &column.values);
         let trial = wanted.label.and_then(|label| values(&label));
         let labels =
-            trial.into_iter().flat_map(|values| (0..self.rows).map(|row| values.text(row)));
-        let labels = Labels::of(labels, &self.budget)?;
+            trial.into_iter().flat_map(|values| (0..wanted.rows).map(|row| values.text(row)));
+        let labels = Labels::of(labels, wanted.budget)?;
         let columns = wanted.numeric.iter().filter_map(values).map(HandedValues::column).collect();
-        Ok(Table::counted(self.rows, columns, labels))
+        Ok(Table::counted(wanted.rows, columns, labels))
     }
-}
 
-/// How many rows there are.
-fn same_length(log: &HandedLog) -> Result<usize, ReadError> {
-    let Some(first) = log.columns.first() else { return Err(ReadError::empty()) };
-    let length = |column: &HandedColumn| (column.name.clone(), column.values.len());
-    let rows = first.values.len();
-    if let Some(odd) = log.columns.iter().find(|column| column.values.len() != rows) {
-        return Err(ReadError::unequal_columns(length(odd), length(first)));
+    fn rows_of(&self, column: usize) -> Option<usize> {
+        self.0.columns.get(column).map(|column| column.values.len())
     }
-    if rows == 0 { Err(ReadError::header_only()) } else { Ok(rows) }
 }
 
 fn source_of(log: &HandedLog) -> Source {

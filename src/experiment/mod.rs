@@ -43,7 +43,7 @@ pub(crate) use conditions::are_opposites;
 pub use conditions::conditions;
 pub(crate) use conditions::has_word;
 pub use error::{ReadError, ReadErrorKind};
-pub(crate) use format::{format_names, is_named_like_a_log, line_end_of};
+pub(crate) use format::{format_names, is_named_like_a_log, is_text};
 pub(crate) use gaps::longest_gap_s;
 pub use grid::Repair;
 pub use handed::{HandedColumn, HandedLog, HandedValues};

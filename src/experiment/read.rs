@@ -314,7 +314,7 @@ pub(super) fn read_log(
         Err(error) if error.has_no_joints() => laid_out_foreign(&table.head, place, options)?,
         found => found?,
     };
-    let unequal = layout.without_unequal(&table.head, |column| table.rows.rows_of(column));
+    let unequal = layout.without_unequal(&table.head, |column| table.rows_of(column));
     found.failures.extend(unequal.into_iter().map(failed));
     let mut next = Some(table);
     let mut failed_clocks = Vec::new();
@@ -487,7 +487,8 @@ impl Experiment {
             return Ok(());
         }
         let numeric = layout.numeric_columns();
-        let mut table = table.read(&numeric, layout.trial, layout.time_column(), layout.clock())?;
+        let (trial, time) = (layout.trial, layout.time_column());
+        let mut table = table.read(&numeric, trial, time, layout.clock(), repair)?;
         if table.source.is_none() {
             table.source = Some((place.source)()?);
         }

@@ -7,7 +7,8 @@ use std::collections::HashSet;
 use std::fmt;
 
 use super::error::{ReadError, ReadErrorKind};
-use super::memory::Budget;
+use super::grid::Repair;
+use super::memory::{Budget, NUMBER_SIZE};
 use super::names::{listed, on_one_line, shown};
 use super::source::Source;
 use super::unit;
@@ -119,9 +120,13 @@ fn check_name(name: &str, row: u64) -> Result<(), ReadError> {
 }
 
 /// The columns of a log, and what is in them still unread.
+pub(super) type Opened = (Head, Box<dyn Rows>);
+
+/// A log whose columns are known, with the memory that its values may take.
 pub(super) struct OpenTable {
     pub(super) head: Head,
-    pub(super) rows: Box<dyn Rows>,
+    rows: Box<dyn Rows>,
+    budget: Budget,
 }
 
 /// The part of a file that holds the values.
@@ -133,7 +138,7 @@ pub(super) trait Rows {
     /// [`Column::error`].
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError>;
 
-    /// The rows of the column at this place, where columns have their own.
+    /// The rows of the column at this place, where columns may differ in length.
     fn rows_of(&self, _column: usize) -> Option<usize> {
         None
     }
@@ -151,9 +156,24 @@ pub(super) struct Wanted<'a> {
     /// The clock whose rows are wanted.
     #[cfg_attr(not(feature = "mcap"), expect(dead_code, reason = "for other formats"))]
     pub(super) clock: usize,
+    /// The rows of these columns, where they say so before they are read.
+    pub(super) rows: usize,
+    /// What memory is left for them.
+    pub(super) budget: &'a Budget,
+    /// Whether a last line that has no end is left out, since the log may still grow.
+    pub(super) grows: bool,
 }
 
 impl OpenTable {
+    pub(super) fn new((head, rows): Opened, budget: Budget) -> Self {
+        Self { head, rows, budget }
+    }
+
+    /// The rows of the column at this place, where columns may differ in length.
+    pub(super) fn rows_of(&self, column: usize) -> Option<usize> {
+        self.rows.rows_of(column)
+    }
+
     /// Reads the columns `numeric` as numbers and `label` as text, in the rows of `clock`.
     pub(super) fn read(
         self,
@@ -161,9 +181,24 @@ impl OpenTable {
         label: Option<usize>,
         time: Option<usize>,
         clock: usize,
+        repair: Repair,
     ) -> Result<Table, ReadError> {
-        let wanted = Wanted { head: &self.head, numeric, label, time, clock };
-        let table = self.rows.read(&wanted)?;
+        let Self { head, rows, budget } = self;
+        let known = |column: &usize| Some((*column, rows.rows_of(*column)?));
+        let mut lengths = numeric.iter().chain(&label).filter_map(known);
+        let first = lengths.next();
+        if let Some((other, expected)) = first
+            && let Some((odd, found)) = lengths.find(|(_, found)| *found != expected)
+        {
+            let name = |column: usize| head.headers.get(column).map(|header| header.name.clone());
+            let name = |column| name(column).unwrap_or_default();
+            return Err(ReadError::unequal_columns((name(odd), found), (name(other), expected)));
+        }
+        let count = first.map_or(0, |(_, rows)| rows);
+        budget.take_values(count, numeric.len() * NUMBER_SIZE)?;
+        let (head, budget, grows) = (&head, &budget, repair.as_it_stands);
+        let wanted = Wanted { head, numeric, label, time, clock, rows: count, budget, grows };
+        let table = rows.read(&wanted)?;
         if table.rows.is_empty() {
             return Err(ReadError::header_only());
         }

@@ -156,26 +156,37 @@ impl Trial {
     /// The first `samples` of it; none where there would be no sample.
     #[must_use]
     pub(crate) fn beginning(&self, samples: usize) -> Option<Self> {
-        let cut = |signal: &[f64]| signal.iter().copied().take(samples).collect::<Vec<_>>();
-        let covariates = self.covariates.iter().map(|signal| cut(signal)).collect();
-        let (input, output) = (cut(&self.input), cut(&self.output));
-        let label = self.label.clone();
         let within = |ranges: &[Range<usize>]| {
             ranges.iter().filter(|range| range.end < samples).cloned().collect::<Vec<_>>()
         };
         let (unlogged, interpolated) = (within(&self.unlogged), within(&self.interpolated));
-        let cut = Self { label, input, output, covariates, unlogged, interpolated, ..*self };
-        (samples > 0).then_some(cut)
+        let cut = self.with_each(|signal| signal.iter().copied().take(samples).collect());
+        (samples > 0).then_some(Self { unlogged, interpolated, ..cut })
     }
 
     /// One of so many samples of it, from the first on.
     pub(crate) fn every(&self, stride: usize) -> Option<Self> {
         let period = SamplePeriod::from_seconds(stride as f64 * self.period.seconds())?;
-        let kept = |signal: &[f64]| signal.iter().step_by(stride).copied().collect::<Vec<_>>();
-        let (input, output) = (kept(&self.input), kept(&self.output));
-        let covariates = self.covariates.iter().map(|signal| kept(signal)).collect();
-        let part = Self::new(self.label(), self.start_s, period, input, output).ok()?;
-        Some(Self { origin_s: self.origin_s, covariates, ..part })
+        let kept = self.with_each(|signal| signal.iter().step_by(stride).copied().collect());
+        Some(Self { period, ..kept })
+    }
+
+    /// With samples that are made of those of each signal.
+    fn with_each(&self, of: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        Self {
+            label: self.label.clone(),
+            input: of(&self.input),
+            output: of(&self.output),
+            covariates: self.covariates.iter().map(|signal| of(signal)).collect(),
+            unlogged: Vec::new(),
+            interpolated: Vec::new(),
+            ..*self
+        }
+    }
+
+    /// The name of the trial that a part of these is of, where it was split: `a` of `a#2`.
+    pub(super) fn whole_label(label: &str) -> &str {
+        label.split_once('#').map_or(label, |(whole, _)| whole)
     }
 
     /// Name of the trial.

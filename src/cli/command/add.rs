@@ -52,7 +52,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         add_to_joints(study.joints(), &study.estimates, starts, watched, effect, &Threads)
     })?;
     let (model, effect) = (start.name.as_str(), effect.spec().id);
-    let (joints, failures) = outcomes(study.experiment(), &added, |_, joint, addition| {
+    let (joints, failures) = outcomes(&study.experiment, &added, |_, joint, addition| {
         let revision = start.revision(joint) + 1;
         AddedJoint { joint, model, effect, revision, addition }
     })?;

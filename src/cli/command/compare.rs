@@ -70,7 +70,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         };
         models.iter().map(one).collect::<Vec<_>>()
     })?;
-    let mut failures = read_failures(study.experiment());
+    let mut failures = read_failures(&study.experiment);
     let mut compared = Vec::new();
     for (named, results) in models.iter().zip(&results) {
         for (joint, result) in study.joints().iter().zip(results) {

@@ -2,11 +2,9 @@
 
 use std::env;
 use std::fmt::Write as _;
-use std::io::{self, IsTerminal as _, Read as _};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Command, Stdio};
 
 use clap::Args as ClapArgs;
 use serde::Serialize;
@@ -20,9 +18,8 @@ use crate::report::json::document;
 
 /// Check what is needed to make and view recordings, and say what is missing
 ///
-/// It looks for the Rerun viewer and its version, for a screen, and at this program and the
-/// terminal; each line that is not `ok` names the remedy. Exit status 1 when something is
-/// missing.
+/// It looks for the Rerun viewer and its version, for a screen, and at this program; each line that
+/// is not `ok` names the remedy. Exit status 1 when something is missing.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
     /// How results are printed
@@ -38,10 +35,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         ("importer", importer()),
         ("screen", screen()),
         ("graphics", graphics()),
-        ("threads", threads()),
-        ("folder", folder()),
-        ("terminal", terminal()),
-        ("letters", letters()),
     ];
     let checks = checks.map(|(name, found)| Check { name, found });
     let complete = checks.iter().all(|check| check.found.state != State::Missing);
@@ -165,58 +158,6 @@ fn first_in(folder: &str, prefix: &str) -> Option<String> {
     names.filter(|name| name.starts_with(prefix)).min()
 }
 
-fn threads() -> Finding {
-    match std::thread::available_parallelism() {
-        Ok(number) => ok(number.to_string()),
-        Err(error) => note(error.to_string(), "say how many with `--threads N`"),
-    }
-}
-
-/// Whether results can be written where the program is.
-fn folder() -> Finding {
-    let here = env::current_dir().unwrap_or_default();
-    let here = here.display();
-    match tempfile::Builder::new().prefix(".tauscope-").tempfile_in(".") {
-        Ok(_) => ok(format!("{here} can be written to")),
-        Err(error) => note(
-            format!("{here} cannot be written to: {error}"),
-            "give outputs a path elsewhere, as in `-o /tmp/log.rrd`",
-        ),
-    }
-}
-
-fn terminal() -> Finding {
-    let said = |is: bool| if is { "a terminal" } else { "no terminal" };
-    let (out, err) = (io::stdout().is_terminal(), io::stderr().is_terminal());
-    let colors = if console::has_colors() { "with colours" } else { "without colours" };
-    let found = format!("output goes to {}, {colors}; messages to {}", said(out), said(err));
-    if err {
-        return ok(found);
-    }
-    note(found, "progress is shown where messages go to a terminal")
-}
-
-/// Whether the terminal is likely to show tables and Greek letters.
-fn letters() -> Finding {
-    if cfg!(windows) {
-        return ok("the system's own");
-    }
-    let set = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find(|name| is_set(name));
-    let value = set.and_then(|name| env::var(name).ok()).unwrap_or_default();
-    let plain = value.to_lowercase().replace('-', "");
-    if plain.contains("utf8") {
-        return ok(format!("{}={value}", set.unwrap_or_default()));
-    }
-    let found = match set {
-        Some(name) => format!("{name}={value} is not UTF-8"),
-        None => "none of LC_ALL, LC_CTYPE, LANG is set".to_owned(),
-    };
-    note(found, "where tables look broken, try: export LC_ALL=C.UTF-8")
-}
-
-/// Longest time that a program may take to report its version.
-const PATIENCE: Duration = Duration::from_secs(10);
-
 /// What puts the right viewer on a machine.
 fn remedy() -> String {
     format!("pip install rerun-sdk=={VERSION}")
@@ -279,31 +220,10 @@ fn running() -> Finding {
     note(found, "`--spawn` starts one; `--connect` needs one: start it with: rerun")
 }
 
-/// What a command prints, if it ends well and in time.
+/// What a command prints, if it ends well.
 fn output(command: &mut Command) -> Option<String> {
-    let quiet = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
-    let mut child = quiet.spawn().ok()?;
-    if !ends_well(&mut child) {
-        child.kill().unwrap_or_default();
-        child.wait().ok()?;
-        return None;
-    }
-    let mut text = String::new();
-    child.stdout?.read_to_string(&mut text).ok()?;
-    Some(text)
-}
-
-/// Whether `child` ends with success before patience does.
-fn ends_well(child: &mut Child) -> bool {
-    let end = Instant::now() + PATIENCE;
-    while Instant::now() < end {
-        match child.try_wait() {
-            Ok(Some(status)) => return status.success(),
-            Ok(None) => std::thread::sleep(Duration::from_millis(20)),
-            Err(_) => return false,
-        }
-    }
-    false
+    let output = command.stdin(Stdio::null()).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 /// The first word of `text` that looks like a version.
@@ -320,13 +240,13 @@ mod tests {
 
     #[test]
     fn each_thing_has_a_line_and_what_is_missing_a_remedy() {
-        let found = [("threads", ok("2")), ("viewer", missing("none", "install it"))];
+        let found = [("screen", ok("2")), ("viewer", missing("none", "install it"))];
         let checks = found.map(|(name, found)| Check { name, found });
         let text = anstream::adapter::strip_str(&text(&checks)).to_string();
         let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
         assert_eq!(
             lines,
-            ["ok       threads  2", "missing  viewer   none", "                  → install it"]
+            ["ok       screen  2", "missing  viewer  none", "                 → install it"]
         );
     }
 

@@ -63,7 +63,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let explained = explained.into_iter().map(|found| Some(found?.map(as_it_is)));
     let explained: Vec<_> = explained.collect();
     let improved = |index, joint, found| start.improved(index, joint, found);
-    let (improved, failures) = outcomes(study.experiment(), &explained, improved)?;
+    let (improved, failures) = outcomes(&study.experiment, &explained, improved)?;
     let improved: Vec<ImprovedJoint<'_>> = improved.into_iter().flatten().collect();
     let findings: Vec<_> = improved.iter().map(|joint| joint.finding).collect();
     if output.is_recorded() {

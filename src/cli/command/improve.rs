@@ -102,7 +102,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         improve_joints(joints, &study.estimates, starts, watched, &options, done, &Threads)
     })?;
     let improved = |index, joint, found| progress.improved(index, joint, found);
-    let (improved, failures) = outcomes(study.experiment(), &results, improved)?;
+    let (improved, failures) = outcomes(&study.experiment, &results, improved)?;
     let improved: Vec<_> = improved.into_iter().flatten().collect();
     study.record_revisions(output.recording.as_deref(), &improved)?;
     let revised = start.revised(&improved, |joint| Some(joint.finding.verdict))?;
@@ -141,7 +141,7 @@ impl<'a> Stage<'a> {
     /// Shows one more revision of a joint. What goes wrong is reported, and is no reason to stop:
     /// the results do not depend on the viewer.
     fn show(&self, index: usize, revision: &Step) {
-        if !self.study.is_shown() {
+        if !self.study.stream.is_open() {
             return;
         }
         let of_joint = self.study.joints().get(index).zip(self.steps.get(index));

@@ -79,7 +79,7 @@ pub(crate) fn toned(tone: Tone, text: &str) -> String {
 }
 
 /// Whether results are shown with colours.
-pub(crate) fn has_colors() -> bool {
+fn has_colors() -> bool {
     AutoStream::choice(&io::stdout()) != anstream::ColorChoice::Never
 }
 

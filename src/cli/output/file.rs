@@ -44,46 +44,33 @@ pub(crate) fn target_of(path: &Path) -> PathBuf {
 /// whoever called the program has opened.
 pub(super) fn is_file(path: &Path) -> bool {
     let is_known = path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir());
-    !is_known && OpenedFile::named(path).is_none()
+    !is_known && number_of(path).is_none()
 }
 
-/// A file that was opened before the program began, by what a shell calls it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum OpenedFile {
-    Output,
-    Error,
-    /// Of another number.
-    Other,
-}
-
-impl OpenedFile {
-    fn named(path: &Path) -> Option<Self> {
-        let folders = ["/dev/fd", "/proc/self/fd"];
-        let within = folders.iter().find_map(|folder| path.strip_prefix(folder).ok());
+/// The number of a file that was opened before the program began, by what a shell calls it.
+fn number_of(path: &Path) -> Option<u32> {
+    let folders = ["/dev/fd", "/proc/self/fd"];
+    let within = || folders.iter().find_map(|folder| path.strip_prefix(folder).ok());
+    match path.to_str()? {
+        "/dev/stdout" => Some(1),
+        "/dev/stderr" => Some(2),
         // A way on from there, as `/dev/fd/../x`, is that of a file.
-        let is_number = |name: &&str| name.parse::<u32>().is_ok();
-        match (path.to_str()?, within.and_then(Path::to_str).filter(is_number)) {
-            ("/dev/stdout", _) | (_, Some("1")) => Some(Self::Output),
-            ("/dev/stderr", _) | (_, Some("2")) => Some(Self::Error),
-            (_, number) => number.map(|_| Self::Other),
-        }
+        _ => within()?.to_str()?.parse().ok(),
     }
+}
 
-    /// It, at the place where it is written to: what stands in it before stays.
-    fn open(self, path: &Path) -> io::Result<File> {
-        let behind_the_end = || OpenOptions::new().append(true).open(path);
-        #[cfg(unix)]
-        {
-            use std::os::fd::AsFd as _;
-            match self {
-                Self::Output => io::stdout().as_fd().try_clone_to_owned().map(File::from),
-                Self::Error => io::stderr().as_fd().try_clone_to_owned().map(File::from),
-                Self::Other => behind_the_end(),
-            }
+/// The file of this number, at the place where it is written to: what stands in it before stays.
+fn open_again(number: u32, path: &Path) -> io::Result<File> {
+    #[cfg(unix)]
+    {
+        use std::os::fd::AsFd as _;
+        match number {
+            1 => return io::stdout().as_fd().try_clone_to_owned().map(File::from),
+            2 => return io::stderr().as_fd().try_clone_to_owned().map(File::from),
+            _ => {}
         }
-        #[cfg(not(unix))]
-        behind_the_end()
     }
+    OpenOptions::new().append(true).open(path)
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -123,8 +110,8 @@ impl OutputFile {
             let text = format!("there is no folder `{}`", folder.display());
             return Err(io::Error::new(io::ErrorKind::NotFound, text));
         }
-        if let Some(opened) = OpenedFile::named(path) {
-            return Ok(Target::Direct(BufWriter::new(opened.open(path)?)));
+        if let Some(number) = number_of(path) {
+            return Ok(Target::Direct(BufWriter::new(open_again(number, path)?)));
         }
         if !is_file(path) {
             let device = OpenOptions::new().write(true).open(path)?;
@@ -201,7 +188,7 @@ fn remove_left_parts(folder: &Path) {
 
 /// Where an output ends up, also one that is written to a file that is open.
 pub(super) fn place_of(path: &Path) -> PathBuf {
-    let opened = OpenedFile::named(path).and_then(|_| path.canonicalize().ok());
+    let opened = number_of(path).and_then(|_| path.canonicalize().ok());
     opened.unwrap_or_else(|| target_of(path))
 }
 
@@ -250,10 +237,10 @@ mod tests {
 
     #[test]
     fn only_a_number_names_a_file_that_is_open() {
-        let named = |path: &str| OpenedFile::named(Path::new(path));
-        assert_eq!(named("/dev/stdout"), Some(OpenedFile::Output));
-        assert_eq!(named("/proc/self/fd/2"), Some(OpenedFile::Error));
-        assert_eq!(named("/dev/fd/63"), Some(OpenedFile::Other));
+        let named = |path: &str| number_of(Path::new(path));
+        assert_eq!(named("/dev/stdout"), Some(1));
+        assert_eq!(named("/proc/self/fd/2"), Some(2));
+        assert_eq!(named("/dev/fd/63"), Some(63));
         assert_eq!(["/dev/fd", "/dev/fd/../x.csv", "/dev/fd/x", "fd/1"].map(named), [None; 4]);
     }
 }

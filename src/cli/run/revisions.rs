@@ -133,7 +133,7 @@ impl<'a> Start<'a> {
         judged: impl Fn(&ImprovedJoint<'_>) -> Option<Verdict>,
     ) -> anyhow::Result<ModelFile> {
         let Self { study, file, .. } = self;
-        let sources = &study.experiment().sources;
+        let sources = &study.experiment.sources;
         let revised_for =
             |file, joint: &ImprovedJoint<'_>| revised_for(file, joint, judged(joint), sources);
         let is_known = |joint: &&ImprovedJoint<'_>| file.joint(joint.name()).is_some();

@@ -1,5 +1,6 @@
 //! Models fitted to the joints of logs: with the delays, in threads, shown and recorded.
 
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -7,15 +8,15 @@ use serde::Serialize;
 use super::estimates::{Estimates, estimated, spikes_of};
 use super::session::Session;
 use crate::cli::args::{DataArgs, ResultArgs};
-use crate::cli::console::{Bar, Verbosity};
+use crate::cli::console::Bar;
 use crate::cli::exit::Completion;
 use crate::cli::output::{OutputKind, Outputs, of_delays};
 use crate::delay::{Automatic, Settings};
-use crate::experiment::{Experiment, Joint, Other};
+use crate::experiment::{Joint, Other};
 use crate::explain::Revision as Step;
 use crate::fit::Mended;
 use crate::report::{ComparedJoint, ImprovedJoint, Recording};
-use crate::study::{OtherResult, others_of};
+use crate::study::others_of;
 
 /// Logs and the delays in them.
 pub(crate) struct Study<'a> {
@@ -24,6 +25,14 @@ pub(crate) struct Study<'a> {
     /// Of the joints that are not asked for.
     of_others: Estimates,
     pub(crate) settings: Settings,
+}
+
+impl<'a> Deref for Study<'a> {
+    type Target = Session<'a>;
+
+    fn deref(&self) -> &Session<'a> {
+        &self.session
+    }
 }
 
 /// When a viewer that looks on is shown models.
@@ -83,33 +92,9 @@ impl<'a> Study<'a> {
         self.session.in_threads(|| work(&Bar::new(self.verbosity(), what, "fits", 0), &others))
     }
 
-    /// The logs.
-    pub(crate) fn experiment(&self) -> &Experiment {
-        &self.session.experiment
-    }
-
     /// The joints of the logs.
     pub(crate) fn joints(&self) -> &[Joint] {
         &self.session.experiment.joints
-    }
-
-    pub(crate) fn verbosity(&self) -> Verbosity {
-        self.session.verbosity()
-    }
-
-    /// Says how the logs were read, once.
-    pub(crate) fn say_notes(&self) {
-        self.session.say_notes();
-    }
-
-    /// Results that are shown beside the delays.
-    pub(crate) fn beside(&self) -> &[OtherResult] {
-        &self.session.beside
-    }
-
-    /// Whether a viewer shows it.
-    pub(crate) fn is_shown(&self) -> bool {
-        self.session.stream.is_open()
     }
 
     /// Shows `models` and `revisions` beside the decisions, in a viewer; of one joint alone
@@ -120,11 +105,10 @@ impl<'a> Study<'a> {
         revisions: &[ImprovedJoint<'_>],
         joint: Option<&str>,
     ) -> anyhow::Result<()> {
-        if !self.is_shown() {
+        if !self.stream.is_open() {
             return Ok(());
         }
-        let stream = &self.session.stream;
-        self.with_recording(models, revisions, |recording| stream.send(recording, joint))
+        self.with_recording(models, revisions, |recording| self.stream.send(recording, joint))
     }
 
     fn with_recording(

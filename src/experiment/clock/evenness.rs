@@ -1,7 +1,8 @@
 //! How far stamps are from an even grid, and what that makes of the clock.
 
 use super::period::Typical;
-use super::run::{Fault, LOST_SHARE, Run};
+use super::run::{LOST_SHARE, Run};
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::numerics::{median, quantile};
 
 /// Rows whose stamps lie within this part of a period of the even grid stay as they are; what
@@ -84,7 +85,7 @@ impl Deviations {
         runs: &[Run],
         typical: &Typical,
         period: f64,
-    ) -> Result<Evenness, Fault> {
+    ) -> Result<Evenness, ReadError> {
         let sizes: Vec<f64> = self.jitter.iter().map(|(jitter, _)| jitter.abs()).collect();
         let within = |limit: f64| quantile(&sizes, KEPT_SHARE).is_some_and(|size| size <= limit);
         let rows: usize = runs.iter().map(|run| run.rows.len()).sum();
@@ -103,7 +104,13 @@ impl Deviations {
         }
         if typical.grain_s > 2.0 * period {
             let (_, row) = self.largest();
-            return Err(Fault::Coarse { row, grain_s: typical.grain_s, period });
+            let grain_s = typical.grain_s;
+            let text = format!(
+                "the times are rounded to {grain_s} s, with an uneven number of samples (about {:.0}) at each, \
+                 so the time of a sample is not known; write times with more digits",
+                grain_s / period
+            );
+            return Err(ReadError::new(ReadErrorKind::Times, text).at_index(row));
         }
         Ok(if steady && within(KEPT) { Evenness::Jitters } else { Evenness::Uneven })
     }

@@ -13,10 +13,11 @@ mod run;
 use self::evenness::Deviations;
 use self::period::{least_squares_period, typical_period};
 use self::rows::{Found, count, is_even_once_sorted, parted, short_gaps};
+use super::error::ReadError;
 
 pub(super) use self::evenness::Evenness;
 pub(super) use self::rows::between_restarts;
-pub(super) use self::run::{Fault, Run};
+pub(super) use self::run::{Run, is_mended, not_increasing, single_row};
 
 /// A gap is filled up to so many periods: one row of Algorithm 1's Φ at its usual β.
 const FILLED_PERIODS: f64 = 5.0;
@@ -49,7 +50,7 @@ pub(super) struct Clock {
 impl Clock {
     /// Reads the stamps `times`, in seconds; gaps up to `fill_s` do not part a run, nor those
     /// that are filled unasked where it is none.
-    pub(super) fn read(times: &[f64], fill_s: Option<f64>) -> Result<Self, Fault> {
+    pub(super) fn read(times: &[f64], fill_s: Option<f64>) -> Result<Self, ReadError> {
         let typical = typical_period(times)?;
         let mut found = Found::default();
         let mut runs = Vec::new();
@@ -115,6 +116,12 @@ mod tests {
 
     pub(super) fn read(times: &[f64]) -> Clock {
         Clock::read(times, None).unwrap()
+    }
+
+    /// Whether a clock goes back, and the index of the row.
+    fn refused(times: &[f64]) -> (bool, u64) {
+        let fault = Clock::read(times, None).unwrap_err();
+        (is_mended(&fault), fault.row().unwrap() - 1)
     }
 
     fn sizes(clock: &Clock) -> Vec<usize> {
@@ -187,8 +194,8 @@ mod tests {
         // Halves are rounded to even whole seconds, so that their lengths differ.
         let to_even = stamps(6000, |k| (0.01 * k as f64).round_ties_even());
         assert_eq!(read(&to_even).evenness, Evenness::Rounded { to_s: 1.0 });
-        let few = Clock::read(&coarse(1.7e9, 4000), None);
-        assert_eq!(few, Err(Fault::FewStamps { stamps: 3, grain_s: 128.0 }));
+        let few = Clock::read(&coarse(1.7e9, 4000), None).unwrap_err().to_string();
+        assert!(few.contains("only 3 different times, 128 s apart"), "{few}");
     }
 
     #[test]
@@ -255,9 +262,9 @@ mod tests {
         assert_eq!(clock.runs[0].rows[40..42], [41, 40]);
         for (wrong, row) in [(0.01, 60), (99.0, 61)] {
             let times = stamps(100, |k| if k == 60 { wrong } else { 0.01 * k as f64 });
-            assert_eq!(Clock::read(&times, None), Err(Fault::NotIncreasing { row }));
+            assert_eq!(refused(&times), (true, row));
         }
-        assert_eq!(Clock::read(&[1.0; 5], None), Err(Fault::NotIncreasing { row: 1 }));
-        assert_eq!(Clock::read(&[1.0], None), Err(Fault::SingleRow));
+        assert_eq!(refused(&[1.0; 5]), (true, 1));
+        assert_eq!(refused(&[1.0]), (false, 0), "a single row");
     }
 }

@@ -1,6 +1,7 @@
 //! The period of a clock: a first guess, and the least-squares period.
 
-use super::run::{Fault, JUMP, LOST_SHARE, Run};
+use super::run::{JUMP, LOST_SHARE, Run, not_increasing, single_row};
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::numerics::median;
 
 /// Changes of stamps that are rounded to several periods, from which the period follows: two whole
@@ -22,13 +23,13 @@ impl Typical {
 }
 
 /// The mean of the steps that are no jumps. Stamps that are rounded may stand still.
-pub(super) fn typical_period(times: &[f64]) -> Result<Typical, Fault> {
+pub(super) fn typical_period(times: &[f64]) -> Result<Typical, ReadError> {
     let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
     let forward: Vec<f64> = steps.clone().filter(|step| *step > 0.0).collect();
     if times.len() < 2 {
-        return Err(Fault::SingleRow);
+        return Err(single_row());
     }
-    let middle = median(&forward).ok_or(Fault::NotIncreasing { row: 1 })?;
+    let middle = median(&forward).ok_or_else(|| not_increasing(times, 1))?;
     if let Some(found) = rounded_period(times, &forward) {
         return Ok(found);
     }
@@ -81,11 +82,15 @@ pub(super) fn least_squares_period(
     runs: &[Run],
     times: &[f64],
     typical: &Typical,
-) -> Result<f64, Fault> {
+) -> Result<f64, ReadError> {
     let stamps: usize = runs.iter().map(|run| known_to_a_period(run, times, typical).count()).sum();
     if typical.is_coarse() && stamps < FEWEST_STAMPS {
-        let grain_s = typical.grain_s;
-        return Err(Fault::FewStamps { stamps: stamps + runs.len(), grain_s });
+        let (rows, stamps, grain_s) = (times.len(), stamps + runs.len(), typical.grain_s);
+        let text = format!(
+            "the {rows} rows of this trial have only {stamps} different times, {grain_s} s apart: too few to \
+             determine the sample period; write times as 64-bit numbers or with more digits"
+        );
+        return Err(ReadError::new(ReadErrorKind::Times, text).at_index(0));
     }
     let (mut products, mut squares) = (0.0, 0.0);
     for run in runs {
@@ -99,7 +104,7 @@ pub(super) fn least_squares_period(
         }
     }
     let period = products / squares;
-    if period.is_finite() && period > 0.0 { Ok(period) } else { Err(Fault::SingleRow) }
+    if period.is_finite() && period > 0.0 { Ok(period) } else { Err(single_row()) }
 }
 
 /// Places and stamps of the rows of `run` whose stamps say when they were measured.

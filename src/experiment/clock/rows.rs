@@ -1,7 +1,8 @@
 //! Which rows follow one another: in order, each once, and parted where the clock jumps.
 
 use super::period::Typical;
-use super::run::{Fault, JUMP, Run};
+use super::run::{JUMP, Run, not_increasing};
+use crate::experiment::error::ReadError;
 use crate::numerics::median;
 
 /// Rows after a jump that are asked whether it lasts.
@@ -20,7 +21,7 @@ pub(super) fn is_even_once_sorted(times: &[f64]) -> bool {
 pub(in crate::experiment) fn between_restarts(
     times: &[f64],
     period: f64,
-) -> Result<Vec<Vec<usize>>, Fault> {
+) -> Result<Vec<Vec<usize>>, ReadError> {
     let at = |row: usize| times.get(row).copied();
     let mut runs = vec![Vec::new()];
     for row in 0..times.len() {
@@ -31,7 +32,7 @@ pub(in crate::experiment) fn between_restarts(
             let returns = before.is_some_and(|before| later.clone().any(|time| time > before));
             let spike = row.checked_sub(2).and_then(at).zip(at(row)).is_some_and(|(a, b)| b > a);
             if returns || spike {
-                return Err(Fault::NotIncreasing { row });
+                return Err(not_increasing(times, row));
             }
             runs.push(Vec::new());
         }

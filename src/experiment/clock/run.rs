@@ -1,27 +1,27 @@
 //! Rows that follow one another, what parts them, and why they cannot be put on a grid.
 
-/// Why rows cannot be put on a grid; `row` counts the rows of the trial from 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::experiment) enum Fault {
-    /// One time is no later than the one before, or far from all its neighbours.
-    NotIncreasing { row: usize },
-    /// Rows are not equally far apart.
-    NotUniform { row: usize, step: f64, period: f64 },
-    /// There is one row only.
-    SingleRow,
-    /// The stamps are so few, `grain_s` apart, that no period follows from them.
-    FewStamps { stamps: usize, grain_s: f64 },
-    /// The stamps are coarser than the sampling, and not even.
-    Coarse { row: usize, grain_s: f64, period: f64 },
-    /// The grid would have more samples than can be handled.
-    TooMany { samples: f64, period: f64 },
+use crate::experiment::error::{ReadError, ReadErrorKind};
+
+/// The time at the index `row` is no later than the one before, or far from all its neighbours.
+pub(in crate::experiment) fn not_increasing(times: &[f64], row: usize) -> ReadError {
+    let at = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
+    let (before, time) = (row.checked_sub(1).map_or(f64::NAN, at), at(row));
+    let text = format!(
+        "time goes from {before} s to {time} s, but must increase; remove the row if it is a copy, or mark a \
+         new trial in a `trial` column"
+    );
+    ReadError::new(ReadErrorKind::Content, text).at_index(row)
 }
 
-impl Fault {
-    /// Whether a clock with this fault is put on a grid unasked.
-    pub(in crate::experiment) fn is_mended(self) -> bool {
-        matches!(self, Self::NotIncreasing { .. } | Self::NotUniform { .. })
-    }
+/// From so few rows no period follows; the name of the trial comes before it.
+pub(in crate::experiment) fn single_row() -> ReadError {
+    let text = "has one row only, but needs two for a sample period";
+    ReadError::new(ReadErrorKind::Empty, text).at_index(0)
+}
+
+/// Whether a clock that is not uniform so is put on a grid unasked.
+pub(in crate::experiment) fn is_mended(fault: &ReadError) -> bool {
+    matches!(fault.kind, ReadErrorKind::Content | ReadErrorKind::NotUniform { .. })
 }
 
 /// A step of more periods than this may be a jump.

@@ -114,7 +114,7 @@ fn passed(text: &str) -> Option<f64> {
 }
 
 /// Seconds of a day.
-const DAY: f64 = 86_400.0;
+pub(super) const DAY: f64 = 86_400.0;
 
 /// A date as it stands in a text, `days` after the first of January 1970; none beyond the calendar.
 #[cfg(feature = "xlsx")]
@@ -123,20 +123,6 @@ pub(super) fn date_of_days(days: f64) -> Option<String> {
     #[expect(clippy::cast_possible_truncation, reason = "nanoseconds of a second, and checked")]
     let (whole, part) = (second as i64, ((days * DAY - second) * 1e9) as i32);
     Timestamp::new(whole, part).ok().map(|date| date.to_string())
-}
-
-/// A time that has passed, in days, as `26:03:04.5`; none of one that is less than none.
-#[cfg(feature = "xlsx")]
-pub(super) fn passed_of_days(days: f64) -> Option<String> {
-    /// Microseconds of an hour and of a minute.
-    const PARTS: (u64, u64) = (3_600_000_000, 60_000_000);
-    let micros = (days * DAY * 1e6).round();
-    // Rounded before it is parted: 59.999 999 9 s are a minute.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in range")]
-    let all = (0.0..1e15).contains(&micros).then_some(micros as u64)?;
-    let (hours, rest) = (all / PARTS.0, all % PARTS.0);
-    let (minutes, rest) = (rest / PARTS.1, rest % PARTS.1);
-    Some(format!("{hours}:{minutes:02}:{:09.6}", rest as f64 * 1e-6))
 }
 
 /// The date of a time in whole seconds since 1970, from 2001 on; none of other times.

@@ -12,15 +12,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 
 use crate::experiment::error::ReadError;
-use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
+use crate::experiment::table::{Opened, Rows, Table, Wanted};
 
 /// Opens a log by `open`, the reader of `format`, and fences what reads its rows, too.
 pub(super) fn open(
     format: &'static str,
-    open: impl FnOnce() -> Result<OpenTable, ReadError>,
-) -> Result<OpenTable, ReadError> {
-    let OpenTable { head, rows } = fenced(format, open)?;
-    Ok(OpenTable { head, rows: Box::new(Fenced { format, rows }) })
+    open: impl FnOnce() -> Result<Opened, ReadError>,
+) -> Result<Opened, ReadError> {
+    let (head, rows) = fenced(format, open)?;
+    Ok((head, Box::new(Fenced { format, rows })))
 }
 
 /// Rows that a library reads.

@@ -24,5 +24,5 @@ mod xlsx;
 
 pub(super) use date::date_of_seconds;
 pub(super) use registry::{endings, open};
-pub(crate) use registry::{format_names, is_named_like_a_log, line_end_of};
+pub(crate) use registry::{format_names, is_named_like_a_log, is_text};
 pub(super) use text::text_of;

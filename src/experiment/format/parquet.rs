@@ -21,8 +21,8 @@ use parquet::basic::Compression;
 use parquet::file::metadata::RowGroupMetaData;
 
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::{Budget, NUMBER_SIZE};
-use crate::experiment::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
+use crate::experiment::memory::Budget;
+use crate::experiment::table::{Column, Head, Header, Labels, Opened, Rows, Table, Wanted};
 
 /// Rows that are read at once, at most.
 const BATCH: u64 = 8192;
@@ -39,11 +39,10 @@ struct Unread {
     metadata: ArrowReaderMetadata,
     /// The type of each column.
     types: Vec<DataType>,
-    budget: Budget,
 }
 
 /// Opens the log and reads its schema.
-pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
+pub(super) fn open(path: &Path, _: &Budget) -> Result<Opened, ReadError> {
     let file = File::open(path)?;
     let size = file.metadata()?.len();
     // A schema of Arrow that doesn't fit the file, as of a tool that copies it along, is left aside.
@@ -64,8 +63,7 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
     let columns = metadata.parquet_schema().columns();
     let headers = columns.iter().zip(&types);
     let headers = headers.map(|(column, kind)| header(&column.path().string(), kind)).collect();
-    let rows = Box::new(Unread { file, metadata, types, budget });
-    Ok(OpenTable { head: Head::without_lines(headers), rows })
+    Ok((Head::without_lines(headers), Box::new(Unread { file, metadata, types })))
 }
 
 /// Whether the columns of a group of rows lie in a file of `size` bytes, as they are said to.
@@ -105,27 +103,29 @@ fn header(name: &str, kind: &DataType) -> Header {
 
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let counts = self.groups().iter().map(|group| usize::try_from(group.num_rows()));
-        let rows = counts.fold(0, |all: usize, count| all.saturating_add(count.unwrap_or(0)));
-        self.budget.take_values(rows, wanted.numeric.len() * NUMBER_SIZE)?;
         let mut columns = Vec::new();
         for index in wanted.numeric {
-            columns.push(self.numbers(*index, rows)?);
+            columns.push(self.numbers(*index, wanted)?);
         }
         let mut labels = Labels::default();
         if let Some(index) = wanted.label {
             let mut row = 0;
-            self.each_batch(index, rows, &mut |batch, missing| {
+            self.each_batch(index, wanted, &mut |batch, missing| {
                 let texts = texts(batch).map_err(damaged)?;
                 for (text, missing) in texts.iter().zip(missing) {
                     row += 1;
                     let label = if *missing { "" } else { text };
-                    labels.push(label, row, &self.budget)?;
+                    labels.push(label, row, wanted.budget)?;
                 }
                 Ok(())
             })?;
         }
-        Ok(Table::counted(rows, columns, labels))
+        Ok(Table::counted(wanted.rows, columns, labels))
+    }
+
+    fn rows_of(&self, _: usize) -> Option<usize> {
+        let counts = self.groups().iter().map(|group| usize::try_from(group.num_rows()));
+        Some(counts.fold(0, |all: usize, count| all.saturating_add(count.unwrap_or(0))))
     }
 }
 
@@ -135,7 +135,7 @@ impl Unread {
     }
 
     /// A column as numbers, or what it holds instead.
-    fn numbers(&self, index: usize, rows: usize) -> Result<Column, ReadError> {
+    fn numbers(&self, index: usize, wanted: &Wanted<'_>) -> Result<Column, ReadError> {
         let kind = self.types.get(index).unwrap_or(&DataType::Null);
         let lists = self.metadata.parquet_schema().column(index).max_rep_level() > 0;
         if let Some(found) = if lists { Some("lists".to_owned()) } else { not_numbers(kind) } {
@@ -143,7 +143,7 @@ impl Unread {
         }
         let are_of_day = matches!(kind, DataType::Time32(_) | DataType::Time64(_));
         let mut values = Vec::new();
-        self.each_batch(index, rows, &mut |batch, missing| {
+        self.each_batch(index, wanted, &mut |batch, missing| {
             let numbers = floats(batch).map_err(damaged)?;
             let numbers = numbers.as_primitive::<Float64Type>().iter().zip(missing);
             values.extend(
@@ -156,10 +156,16 @@ impl Unread {
 
     /// Hands on the values of a column in order, some thousand at a time, and which of them are missing
     /// with the structure that they are in.
-    fn each_batch(&self, index: usize, rows: usize, take: &mut Take<'_>) -> Result<(), ReadError> {
-        let largest = self.check_pages(index)?;
+    fn each_batch(
+        &self,
+        index: usize,
+        Wanted { rows, budget, .. }: &Wanted<'_>,
+        take: &mut Take<'_>,
+    ) -> Result<(), ReadError> {
+        let largest = self.largest_part(index)?;
+        budget.check(largest)?;
         // A long text that many rows share is repeated for each row of a batch.
-        let most = self.budget.left() / COPIES / largest.max(1);
+        let most = budget.left() / COPIES / largest.max(1);
         let batch = most.clamp(1, BATCH);
         let file = self.file.try_clone().map_err(damaged)?;
         let only = ProjectionMask::leaves(self.metadata.parquet_schema(), [index]);
@@ -169,7 +175,7 @@ impl Unread {
                 .with_batch_size(usize::try_from(batch).unwrap_or(1))
                 .build()
                 .map_err(damaged)?;
-        let mut left = rows;
+        let mut left = *rows;
         for batch in batches {
             let batch = batch.map_err(damaged)?;
             let mut column = batch.column(0).clone();
@@ -191,9 +197,9 @@ impl Unread {
         Ok(())
     }
 
-    /// The most bytes of a column in a group of rows, of which a page is unpacked whole. Refuses more
-    /// than there is memory for, and codecs that are not built in.
-    fn check_pages(&self, index: usize) -> Result<u64, ReadError> {
+    /// The most bytes of a column in a group of rows, of which a page is unpacked whole. Refuses codecs that
+    /// are not built in.
+    fn largest_part(&self, index: usize) -> Result<u64, ReadError> {
         let mut largest = 0;
         for group in self.groups() {
             let column = group.column(index);
@@ -211,7 +217,6 @@ impl Unread {
             }
             largest = largest.max(u64::try_from(column.uncompressed_size()).unwrap_or(0));
         }
-        self.budget.check(largest)?;
         Ok(largest)
     }
 }

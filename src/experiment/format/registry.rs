@@ -11,15 +11,14 @@ use super::mat;
 use super::mcap;
 #[cfg(feature = "parquet")]
 use super::parquet;
-use super::text;
 #[cfg(feature = "xlsx")]
 use super::xlsx;
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::Budget;
-use crate::experiment::table::OpenTable;
+use crate::experiment::table::{OpenTable, Opened};
 
 /// Memory of what is said of a column: of a million 1.9 GB were measured, with names of ten letters.
-const COLUMN_SIZE: usize = 2000;
+const COLUMN_SIZE: u64 = 2000;
 
 /// A format of logs.
 struct Format {
@@ -31,7 +30,7 @@ struct Format {
     starts: fn(&[u8]) -> bool,
     /// What to do with a file that is named so but does not start so.
     remedy: &'static str,
-    open: fn(&Path, Budget) -> Result<OpenTable, ReadError>,
+    open: fn(&Path, &Budget) -> Result<Opened, ReadError>,
 }
 
 /// All formats that are read. The last one is text, which any bytes may be.
@@ -72,7 +71,7 @@ const FORMATS: [Format; 5] = [
         starts: |start| start.starts_with(b"PK\x03\x04"),
         remedy: "save it again as .xlsx, or as CSV",
         #[cfg(feature = "xlsx")]
-        open: |path, budget| workbook(path, xlsx::open(path, &budget)),
+        open: |path, budget| workbook(path, xlsx::open(path, budget)),
         #[cfg(not(feature = "xlsx"))]
         open: |path, _| workbook(path, Err(left_out("XLSX", "xlsx"))),
     },
@@ -136,7 +135,7 @@ const FOREIGN: [Foreign; 11] = [
 ];
 
 /// What was `opened` as a workbook. That is a ZIP archive, as others are that hold logs.
-fn workbook(path: &Path, opened: Result<OpenTable, ReadError>) -> Result<OpenTable, ReadError> {
+fn workbook(path: &Path, opened: Result<Opened, ReadError>) -> Result<Opened, ReadError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let is_named = FORMATS.iter().any(|format| format.name == "XLSX" && format.ends(&name));
     opened.map_err(|error| match error.kind {
@@ -158,13 +157,12 @@ fn left_out(format: &str, feature: &str) -> ReadError {
 /// Opens a log. Its first bytes identify the format, so that a name may be anything; but a name
 /// that promises a format is kept to it.
 pub(in crate::experiment) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
-    let rest = budget.rest();
-    let table = open_any(path, budget)?;
-    rest.take_values(table.head.headers.len(), COLUMN_SIZE)?;
-    Ok(table)
+    let opened = open_any(path, &budget)?;
+    budget.check((opened.0.headers.len() as u64).saturating_mul(COLUMN_SIZE))?;
+    Ok(OpenTable::new(opened, budget))
 }
 
-fn open_any(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
+fn open_any(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
     // A pipe gives its bytes once: it is taken for text.
     if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
         return csv::open(path, budget);
@@ -198,15 +196,13 @@ fn foreign(start: &[u8]) -> Option<&'static Foreign> {
     FOREIGN.iter().find(|(marks, ..)| marks.iter().any(|mark| start.starts_with(mark)))
 }
 
-/// The bytes that end a line of a log that begins like this, or will be called so; none where it is no text.
-pub(crate) fn line_end_of(path: &Path, start: &[u8]) -> &'static [u8] {
+/// Whether the log at `path` is a text, or will be one: it has whole lines while it grows.
+pub(crate) fn is_text(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let start = start_of(path).unwrap_or_default();
     let is_other =
-        |format: &Format| !format.is_text() && (format.ends(&name) || (format.starts)(start));
-    if is_gzip(start) || foreign(start).is_some() || FORMATS.iter().any(is_other) {
-        return b"";
-    }
-    text::line_end_of(start)
+        |format: &Format| !format.is_text() && (format.ends(&name) || (format.starts)(&start));
+    !is_gzip(&start) && foreign(&start).is_none() && !FORMATS.iter().any(is_other)
 }
 
 impl Format {

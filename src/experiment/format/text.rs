@@ -102,15 +102,6 @@ fn with_line_feeds(mut text: Vec<u8>) -> Vec<u8> {
     text
 }
 
-/// The bytes that end a line of a text that starts so.
-pub(super) fn line_end_of(start: &[u8]) -> &'static [u8] {
-    match encoding_of(start) {
-        Some(encoding) if encoding == UTF_16LE => b"\n\0",
-        Some(encoding) if encoding == UTF_16BE => b"\0\n",
-        _ => b"\n",
-    }
-}
-
 fn damaged(reason: &str) -> ReadError {
     let remedy = "pack it again, or unpack it if it is of another format";
     ReadError::format("CSV packed by gzip", reason, remedy)

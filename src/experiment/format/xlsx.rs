@@ -13,13 +13,14 @@ use zip::ZipArchive;
 
 use super::cell::parse_time;
 use super::csv::table;
-use super::date::{date_of_days, days_since_1970, passed_of_days};
+use super::date::{DAY, date_of_days, days_since_1970};
 use super::text::Bytes;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::names::on_one_line;
-use crate::experiment::table::{BadCell, OpenTable, Rows, Table, Wanted};
+use crate::experiment::table::{BadCell, Opened, Rows, Table, Wanted};
 use crate::experiment::time_column::find_time_column;
+use crate::numerics::to_decimals;
 
 /// Sheets of a workbook, at most: those before that of the log are read in vain.
 const MOST_SHEETS: usize = 100;
@@ -31,10 +32,8 @@ type Workbook = Xlsx<BufReader<File>>;
 
 /// Opens the workbook and reads the header of the first sheet with a column of times, else of the first
 /// one with numbers, else of the first one with rows, to say what is wrong with it.
-pub(super) fn open(path: &Path, budget: &Budget) -> Result<OpenTable, ReadError> {
-    let mut parts = Parts::unpacked(path, budget)?;
-    // They stay while cells are read that share them.
-    budget.take(parts.texts)?;
+pub(super) fn open(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
+    let parts = check_parts(path, budget)?;
     let mut workbook: Workbook = open_workbook(path).map_err(|error: XlsxError| damaged(error))?;
     let names = sheets(&workbook);
     let count = names.len();
@@ -42,19 +41,19 @@ pub(super) fn open(path: &Path, budget: &Budget) -> Result<OpenTable, ReadError>
         return Err(damaged(format!("{count} sheets; {MOST_SHEETS} are the most")));
     }
     // Each sheet that shares the part of another would be unpacked again.
-    if count > parts.sheets {
-        return Err(damaged(SHARED));
+    if count > parts {
+        return Err(damaged("two of its sheets are one part of the file"));
     }
     let (mut numbers, mut rows) = (None, None);
     for name in names {
-        let range = parts.cells(&mut workbook, &name, budget)?;
+        let range = cells(&mut workbook, &name, budget)?;
         if range.height() < 2 {
             continue;
         }
         let found = of_sheet(&range, name, count, budget);
         if !range.rows().any(|row| row.iter().filter(|cell| is_value(cell)).count() > 1) {
             rows = rows.or(Some(found));
-        } else if found.as_ref().is_ok_and(|table| find_time_column(&table.head).is_some()) {
+        } else if found.as_ref().is_ok_and(|(head, _)| find_time_column(head).is_some()) {
             return found;
         } else {
             numbers = numbers.or(Some(found));
@@ -63,8 +62,6 @@ pub(super) fn open(path: &Path, budget: &Budget) -> Result<OpenTable, ReadError>
     let nothing = || Err(damaged("no sheet has a header and a row"));
     numbers.or(rows).unwrap_or_else(nothing)
 }
-
-const SHARED: &str = "two of its sheets are one part of the file";
 
 fn damaged(reason: impl Display) -> ReadError {
     ReadError::format("XLSX", reason, "save it again as .xlsx, or as CSV")
@@ -93,12 +90,12 @@ fn of_sheet(
     name: String,
     count: usize,
     budget: &Budget,
-) -> Result<OpenTable, ReadError> {
+) -> Result<Opened, ReadError> {
     let text = text_of(range).map_err(damaged)?;
     budget.take(text.len() as u64)?;
     let (bytes, start) = Bytes::made(text);
-    let OpenTable { head, rows } = table(bytes, &start, Some(b','), budget.rest())?;
-    Ok(OpenTable { head, rows: Box::new(OfSheet { name, count, rows }) })
+    let (head, rows) = table(bytes, &start, Some(b','), budget)?;
+    Ok((head, Box::new(OfSheet { name, count, rows })))
 }
 
 /// Stands for the value of a formula that the program which wrote it did not work out.
@@ -140,95 +137,73 @@ fn unknown_value(sheet: &str, row: u64) -> String {
     )
 }
 
-/// Bytes of a cell in a sheet, at the least: `<c/>`.
-const SMALLEST_CELL: u64 = 4;
-
-/// The parts of the file.
-struct Parts {
-    /// How many may be sheets.
-    sheets: usize,
-    /// Bytes of them all, unpacked, less those of the cells that were read.
-    bytes: u64,
-    /// Memory of the texts that cells share.
-    texts: u64,
+/// How many parts of the file may be sheets.
+///
+/// Each part is unpacked once, and memory asked for what the crate calamine 0.38 takes for it: what a part says
+/// of its size is not trusted. Refuses what cannot be unpacked, or whose checksum is another.
+fn check_parts(path: &Path, budget: &Budget) -> Result<usize, ReadError> {
+    // What is no archive is refused by the crate.
+    let Ok(mut archive) = ZipArchive::new(File::open(path)?) else { return Ok(0) };
+    let (mut sheets, mut memory) = (0, 0);
+    for index in 0..archive.len() {
+        let Ok(mut part) = archive.by_index(index) else { continue };
+        let name = part.name().map(|name| name.to_ascii_lowercase()).unwrap_or_default();
+        let (is_texts, is_styles) =
+            (name.ends_with("sharedstrings.xml"), name.ends_with("styles.xml"));
+        let is_sheet = name.contains("sheets/") && !name.contains("_rels/");
+        let size = if is_sheet || is_texts { SHEET_SIZE } else { PART_SIZE };
+        let (mut piece, mut kept) = (vec![0; 1 << 16], Vec::new());
+        loop {
+            let read = part.read(&mut piece);
+            let bytes = read.map_err(|e| damaged(format!("its part `{name}`: {e}")))?;
+            if bytes == 0 {
+                break;
+            }
+            memory += bytes as u64 * size;
+            budget.check(memory)?;
+            if is_styles || is_texts {
+                kept.extend_from_slice(piece.get(..bytes).unwrap_or_default());
+            }
+        }
+        sheets += usize::from(is_sheet);
+        if is_texts {
+            // They stay while cells are read that share them.
+            let count = stated_texts(&kept).max(count_of(&kept, b"<si"));
+            budget.take(count.saturating_mul(TEXT_SIZE).saturating_add(kept.len() as u64))?;
+        }
+        if is_styles {
+            budget.check(size_of_styles(&kept))?;
+        }
+    }
+    Ok(sheets)
 }
 
-impl Parts {
-    /// Unpacks each part once and asks for the memory that the crate calamine 0.38 takes for it. What a
-    /// part says of its size is not trusted. Refuses what cannot be unpacked, or whose checksum is another.
-    fn unpacked(path: &Path, budget: &Budget) -> Result<Self, ReadError> {
-        let mut parts = Self { sheets: 0, bytes: 0, texts: 0 };
-        let mut memory = 0;
-        let open = || ZipArchive::new(File::open(path).ok()?).ok();
-        // What is no archive is refused by the crate.
-        let Some(mut archive) = open() else { return Ok(parts) };
-        for index in 0..archive.len() {
-            let Ok(mut part) = archive.by_index(index) else { continue };
-            let name = part.name().map(|name| name.to_ascii_lowercase()).unwrap_or_default();
-            let (is_texts, is_styles) =
-                (name.ends_with("sharedstrings.xml"), name.ends_with("styles.xml"));
-            let is_sheet = name.contains("sheets/") && !name.contains("_rels/");
-            let size = if is_sheet || is_texts { SHEET_SIZE } else { PART_SIZE };
-            let (mut piece, mut kept) = (vec![0; 1 << 16], Vec::new());
-            loop {
-                let read = part.read(&mut piece);
-                let bytes = read.map_err(|e| damaged(format!("its part `{name}`: {e}")))?;
-                if bytes == 0 {
-                    break;
-                }
-                parts.bytes += bytes as u64;
-                memory += bytes as u64 * size;
-                budget.check(memory)?;
-                if is_styles || is_texts {
-                    kept.extend_from_slice(piece.get(..bytes).unwrap_or_default());
-                }
-            }
-            parts.sheets += usize::from(is_sheet);
-            if is_texts {
-                let count = stated_texts(&kept).max(count_of(&kept, b"<si"));
-                parts.texts = count.saturating_mul(TEXT_SIZE).saturating_add(kept.len() as u64);
-                budget.check(parts.texts)?;
-            }
-            if is_styles {
-                budget.check(size_of_styles(&kept))?;
-            }
+/// The cells of a sheet. The crate keeps all between the first and the last, for which memory is asked
+/// before.
+fn cells(workbook: &mut Workbook, name: &str, budget: &Budget) -> Result<Range<Data>, ReadError> {
+    let mut reader = workbook.worksheet_cells_reader(name).map_err(damaged)?;
+    let (mut found, mut texts) = (Vec::new(), 0);
+    let (mut first, mut last) = ((u32::MAX, u32::MAX), (0, 0));
+    while let Some(cell) = reader.next_cell_with_formula_metadata().map_err(damaged)? {
+        let value = match Data::from(cell.value) {
+            Data::Empty if cell.formula.is_some() => Data::Error(UNKNOWN),
+            Data::Empty => continue,
+            value => value,
+        };
+        // A text that many cells share is repeated in each.
+        if let Data::String(text) = &value {
+            texts += 2 * text.len() as u64;
         }
-        Ok(parts)
+        let (row, column) = cell.pos;
+        first = (row.min(first.0), column.min(first.1));
+        last = (row.max(last.0), column.max(last.1));
+        found.push(Cell::new(cell.pos, value));
+        budget.check(found.len() as u64 * CELL_SIZE + texts)?;
     }
-
-    /// The cells of a sheet. The crate keeps all between the first and the last, for which memory is asked
-    /// before.
-    fn cells(
-        &mut self,
-        workbook: &mut Workbook,
-        name: &str,
-        budget: &Budget,
-    ) -> Result<Range<Data>, ReadError> {
-        let mut reader = workbook.worksheet_cells_reader(name).map_err(damaged)?;
-        let (mut found, mut texts) = (Vec::new(), 0);
-        let (mut first, mut last) = ((u32::MAX, u32::MAX), (0, 0));
-        while let Some(cell) = reader.next_cell_with_formula_metadata().map_err(damaged)? {
-            self.bytes = self.bytes.checked_sub(SMALLEST_CELL).ok_or_else(|| damaged(SHARED))?;
-            let value = match Data::from(cell.value) {
-                Data::Empty if cell.formula.is_some() => Data::Error(UNKNOWN),
-                Data::Empty => continue,
-                value => value,
-            };
-            // A text that many cells share is repeated in each.
-            if let Data::String(text) = &value {
-                texts += 2 * text.len() as u64;
-            }
-            let (row, column) = cell.pos;
-            first = (row.min(first.0), column.min(first.1));
-            last = (row.max(last.0), column.max(last.1));
-            found.push(Cell::new(cell.pos, value));
-            budget.check(found.len() as u64 * CELL_SIZE + texts)?;
-        }
-        let length = |first: u32, last: u32| u64::from(last.saturating_sub(first)) + 1;
-        let all = length(first.0, last.0).saturating_mul(length(first.1, last.1));
-        budget.check(all.saturating_mul(CELL_SIZE).saturating_add(texts))?;
-        Ok(Range::from_sparse(found))
-    }
+    let length = |first: u32, last: u32| u64::from(last.saturating_sub(first)) + 1;
+    let all = length(first.0, last.0).saturating_mul(length(first.1, last.1));
+    budget.check(all.saturating_mul(CELL_SIZE).saturating_add(texts))?;
+    Ok(Range::from_sparse(found))
 }
 
 /// Memory for a byte of a part that is read piece by piece: elements of three bytes that are not ended
@@ -315,12 +290,12 @@ fn cell(data: &Data) -> String {
         Data::DateTime(time) => {
             /// Days of the first of March 1900: before it times of day are shown, and no dates.
             const FIRST_DATES: f64 = 61.0;
-            let text = if time.is_datetime() && time.as_f64() >= FIRST_DATES {
-                date_of_days(days_of(time))
+            if time.is_datetime() && time.as_f64() >= FIRST_DATES {
+                date_of_days(days_of(time)).unwrap_or_else(|| one_line(data))
             } else {
-                passed_of_days(time.as_f64())
-            };
-            text.unwrap_or_else(|| one_line(data))
+                // To the microsecond, below which a number of days is rounded.
+                format!("{} s", to_decimals(time.as_f64() * DAY, 6))
+            }
         }
         other => one_line(other),
     }
@@ -358,10 +333,10 @@ mod tests {
         let noon = 45_352.5 + 0.25 / 86_400.0;
         let date = text(noon, ExcelDateTimeType::DateTime);
         assert!(date.starts_with("2024-03-01T12:00:00.25"), "{date}");
-        assert_eq!(text(1.0 + 0.25 / 86_400.0, ExcelDateTimeType::TimeDelta), "24:00:00.250000");
+        assert_eq!(text(1.0 + 0.25 / 86_400.0, ExcelDateTimeType::TimeDelta), "86400.25 s");
         let just_before = (3_600.0 - 1e-9) / 86_400.0;
-        assert_eq!(text(just_before, ExcelDateTimeType::TimeDelta), "1:00:00.000000");
-        assert_eq!(text(just_before, ExcelDateTimeType::DateTime), "1:00:00.000000");
+        assert_eq!(text(just_before, ExcelDateTimeType::TimeDelta), "3600 s");
+        assert_eq!(text(just_before, ExcelDateTimeType::DateTime), "3600 s");
         assert_eq!(cell(&Data::Float(0.5)), "0.5");
     }
 }

@@ -9,7 +9,6 @@ use crate::experiment::layout::{JointLayout, Layout};
 use crate::experiment::memory::Budget;
 use crate::experiment::origin::Counting;
 use crate::experiment::table::{Column, Head, Table, TrialRows};
-use crate::units::SamplePeriod;
 
 /// A table that was read, with what is needed to mend it and to speak of its cells.
 pub(in crate::experiment) struct Log<'a> {
@@ -21,19 +20,13 @@ pub(in crate::experiment) struct Log<'a> {
     budget: &'a Budget,
     /// What may be done to it.
     pub(in crate::experiment) options: Repair,
-    pub(in crate::experiment) times: Times,
+    /// Seconds of each row.
+    pub(in crate::experiment) times: Vec<f64>,
     /// How they count, where they are read from a column of times.
     pub(super) counting: Option<Counting>,
     pub(in crate::experiment) trials: Vec<TrialRows>,
     /// What a reader of the log should know.
     pub(in crate::experiment) notes: Vec<String>,
-}
-
-/// Times of the rows in seconds, or the period between rows that have none.
-#[derive(Debug)]
-pub(in crate::experiment) enum Times {
-    Stamps(Vec<f64>),
-    Rows(SamplePeriod),
 }
 
 impl<'a> Log<'a> {
@@ -48,8 +41,7 @@ impl<'a> Log<'a> {
         (options, stem): (Repair, Option<&str>),
     ) -> Self {
         let trials = named(&table, stem);
-        let (times, notes) = (Times::Stamps(Vec::new()), Vec::new());
-        let counting = None;
+        let (times, counting, notes) = (Vec::new(), None, Vec::new());
         Self { head, layout, numeric, table, budget, options, times, counting, trials, notes }
     }
 
@@ -78,11 +70,10 @@ impl<'a> Log<'a> {
         self.spans().into_iter().map(|rows| values.get(rows)).collect()
     }
 
-    /// The times of the rows of a trial; none where rows have no time.
+    /// The times of the rows of a trial.
     pub(in crate::experiment) fn times_of(&self, trial: usize) -> Option<&[f64]> {
-        let Times::Stamps(times) = &self.times else { return None };
         let rows = self.trials.get(trial)?;
-        times.get(rows.start..rows.end)
+        self.times.get(rows.start..rows.end)
     }
 
     /// Takes the memory of `count` values of `size` bytes each.

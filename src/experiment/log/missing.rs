@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use super::cells::{Log, Times};
+use super::cells::Log;
 use crate::experiment::clock::filled_s;
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::gaps::no_shorter;
@@ -136,13 +136,14 @@ impl Log<'_> {
         /// which nothing is known between them (chosen).
         const SPARSE: f64 = 0.3;
         const LONGEST: f64 = 3.0;
-        let Times::Stamps(times) = &self.times else { return None };
+        // Of rows without a time it is not known that any are missing.
+        self.layout.time.column()?;
         let output = &self.column(layout.output.column)?.values;
         let is_measured = |row: &usize| output.get(*row).is_some_and(|value| !value.is_nan());
         let (mut count, mut apart) = (0, Vec::new());
         for rows in self.spans() {
             let measured: Vec<f64> =
-                rows.filter(is_measured).filter_map(|row| times.get(row).copied()).collect();
+                rows.filter(is_measured).filter_map(|row| self.times.get(row).copied()).collect();
             count += measured.len();
             apart.extend(measured.windows(2).map(|pair| pair[1] - pair[0]));
         }

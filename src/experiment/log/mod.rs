@@ -6,5 +6,5 @@ mod missing;
 mod times;
 mod unit_change;
 
-pub(super) use self::cells::{Log, Times};
+pub(super) use self::cells::Log;
 pub(super) use self::times::repeats;

@@ -1,8 +1,8 @@
 //! The times of a log: how its clock counts, its grids, and what is odd about them.
 
-use super::cells::{Log, Times};
+use super::cells::Log;
 use super::unit_change::unit_change;
-use crate::experiment::clock::{Fault, is_period};
+use crate::experiment::clock::is_period;
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::format::date_of_seconds;
 use crate::experiment::grid::{Grid, Repair};
@@ -21,7 +21,8 @@ impl Log<'_> {
             TimeSource::Times(column, scale) => (column, scale),
             TimeSource::SampleNumbers(column, period) => (column, Some(period.seconds())),
             TimeSource::Rows(period) => {
-                self.times = Times::Rows(period);
+                let rows = self.trials.iter().flat_map(|trial| 0..trial.end - trial.start);
+                self.times = rows.map(|row| row as f64 * period.seconds()).collect();
                 return Ok(());
             }
         };
@@ -31,7 +32,7 @@ impl Log<'_> {
         let counting = Counting::of(column, values, scale.filter(|_| !are_dates));
         let times: Vec<f64> = values.iter().map(|value| counting.seconds_of(*value)).collect();
         self.check_times(column, &times)?;
-        self.times = Times::Stamps(times);
+        self.times = times;
         let is_number = matches!(self.layout.time, TimeSource::SampleNumbers(..));
         self.counting = Some(counting).filter(|_| !is_number);
         Ok(())
@@ -50,18 +51,14 @@ impl Log<'_> {
 
     /// The grid of each trial, and what was done to lay it.
     pub(super) fn grids(&self, options: Repair) -> Result<(Vec<Grid>, Vec<String>), ReadError> {
-        if let Times::Rows(period) = self.times {
-            let grid = |trial: &TrialRows| Grid::of_rows(trial.end - trial.start, period, options);
-            return Ok((self.trials.iter().map(grid).collect(), Vec::new()));
-        }
         let trials = 0..self.trials.len();
         let times: Vec<&[f64]> = trials.filter_map(|trial| self.times_of(trial)).collect();
         let number = |trial: usize, row: usize| {
             self.trials.get(trial).map_or(0, |rows| self.row(rows.start + row))
         };
         grids(&times, options, &number).map_err(|(trial, fault)| {
-            let times = times.get(trial).copied().unwrap_or_default();
-            self.time_error(fault, trial, times, &|row| number(trial, row))
+            let label = self.trials.get(trial).map_or("", |trial| &trial.label);
+            fault.in_trial(label, |row| number(trial, row))
         })
     }
 
@@ -199,64 +196,6 @@ impl Log<'_> {
     /// What is wrong with the clock at a row.
     fn clock_error(&self, text: impl Into<String>, index: usize) -> ReadError {
         ReadError::new(ReadErrorKind::Content, text).in_row(self.row(index))
-    }
-
-    /// `fault` in the clock of a trial, whose rows have these `times` and this `number`.
-    fn time_error(
-        &self,
-        fault: Fault,
-        trial: usize,
-        times: &[f64],
-        number: &dyn Fn(usize) -> u64,
-    ) -> ReadError {
-        let at = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
-        let trial = self.trials.get(trial).map_or("", |trial| &trial.label);
-        let (kind, row, text) = match fault {
-            Fault::NotIncreasing { row } => {
-                let (before, time) = (row.checked_sub(1).map_or(f64::NAN, at), at(row));
-                let text = format!(
-                    "time goes from {before} s to {time} s, but must increase; remove the row if \
-                     it is a copy, or mark a new trial in a `trial` column"
-                );
-                (ReadErrorKind::Content, number(row), text)
-            }
-            Fault::NotUniform { row, step, period } => {
-                let text = format!(
-                    "this sample comes {step} s after the one before, but the period is {period} s (median)"
-                );
-                (ReadErrorKind::NotUniform { step, period }, number(row), text)
-            }
-            Fault::FewStamps { stamps, grain_s } => {
-                let text = format!(
-                    "the {} rows of this trial have only {stamps} different times, {grain_s} s \
-                     apart: too few to determine the sample period; write times as 64-bit numbers \
-                     or with more digits",
-                    times.len()
-                );
-                (ReadErrorKind::Times, number(0), text)
-            }
-            Fault::Coarse { row, grain_s, period } => {
-                let text = format!(
-                    "the times are rounded to {grain_s} s, with an uneven number of samples \
-                     (about {:.0}) at each, so the time of a sample is not known; write times \
-                     with more digits",
-                    grain_s / period
-                );
-                (ReadErrorKind::Times, number(row), text)
-            }
-            Fault::TooMany { samples, period } => {
-                let text = format!(
-                    "trial `{trial}` would have {samples:e} samples on a grid of {period} s; check the times"
-                );
-                (ReadErrorKind::TooManySamples, 0, text)
-            }
-            Fault::SingleRow => {
-                let text =
-                    format!("trial `{trial}` has one row only, but needs two for a sample period");
-                (ReadErrorKind::Content, number(0), text)
-            }
-        };
-        ReadError::new(kind, text).in_row(row)
     }
 
     /// Refuses an output that has several series at each time, as in a table with a row for each joint: all

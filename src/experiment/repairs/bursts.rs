@@ -1,7 +1,7 @@
 //! Rows that come in bursts, as packets over a network bring them: their stamps say when a packet came,
 //! and not when each row was measured.
 
-use crate::experiment::log::{Log, Times};
+use crate::experiment::log::Log;
 use crate::numerics::median;
 
 /// Usual steps beyond which one is a pause.
@@ -30,10 +30,9 @@ const BREAK: f64 = 5.0;
 /// Spreads the rows of each trial that come in bursts.
 pub(super) fn spread_out(log: &mut Log<'_>) {
     let spans = log.spans();
-    let Times::Stamps(times) = &mut log.times else { return };
     let mut any = false;
     for rows in spans {
-        let Some(times) = times.get_mut(rows).filter(|times| !is_even(times)) else { continue };
+        let Some(times) = log.times.get_mut(rows).filter(|times| !is_even(times)) else { continue };
         if let Some(even) = spread(times) {
             times.copy_from_slice(&even);
             any = true;

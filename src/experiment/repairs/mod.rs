@@ -11,7 +11,7 @@ mod slow_sensor;
 mod wrap;
 
 use super::error::ReadError;
-use super::log::{Log, Times};
+use super::log::Log;
 use super::table::TrialRows;
 use mended::mend_outputs;
 use wrap::Wrap;
@@ -88,10 +88,8 @@ fn falls(times: &[f64]) -> bool {
 fn count_over_midnight(log: &mut Log<'_>) {
     let column = log.layout.time.column().and_then(|column| log.column(column));
     let are_of_day = column.is_some_and(|column| column.are_dates || column.are_of_day);
-    if let Times::Stamps(times) = &mut log.times
-        && are_of_day
-    {
-        count_on(times);
+    if are_of_day {
+        count_on(&mut log.times);
     }
 }
 

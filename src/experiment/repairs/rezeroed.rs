@@ -5,7 +5,7 @@
 
 use super::mended::Mended;
 use crate::experiment::layout::JointLayout;
-use crate::experiment::log::{Log, Times};
+use crate::experiment::log::Log;
 use crate::numerics::{median, to_digits};
 
 /// The output of a joint without its jumps where its zero is set anew.
@@ -47,8 +47,7 @@ fn shifts(log: &Log<'_>, joint: &JointLayout) -> Option<Shifts> {
 fn are_near(log: &Log<'_>, start: usize, output: &[f64], shifts: Shifts) -> bool {
     /// Times the usual distance of rows that two are apart, at most.
     const NEAR: f64 = 1.5;
-    let Times::Stamps(times) = &log.times else { return true };
-    let Some(times) = times.get(start..start + output.len()) else { return true };
+    let Some(times) = log.times.get(start..start + output.len()) else { return true };
     let apart: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let Some(usual) = median(&apart) else { return true };
     let mut jumps = shifts.jumps(output);

@@ -1,14 +1,14 @@
 //! Rows of one time that say the same, or complete one another: those of a logger that is faster than its
 //! bus, and of a table that has a row for each sensor. They are one row.
 
-use crate::experiment::log::{Log, Times, repeats};
+use crate::experiment::log::{Log, repeats};
 
 /// Part of the rows that repeat a time, at least: of fewer the clock says what they are.
 const REPEATED: f64 = 0.1;
 
 /// Joins rows with the one before that has their time, where no two of these contradict each other.
 pub(super) fn join(log: &mut Log<'_>) {
-    let Times::Stamps(times) = &mut log.times else { return };
+    let times = &mut log.times;
     let repeats = repeats(times, &log.trials);
     if repeats.len() as f64 <= REPEATED * times.len() as f64 {
         return;

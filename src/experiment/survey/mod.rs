@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use super::columns::{ColumnMap, JointColumns};
 use super::error::ReadError;
 use super::format;
+use super::grid::Repair;
 use super::layout::find_trial;
 use super::memory::{Budget, MemoryLimit};
 use super::table::{Column, Head, OpenTable};
@@ -84,12 +85,12 @@ impl Survey {
         head.check_is_header()?;
         let (time, trial) = (find_time_column(&head), find_trial(&head));
         // What is as long as the times are: gains and options stand beside them in a workspace.
-        let rows = time.and_then(|time| table.rows.rows_of(time));
-        let is_as_long = |column: &usize| rows.is_none() || table.rows.rows_of(*column) == rows;
+        let rows = time.and_then(|time| table.rows_of(time));
+        let is_as_long = |column: &usize| rows.is_none() || table.rows_of(*column) == rows;
         let numeric = (0..head.headers.len()).filter(|i| Some(*i) != trial).filter(is_as_long);
         let numeric: Vec<usize> = numeric.collect();
         let clock = head.headers.first().map_or(0, |header| header.clock);
-        let read = table.read(&numeric, trial, time, clock)?;
+        let read = table.read(&numeric, trial, time, clock, Repair::default())?;
         let read = read.columns.iter().zip(numeric);
         Ok(Self::of_columns(&head, read.map(|(column, index)| (index, column))))
     }

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
+use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::batch::Threads;
 use crate::delay::{Automatic, InputKind, Settings, Verdict, check_growing, final_part};
-use crate::experiment::{Experiment, Joint, ReadOptions, line_end_of};
+use crate::experiment::{Experiment, Joint, ReadOptions, is_text};
 use crate::report::decisions::step_line;
 use crate::report::{EstimatedJoint, Recording, decision_rows};
 use crate::study::{JointEstimate, estimate_each};
@@ -84,95 +84,60 @@ fn watch(
 struct Followed {
     path: PathBuf,
     options: ReadOptions,
-    /// What was read of the log.
-    seen: Vec<u8>,
-    /// Bytes of it that are in the copy: of a text its whole lines, else all of it.
-    whole: usize,
-    /// What ends a line of the log: nothing where it is no text.
-    line_end: &'static [u8],
-    /// Holds the copy, a file with the log's name.
-    _folder: tempfile::TempDir,
-    copy: PathBuf,
+    /// Bytes that there were at the last look, and the last of them.
+    length: u64,
+    tail: Vec<u8>,
 }
 
 impl Followed {
     fn of(path: &Path, args: &Args) -> anyhow::Result<Self> {
-        let folder = tempfile::tempdir().context("no temporary folder can be made")?;
-        let copy = folder.path().join(path.file_name().unwrap_or_default());
-        let (path, options, seen) = (path.to_owned(), args.data.options()?, Vec::new());
-        Ok(Self { path, options, seen, whole: 0, line_end: b"", _folder: folder, copy })
+        Ok(Self {
+            path: path.to_owned(),
+            options: args.data.options()?,
+            length: 0,
+            tail: Vec::new(),
+        })
     }
 
-    /// Takes in what has come since; whether that made a line of a text whole. A log that is not there
-    /// yet may come.
+    /// Looks at what was appended since the last look, and at the end of what was there before; whether
+    /// that may have made a row whole. A log that is not there yet may come.
     fn catch_up(&mut self) -> anyhow::Result<bool> {
-        if !self.has_grown()? {
-            return Ok(false);
-        }
-        if self.whole == 0 {
-            self.line_end = line_end_of(&self.copy, &self.seen);
-        }
-        let whole = match self.line_end.len() {
-            0 => self.seen.len(),
-            // A line feed of UTF-16 has two bytes, and begins at an even one.
-            width => {
-                let end = self.seen.chunks(width).rposition(|letter| letter == self.line_end);
-                end.map_or(0, |end| (end + 1) * width)
-            }
-        };
-        let news = self.seen.get(self.whole..whole).filter(|news| !news.is_empty());
-        let Some(news) = news else { return Ok(false) };
-        File::options().create(true).append(true).open(&self.copy)?.write_all(news)?;
-        self.whole = whole;
-        Ok(true)
-    }
-
-    /// Reads what was appended since the last look, and nothing else but the end of what was there before;
-    /// whether there is any.
-    fn has_grown(&mut self) -> anyhow::Result<bool> {
         let name = self.path.display();
         let unread = || format!("{name}: cannot be read");
-        let read = self.seen.len() as u64;
         // To open a pipe would wait for who writes into it.
-        if read > 0 && self.path.metadata().is_ok_and(|found| !found.is_file()) {
+        if self.length > 0 && self.path.metadata().is_ok_and(|found| !found.is_file()) {
             bail!("{name}: the file is gone; run the command again when it is there");
         }
         let mut file = match File::open(&self.path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound && read == 0 => return Ok(false),
+            Err(error) if error.kind() == io::ErrorKind::NotFound && self.length == 0 => {
+                return Ok(false);
+            }
             opened => opened.with_context(unread)?,
         };
         let length = file.metadata().with_context(unread)?.len();
-        if length < read {
+        if length < self.length {
             bail!("{name}: it became shorter while it was followed; run the command again");
         }
-        let tail = self.seen.split_off(self.seen.len().saturating_sub(TAIL));
-        let start = self.seen.len() as u64;
+        let (start, mut seen) = (self.length - self.tail.len() as u64, Vec::new());
         file.seek(SeekFrom::Start(start))
-            .and_then(|_| file.take(length - start).read_to_end(&mut self.seen))
+            .and_then(|_| file.take(length - start).read_to_end(&mut seen))
             .with_context(unread)?;
-        // Another log under the name would be read from its middle on.
-        let known = usize::try_from(start).ok().and_then(|start| self.seen.get(start..));
-        if !known.is_some_and(|known| known.starts_with(&tail)) {
+        // Another log under the name would be taken for more of this one.
+        let Some(news) = seen.strip_prefix(self.tail.as_slice()) else {
             bail!("{name}: another log took its place while it was followed; run the command again")
-        }
-        Ok(self.seen.len() as u64 > read)
+        };
+        let may_be_whole = news.contains(&b'\n') || !news.is_empty() && !is_text(&self.path);
+        self.length = start + seen.len() as u64;
+        self.tail = seen.split_off(seen.len().saturating_sub(TAIL));
+        Ok(may_be_whole)
     }
 
     /// What its whole lines say, or all of it where it has none; joints that say nothing yet are left out.
     fn experiment(&self) -> Experiment {
         let mut options = self.options.clone();
         // What is reported of a text stands: nothing may depend on rows that are still to come.
-        options.repair.as_it_stands |= !self.line_end.is_empty();
-        let mut experiment = Experiment::read(std::slice::from_ref(&self.copy), &options);
-        for source in &mut experiment.sources {
-            source.path.clone_from(&self.path);
-        }
-        experiment
-    }
-
-    /// An error on a copy, as one on the log.
-    fn named(&self, error: &str) -> String {
-        error.replace(&self.copy.display().to_string(), &self.path.display().to_string())
+        options.repair.as_it_stands |= is_text(&self.path);
+        Experiment::read(std::slice::from_ref(&self.path), &options)
     }
 }
 
@@ -205,7 +170,7 @@ impl Reported {
         log: &Followed,
     ) -> anyhow::Result<()> {
         let experiment = log.experiment();
-        self.say_failures(args, &experiment, log);
+        self.say_failures(args, &experiment);
         let own = OwnSettings::of(&experiment.options)?;
         let asked = (settings.clone(), Automatic::default());
         let of_joint = |joint: &Joint| own.of_joint(joint, &asked);
@@ -254,9 +219,9 @@ impl Reported {
     }
 
     /// Says what cannot be read, when that has changed: more of the log may mend it.
-    fn say_failures(&mut self, args: &Args, experiment: &Experiment, log: &Followed) {
+    fn say_failures(&mut self, args: &Args, experiment: &Experiment) {
         let failures = experiment.failures.iter();
-        let failures: Vec<_> = failures.map(|f| log.named(&said(&f.error))).collect();
+        let failures: Vec<_> = failures.map(|f| said(&f.error)).collect();
         if failures != self.failures {
             for failure in &failures {
                 args.output.run.verbosity().say("waiting", failure);
@@ -310,6 +275,8 @@ fn settled_joint(joint: &Joint, estimate: &JointEstimate) -> Option<(Joint, Join
 
 #[cfg(test)]
 mod tests {
+    use std::io::Write as _;
+
     use super::*;
 
     /// What `estimate` is asked with this log.
@@ -323,80 +290,65 @@ mod tests {
         line.args
     }
 
-    /// A log with its header alone, and who follows it.
-    fn begun(name: &str, start: &str) -> (tempfile::TempDir, File, Args, PathBuf) {
+    /// Rows of the only trial that the whole lines of a log with these bytes have.
+    fn rows_of(bytes: &[u8]) -> usize {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(name);
-        let args = asked(&path);
-        assert!(!Followed::of(&path, &args).unwrap().catch_up().unwrap(), "there is no log yet");
-        let mut file = File::create(&path).unwrap();
-        file.write_all(start.as_bytes()).unwrap();
-        (folder, file, args, path)
+        let path = folder.path().join("log.csv");
+        std::fs::write(&path, bytes).unwrap();
+        let log = Followed::of(&path, &asked(&path)).unwrap();
+        log.experiment().joints.first().map_or(0, |joint| joint.trials[0].len())
     }
 
     #[test]
-    fn a_look_reads_what_was_appended_and_no_more() {
-        let (_folder, mut file, args, path) = begun("log.csv", "t,a.input,a.output\n");
-        let mut log = Followed::of(&path, &args).unwrap();
-        assert!(log.catch_up().unwrap());
-        let mut samples = 0_u32;
-        for rows in [20_000, 1, 0, 3] {
-            let before = log.seen.len();
-            let rows_of = samples..samples + rows;
-            let lines: Vec<_> = rows_of.map(|k| format!("{k},{},{k}.5\n", k / 50)).collect();
-            let text = lines.concat();
-            // The last line is not whole yet.
-            let (whole, rest) = text.split_at(text.len().saturating_sub(3));
-            file.write_all(whole.as_bytes()).unwrap();
-            assert_eq!(log.catch_up().unwrap(), rows > 1);
-            assert_eq!(log.seen.len() - before, whole.len());
-            file.write_all(rest.as_bytes()).unwrap();
-            assert_eq!(log.catch_up().unwrap(), rows > 0);
-            assert_eq!(log.seen.len() - before, text.len());
-            samples += rows;
-            assert_eq!(log.experiment().joints[0].trials[0].len(), samples as usize);
+    fn what_was_appended_is_seen_once_and_a_change_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let mut log = Followed::of(&path, &asked(&path)).unwrap();
+        assert!(!log.catch_up().unwrap(), "there is no log yet");
+        let mut file = File::create(&path).unwrap();
+        for (text, is_whole) in [
+            ("t,a.inp", false),
+            ("ut,a.output\n", true),
+            ("", false),
+            ("0,1,2\n1,1,", true),
+            ("3", false),
+            ("\n", true),
+        ] {
+            file.write_all(text.as_bytes()).unwrap();
+            assert_eq!(log.catch_up().unwrap(), is_whole, "{text:?}");
         }
+        std::fs::write(&path, "t,a.input,a.output\n0,2,2\n1,1,3\n2,1,3\n").unwrap();
+        assert!(log.catch_up().unwrap_err().to_string().contains("another log took its place"));
         std::fs::write(&path, "a").unwrap();
         assert!(log.catch_up().unwrap_err().to_string().contains("became shorter"));
     }
 
     #[test]
-    fn what_is_no_text_is_read_from_a_copy() {
-        let (_folder, mut file, args, path) = begun("log.mcap", "a");
-        let mut log = Followed::of(&path, &args).unwrap();
-        assert!(log.catch_up().unwrap());
-        file.write_all(b"b\nc").unwrap();
-        assert!(log.catch_up().unwrap());
+    fn what_is_no_text_grows_without_lines() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.mcap");
+        let mut log = Followed::of(&path, &asked(&path)).unwrap();
+        for come in ["a", "ab"] {
+            std::fs::write(&path, come).unwrap();
+            assert!(log.catch_up().unwrap());
+        }
         assert!(!log.catch_up().unwrap(), "nothing came");
-        assert_eq!(std::fs::read(&log.copy).unwrap(), b"ab\nc");
-        let failures = log.experiment().failures;
-        let told = log.named(&failures[0].error.to_string());
-        assert!(told.starts_with(&path.display().to_string()), "{told}");
     }
 
     #[test]
-    fn the_lines_of_utf_16_are_whole_at_their_own_line_feeds() {
+    fn a_line_of_utf_16_that_is_cut_off_is_waited_for() {
         // The Gurmukhi letter U+0A15 and U+150A have the byte of a line feed.
         let text = "\u{feff}t,a.input,a.output,\u{a15}\u{150a}\n0,1,2,\n1,1,3,\u{150a}\n";
         for to_bytes in [u16::to_le_bytes, u16::to_be_bytes] {
             let bytes: Vec<u8> = text.encode_utf16().flat_map(to_bytes).collect();
-            let (_folder, _, args, path) = begun("log.csv", "");
-            let mut log = Followed::of(&path, &args).unwrap();
-            let mut whole = 0;
-            for come in 2..=bytes.len() {
-                std::fs::write(&path, &bytes[..come]).unwrap();
-                whole += usize::from(log.catch_up().unwrap());
-            }
-            assert_eq!(whole, 3);
-            let joint = &log.experiment().joints[0];
-            assert_eq!(joint.trials[0].output(), [2.0, 3.0]);
+            let rows = |left: usize| rows_of(&bytes[..bytes.len() - left]);
+            assert_eq!([0, 1, 2, 3, 4, 6].map(rows), [2, 0, 0, 0, 0, 0], "one row makes no trial");
         }
     }
 
     #[test]
     fn a_row_that_is_not_whole_is_waited_for() {
-        let (_folder, mut file, args, path) = begun("log.csv", "t,a.input,a.output,note\n");
-        let mut log = Followed::of(&path, &args).unwrap();
+        let mut log = "t,a.input,a.output,note\n".to_owned();
         for (text, rows) in [
             ("0,1,2,\n1,1,3,\n", 2),
             // Its numbers are whole.
@@ -405,10 +357,8 @@ mod tests {
             ("5,\nend of the test,,,\n", 4),
             ("4,0,6,\n", 0),
         ] {
-            file.write_all(text.as_bytes()).unwrap();
-            assert!(log.catch_up().unwrap());
-            let joints = log.experiment().joints;
-            assert_eq!(joints.first().map_or(0, |joint| joint.trials[0].len()), rows, "{text}");
+            log.push_str(text);
+            assert_eq!(rows_of(log.as_bytes()), rows, "{text}");
         }
     }
 }

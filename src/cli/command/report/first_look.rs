@@ -21,7 +21,7 @@ pub(super) fn show_delays(args: &Args, study: &Study<'_>) -> anyhow::Result<()> 
         return Ok(());
     }
     study.say_notes();
-    let joints = estimated(study.experiment(), &study.estimates);
+    let joints = estimated(&study.experiment, &study.estimates);
     let extent = extent_table(study.joints());
     console::print(&format!("{extent}\n{}\n", estimate_table(&joints, &study.settings)))?;
     let said = "searching for the effects that the models lack, which takes seconds, or minutes for \

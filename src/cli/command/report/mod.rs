@@ -134,7 +134,7 @@ impl ModelArgs {
                 improve_joints(joints, estimates, starts, protocol, options, done, &Threads)
             })?
         } else if self.model.is_some() {
-            let known = |joint: &Joint| known(file, joint, &study.experiment().sources);
+            let known = |joint: &Joint| known(file, joint, &study.experiment.sources);
             let explained = study.work("explaining", |bar, others| {
                 let watched = protocol.watched(bar).beside(others);
                 explain_unknown_joints(joints, estimates, starts, known, watched, options, &Threads)
@@ -178,7 +178,7 @@ impl Reported<'_> {
         target: Option<&Target>,
     ) -> anyhow::Result<Completion> {
         let study = self.study;
-        let experiment = study.experiment();
+        let experiment = &study.experiment;
         let mut failures = run::failures(experiment, &study.estimates);
         let joints = estimated(experiment, &study.estimates);
         if joints.is_empty() {
@@ -210,8 +210,8 @@ impl Reported<'_> {
         target: Option<&Target>,
     ) -> anyhow::Result<Completion> {
         let Self { args, study, .. } = *self;
-        let experiment = study.experiment();
-        let against = compared(joints, study.beside())?;
+        let experiment = &study.experiment;
+        let against = compared(joints, &study.beside)?;
         let further = run::left_over(&against, &args.data);
         let notes = experiment.notes.iter().cloned().chain(run::notes(joints));
         let notes: Vec<String> = notes.chain(further).collect();

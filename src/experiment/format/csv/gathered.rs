@@ -5,7 +5,7 @@ use super::super::spelling::{are_units, is_over_lines, is_remark};
 use super::lines::Place;
 use super::milliseconds::Milliseconds;
 use crate::experiment::error::{ReadError, ReadErrorKind};
-use crate::experiment::memory::{Budget, NUMBER_SIZE};
+use crate::experiment::memory::NUMBER_SIZE;
 use crate::experiment::names::shown;
 use crate::experiment::source::Source;
 use crate::experiment::table::{BadCell, Column, Header, Labels, Table, Wanted};
@@ -38,11 +38,10 @@ pub(super) struct Gathered<'w> {
     above: Vec<(csv::ByteRecord, Place)>,
     /// Cells of each row, which the first one shows.
     width: Option<usize>,
-    budget: Budget,
 }
 
 impl<'w> Gathered<'w> {
-    pub(super) fn new(wanted: &'w Wanted<'w>, delimiter: u8, budget: Budget) -> Self {
+    pub(super) fn new(wanted: &'w Wanted<'w>, delimiter: u8) -> Self {
         let columns = vec![Column::default(); wanted.numeric.len()];
         Self {
             wanted,
@@ -58,7 +57,6 @@ impl<'w> Gathered<'w> {
             repeats_head: false,
             above: Vec::new(),
             width: None,
-            budget,
         }
     }
 
@@ -117,7 +115,7 @@ impl<'w> Gathered<'w> {
         let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
         let label = wanted.label.map_or(&b""[..], cell);
         let size = (wanted.numeric.len() + 1) * NUMBER_SIZE + label.len();
-        self.budget.take_values(1, size)?;
+        wanted.budget.take_values(1, size)?;
         let index = self.rows.len();
         self.rows.push(u32::try_from(row).unwrap_or(u32::MAX));
         let columns = self.columns.iter_mut().zip(wanted.numeric).enumerate();
@@ -134,7 +132,7 @@ impl<'w> Gathered<'w> {
             column.push(self.marks.agreed(cell, parsed, place, (row, index)), row);
         }
         if wanted.label.is_some() {
-            self.labels.push(&String::from_utf8_lossy(label), row, &self.budget)?;
+            self.labels.push(&String::from_utf8_lossy(label), row, wanted.budget)?;
         }
         Ok(())
     }

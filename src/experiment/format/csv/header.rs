@@ -2,7 +2,6 @@
 
 use super::super::spelling::{are_units, bare_unit, is_remark};
 use crate::experiment::error::{ReadError, ReadErrorKind};
-use crate::experiment::memory::Budget;
 use crate::experiment::table::{Head, Header};
 use crate::experiment::time_column::find_time_column;
 use crate::experiment::unit::{is_time, is_unit};
@@ -11,16 +10,14 @@ use crate::experiment::unit::{is_time, is_unit};
 const A_TABLE: &str = "a table of text";
 
 /// Refuses a header of more cells than a log has columns, which a row of commas is, too.
-pub(super) fn check_header_size(cells: usize, budget: &Budget) -> Result<(), ReadError> {
+pub(super) fn check_header_size(cells: usize) -> Result<(), ReadError> {
     /// Ten times as many as a large plant has signals (chosen).
     const MOST: usize = 1_000_000;
-    /// Memory of a name, and of what is looked for in its column (measured: 180 to 250 bytes).
-    const HEADER_SIZE: usize = 256;
     if cells > MOST {
         let reason = format!("its header has {cells} cells; at most {MOST} are read");
         return Err(ReadError::format(A_TABLE, reason, "leave out columns"));
     }
-    budget.take_values(cells, HEADER_SIZE)
+    Ok(())
 }
 
 /// A name without the quotation marks that a blank before them makes part of the cell, or single ones.

@@ -12,7 +12,7 @@ use super::spelling::Spelling;
 use super::text::Bytes;
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::Budget;
-use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
+use crate::experiment::table::{Opened, Rows, Table, Wanted};
 use gathered::Gathered;
 use header::{check_header_size, check_last_name, describes, head};
 use lines::{Place, Records};
@@ -25,11 +25,10 @@ struct Unread {
     above: Vec<(csv::ByteRecord, Place)>,
     /// Where the first row is, which was read.
     first: Option<Place>,
-    budget: Budget,
 }
 
 /// Opens the log and reads its header.
-pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
+pub(super) fn open(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
     let (bytes, start) = Bytes::open(path)?;
     table(bytes, &start, None, budget)
 }
@@ -40,17 +39,17 @@ pub(super) fn table(
     mut bytes: Bytes,
     start: &[u8],
     delimiter: Option<u8>,
-    budget: Budget,
-) -> Result<OpenTable, ReadError> {
+    budget: &Budget,
+) -> Result<Opened, ReadError> {
     let (spelling, is_text) = (Spelling::of(start, delimiter), delimiter.is_none());
     let (before, _) = spelling.preamble;
     io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink())?;
     let delimiter = spelling.delimiter;
-    let mut records = Records::of(bytes, spelling, &budget);
+    let mut records = Records::of(bytes, spelling, budget);
     let Some(place) = records.next()? else {
         return Err(ReadError::empty());
     };
-    check_header_size(records.record.len(), &budget)?;
+    check_header_size(records.record.len())?;
     let mut head = head(&records.record, place.row)?;
     records.width = head.headers.len();
     let mut above = Vec::new();
@@ -66,16 +65,16 @@ pub(super) fn table(
         above.push((records.record.clone(), place));
         first = records.next()?;
     }
-    Ok(OpenTable { head, rows: Box::new(Unread { records, delimiter, above, first, budget }) })
+    Ok((head, Box::new(Unread { records, delimiter, above, first })))
 }
 
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let Self { mut records, delimiter, above, first, budget } = *self;
-        let mut gathered = Gathered::new(wanted, delimiter, budget);
+        let Self { mut records, delimiter, above, first } = *self;
+        let mut gathered = Gathered::new(wanted, delimiter);
         gathered.note_above(above);
         let mut next = first;
-        while let Some(place) = next {
+        while let Some(place) = next.filter(|place| !(place.is_open && wanted.grows)) {
             gathered.add(&records.record, place)?;
             next = records.next()?;
         }
@@ -92,8 +91,8 @@ impl Rows for Unread {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::MemoryLimit;
-    use crate::experiment::table::BadCell;
+    use crate::experiment::table::{BadCell, OpenTable};
+    use crate::experiment::{MemoryLimit, Repair};
 
     #[test]
     fn rows_are_the_lines_of_the_file() {
@@ -103,9 +102,10 @@ mod tests {
         let mixed = text.replacen('\n', "\r\n", 2);
         for text in [text.to_owned(), format!("{text}\n"), text.replace('\n', "\r\n"), mixed] {
             std::fs::write(&path, &text).unwrap();
-            let open = open(&path, Budget::new(MemoryLimit::default())).unwrap();
+            let budget = Budget::new(MemoryLimit::default());
+            let open = OpenTable::new(open(&path, &budget).unwrap(), budget);
             assert_eq!(open.head.header_row, 2, "{text:?}");
-            let table = open.read(&[0, 1], None, Some(0), 0).unwrap();
+            let table = open.read(&[0, 1], None, Some(0), 0, Repair::default()).unwrap();
             assert_eq!(table.rows, [3, 6, 7], "{text:?}");
             assert_eq!(table.columns[1].error, Some((7, BadCell::Text("x".to_owned()))));
         }

@@ -19,7 +19,7 @@ use self::variable::{Content, Variable};
 use super::first_bytes::{is_matlab_73, start_of};
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::memory::Budget;
-use crate::experiment::table::{Column, Head, Labels, OpenTable, Rows, Table, Wanted};
+use crate::experiment::table::{Column, Head, Labels, Opened, Rows, Table, Wanted};
 
 /// The variables with the place of each header: its variable, and the column of that.
 struct Unread {
@@ -27,14 +27,13 @@ struct Unread {
     places: Vec<(usize, usize)>,
     /// Bytes of the file.
     size: u64,
-    budget: Budget,
 }
 
 /// Opens the log and lists its variables.
-pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
+pub(super) fn open(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
     let start = start_of(path)?;
     let variables = if is_matlab_73(&start) { v73::variables } else { v5::variables };
-    let variables = variables(path, &budget)?;
+    let variables = variables(path, budget)?;
     let (mut headers, mut places) = (Vec::new(), Vec::new());
     for (index, variable) in variables.iter().enumerate() {
         let (_, columns) = variable.shape();
@@ -46,8 +45,8 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
     if variables.iter().all(|variable| variable.shape().0 == 0) {
         check_kinds(&variables)?;
     }
-    let rows = Box::new(Unread { variables, places, size: path.metadata()?.len(), budget });
-    Ok(OpenTable { head: Head::without_lines(headers), rows })
+    let rows = Unread { variables, places, size: path.metadata()?.len() };
+    Ok((Head::without_lines(headers), Box::new(rows)))
 }
 
 /// Refuses a file in which nothing has rows, and says of the first variable what it is.
@@ -64,11 +63,10 @@ fn check_kinds(variables: &[Variable]) -> Result<(), ReadError> {
 
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let rows = self.rows(wanted)?;
         let columns = wanted.numeric.iter().map(|index| self.column(*index));
         let columns = columns.collect::<Result<_, _>>()?;
         let labels = wanted.label.map_or_else(|| Ok(Vec::new()), |index| self.labels(index))?;
-        Ok(Table::counted(rows, columns, Labels::of(labels, &self.budget)?))
+        Ok(Table::counted(wanted.rows, columns, Labels::of(labels, wanted.budget)?))
     }
 
     fn rows_of(&self, column: usize) -> Option<usize> {
@@ -77,23 +75,6 @@ impl Rows for Unread {
 }
 
 impl Unread {
-    /// The rows of the columns that are wanted, which must be as many in each. What is no column spoils
-    /// its own joint.
-    fn rows(&self, wanted: &Wanted<'_>) -> Result<usize, ReadError> {
-        let name = |index: usize| {
-            wanted.head.headers.get(index).map(|header| header.name.clone()).unwrap_or_default()
-        };
-        let known = |index: &usize| Some((*index, self.rows_of(*index)?));
-        let mut wanted = wanted.numeric.iter().chain(&wanted.label).filter_map(known);
-        let Some((other, expected)) = wanted.next() else { return Ok(0) };
-        match wanted.find(|(_, found)| *found != expected) {
-            Some((odd, found)) => {
-                Err(ReadError::unequal_columns((name(odd), found), (name(other), expected)))
-            }
-            None => Ok(expected),
-        }
-    }
-
     fn place(&self, header: usize) -> Option<(&Variable, usize)> {
         let (variable, column) = *self.places.get(header)?;
         Some((self.variables.get(variable)?, column))
@@ -111,9 +92,7 @@ impl Unread {
                 let values = values.iter().skip(column * rows).take(rows);
                 Column::of(values.copied().collect())
             }
-            Content::Stored(dataset) => {
-                Column::of(v73::column(dataset, column, self.size, &self.budget)?)
-            }
+            Content::Stored(dataset) => Column::of(v73::column(dataset, column, self.size)?),
             Content::Texts(_) | Content::Other(_) => Column::not_numbers("text"),
         })
     }

@@ -61,31 +61,18 @@ pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, R
 }
 
 /// The numbers of a column of a matrix that is stored, as it lies in the file of `size` bytes.
-pub(super) fn column(
-    dataset: &Dataset,
-    column: usize,
-    size: u64,
-    budget: &Budget,
-) -> Result<Vec<f64>, ReadError> {
+pub(super) fn column(dataset: &Dataset, column: usize, size: u64) -> Result<Vec<f64>, ReadError> {
     // Memory is taken for each chunk before it is read.
     let ends = |chunk: &Chunk| chunk.address.checked_add(chunk.storage_size);
     let lies_within = |chunk: &Chunk| ends(chunk).is_some_and(|end| end <= size);
     if dataset.is_chunked() && !dataset.chunks()?.iter().all(lies_within) {
         return fault("a part of its numbers lies outside of the file".to_owned());
     }
-    let shape = dataset.shape()?;
-    let bytes = product(2 * size_of::<f64>() as u64, &shape).unwrap_or(u64::MAX);
     // A vector is one column, whichever way it lies.
-    match *shape.as_slice() {
-        [columns, rows] if columns > 1 && rows > 1 => {
-            budget.take(bytes / columns)?;
-            Ok(dataset.read_f64_rows(column as u64, 1)?)
-        }
-        _ => {
-            budget.take(bytes)?;
-            Ok(dataset.read_f64()?)
-        }
-    }
+    Ok(match *dataset.shape()?.as_slice() {
+        [columns, rows] if columns > 1 && rows > 1 => dataset.read_f64_rows(column as u64, 1)?,
+        _ => dataset.read_f64()?,
+    })
 }
 
 fn product(first: u64, others: &[u64]) -> Option<u64> {

@@ -7,12 +7,9 @@ use super::fields::{each_number, first_field};
 use super::message::Value;
 use crate::experiment::clock::between_restarts;
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::Budget;
+use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::table::Wanted;
 use crate::numerics::median;
-
-/// Memory of a number: itself, a copy, and what its vector has to spare.
-const NUMBER_SIZE: usize = 3 * size_of::<f64>();
 
 /// Time in nanoseconds by which a step may come late, and by which rows are apart then.
 const LATE: i64 = 10_000_000;
@@ -127,18 +124,14 @@ impl Messages {
     /// other topic is held from its latest message, of one time the one that the file has first. What comes
     /// before the first message of all others is left out; what begins later is NaN up to there, so that a
     /// joint whose command comes late takes no rows from those beside it.
-    pub(super) fn table(
-        &mut self,
-        wanted: &Wanted<'_>,
-        budget: &Budget,
-    ) -> Result<Aligned, ReadError> {
+    pub(super) fn table(&mut self, wanted: &Wanted<'_>) -> Result<Aligned, ReadError> {
         self.number_runs(wanted.clock);
         self.list.sort_by_key(|message| (message.run, message.time));
         let columns = vec![Vec::new(); self.headers.len()];
         let mut table = Aligned { columns, ..Aligned::default() };
         for run in self.list.chunk_by(|a, b| a.run == b.run) {
             let rows = table.times.len();
-            self.add_run(run, &mut table, wanted, budget)?;
+            self.add_run(run, &mut table, wanted)?;
             table.empty_runs += usize::from(table.times.len() == rows);
         }
         Ok(table)
@@ -150,13 +143,12 @@ impl Messages {
         run: &[Message],
         table: &mut Aligned,
         wanted: &Wanted<'_>,
-        budget: &Budget,
     ) -> Result<(), ReadError> {
         let times: Vec<i64> = times_of(run, wanted.clock).collect();
         let parts = rows_per_message(&times, run, wanted.clock);
         let usual = interval(&times).unwrap_or_default();
         let most = times.len().saturating_mul(usize::try_from(parts).unwrap_or(1));
-        budget.take_values(most.saturating_mul(self.headers.len()), NUMBER_SIZE)?;
+        wanted.budget.take_values(most.saturating_mul(self.headers.len()), NUMBER_SIZE)?;
         let label = wanted.label.and_then(|label| self.column(label));
         let own = self.topics.get(&wanted.clock).map_or(&[][..], |topic| &topic.columns);
         let held: Vec<usize> = (0..self.headers.len()).filter(|at| !own.contains(at)).collect();
@@ -313,8 +305,10 @@ mod tests {
             all.push(*topic, *time, &message, &budget).unwrap();
         }
         let head = Head::without_lines(Vec::new());
-        let wanted = Wanted { head: &head, numeric: &[3, 4], label: None, time: None, clock: 0 };
-        (all.table(&wanted, &budget).unwrap(), all.topics[&0].empty)
+        let (head, numeric, budget, grows) = (&head, &[3, 4], &budget, false);
+        let wanted =
+            Wanted { head, numeric, label: None, time: None, clock: 0, rows: 0, budget, grows };
+        (all.table(&wanted).unwrap(), all.topics[&0].empty)
     }
 
     #[test]

@@ -29,27 +29,26 @@ use self::topics::{Clock, Place, Topics};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::names::listed;
-use crate::experiment::table::{Column, Head, Labels, OpenTable, Rows, Table, Wanted};
+use crate::experiment::table::{Column, Head, Labels, Opened, Rows, Table, Wanted};
 
 /// A file whose topics are known.
 struct Unread {
     path: PathBuf,
     topics: Topics,
     places: Vec<Place>,
-    budget: Budget,
 }
 
 /// Opens the log and looks at its messages.
-pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
+pub(super) fn open(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
     let (file, size) = opened(path)?;
     let mut topics = Topics::default();
-    stream::each_record(file, size, &budget, |record| topics.look_at(record, &budget))
+    stream::each_record(file, size, budget, |record| topics.look_at(record, budget))
         .and_then(|()| topics.check())?;
     let places = topics.places();
     let headers = places.iter().map(|place| topics.header(place)).collect();
     let unread = std::mem::take(&mut topics.left);
-    let rows = Box::new(Unread { path: path.to_owned(), topics, places, budget });
-    Ok(OpenTable { head: Head { headers, header_row: 0, unread }, rows })
+    let rows = Box::new(Unread { path: path.to_owned(), topics, places });
+    Ok((Head { headers, header_row: 0, unread }, rows))
 }
 
 /// The file, and its length in bytes.
@@ -63,7 +62,7 @@ impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         let clock = self.clock(wanted);
         let mut messages = self.collect(clock, wanted)?;
-        let mut table = messages.table(wanted, &self.budget)?;
+        let mut table = messages.table(wanted)?;
         if table.times.is_empty() && times_of(&messages.list, wanted.clock).next().is_some() {
             return Err(self.never_together(&messages, wanted.clock));
         }
@@ -71,7 +70,7 @@ impl Rows for Unread {
         let notes = self.notes(&messages, &table, (clock, zero), wanted);
         let column = |header: usize| messages.column(header).map(|at| &table.columns[at]);
         let labels = wanted.label.and_then(column).into_iter().flatten().map(f64::to_string);
-        let labels = Labels::of(labels, &self.budget)?;
+        let labels = Labels::of(labels, wanted.budget)?;
         let column = |index: &usize| match self.places.get(*index) {
             Some(Place::Time(other)) => {
                 let times = table.times.iter().filter(|_| *other == clock);
@@ -105,8 +104,10 @@ impl Unread {
             }
         }
         let (file, size) = opened(&self.path)?;
-        stream::each_record(file, size, &self.budget, |record| match record {
-            Record::Message { header, data } => self.take(&header, &data, clock, &mut messages),
+        stream::each_record(file, size, wanted.budget, |record| match record {
+            Record::Message { header, data } => {
+                self.take(&header, &data, clock, (&mut messages, wanted.budget))
+            }
             _ => Ok(()),
         })?;
         Ok(messages)
@@ -151,7 +152,7 @@ impl Unread {
         header: &MessageHeader,
         data: &[u8],
         clock: Clock,
-        messages: &mut Messages,
+        (messages, budget): (&mut Messages, &Budget),
     ) -> Result<(), ReadError> {
         let Some(channel) = self.topics.channels.get(&header.channel_id) else { return Ok(()) };
         let Some(topic) = messages.topics.get_mut(&channel.topic) else { return Ok(()) };
@@ -173,6 +174,6 @@ impl Unread {
         };
         let lag = Clock::Log.time(header, &value).map(|recorded| recorded.saturating_sub(time));
         topic.least_lag = [topic.least_lag, lag].into_iter().flatten().min();
-        messages.push(channel.topic, time, &value, &self.budget)
+        messages.push(channel.topic, time, &value, budget)
     }
 }

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::messages::{Messages, times_of};
+use crate::experiment::clock::filled_s;
 use crate::numerics::median;
 
 /// What was held at the messages of the topic `clock`, of which so many are too `early` and left out, and what
@@ -71,10 +72,6 @@ fn pauses(times: &[i64], end: i64) -> (usize, f64) {
     /// Part of the intervals that are as long as usual, and how long they may be.
     const ALIKE: f64 = 0.9;
     const USUAL: RangeInclusive<f64> = 0.3..=2.0;
-    /// A pause is longer than this in usual intervals and in seconds, as rows that are lost from a table
-    /// and not filled are.
-    const LONG: f64 = 5.0;
-    const LONG_S: f64 = 0.05;
     let seconds = |from: i64, to: i64| to.saturating_sub(from) as f64 * 1e-9;
     let mut intervals: Vec<f64> = times.windows(2).map(|pair| seconds(pair[0], pair[1])).collect();
     let usual = median(&intervals).unwrap_or_default();
@@ -83,7 +80,8 @@ fn pauses(times: &[i64], end: i64) -> (usize, f64) {
         return (0, 0.0);
     }
     intervals.extend(times.last().map(|last| seconds(*last, end)));
-    intervals.retain(|interval| *interval > (LONG * usual).max(LONG_S));
+    // As rows that are lost from a table and not filled are.
+    intervals.retain(|interval| *interval > filled_s(usual));
     (intervals.len(), intervals.into_iter().fold(0.0, f64::max))
 }
 
