@@ -10,6 +10,7 @@
 
 pub(crate) mod correlogram;
 pub(crate) mod course;
+pub(crate) mod curves;
 pub(crate) mod delay_levels;
 pub(crate) mod error_share;
 pub(crate) mod ladder;

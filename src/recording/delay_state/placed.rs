@@ -1,12 +1,15 @@
 //! Accepted steps among all segments: their names, and their state as numbers.
 
-use crate::delay::{StepState, Verdict};
+use serde_json::Value;
+
+use crate::delay::{Decision, StepState, Verdict};
 use crate::experiment::Joint;
 use crate::figure::delay_levels::Way;
-use crate::recording::chunk::{Chunks, Index, fine_columns, integers, numbers};
+use crate::recording::chunk::{Chunks, columns};
 use crate::recording::error::RecordError;
 use crate::recording::layout::{JointLayout, SegmentLayout, TrialLayout};
 use crate::recording::paths::child;
+use crate::report::Kind::{self, Real, Whole};
 use crate::wording::{number, samples_text};
 
 /// A segment, and its step among the accepted ones, with its place there.
@@ -57,38 +60,43 @@ pub(super) fn placed<'l, 'a>(
     layout.segments().map(place).collect()
 }
 
+/// A decision, with the state of its step.
+type Accepted<'s> = (&'s Decision, &'s StepState);
+
+/// What a program reads of an accepted step.
+#[rustfmt::skip]
+const STATE: [(&str, Kind, fn(&Accepted<'_>) -> Value); 10] = [
+    ("delta", Whole, |(decision, _)| decision.breakpoint().map(|best| best.delay).into()),
+    ("delay_s", Real, |(_, step)| step.delay_s.into()),
+    ("average_speed", Real, |(_, step)| step.average_speed.into()),
+    ("input_change", Real, |(_, step)| step.input_change.into()),
+    ("dwell_s", Real, |(_, step)| step.dwell_s.into()),
+    ("angle", Real, |(_, step)| step.angle.into()),
+    ("time_s", Real, |(_, step)| step.time_s.into()),
+    ("fine_delta", Real, |(decision, _)| decision.fine.map(|fine| fine.delay).into()),
+    ("delta_low", Real, |(decision, _)| decision.fine.map(|fine| fine.low).into()),
+    ("delta_high", Real, |(decision, _)| decision.fine.map(|fine| fine.high).into()),
+];
+
 /// A row per accepted step, at its input step.
 pub(super) fn add_numbers(
     chunks: &mut Chunks,
     joint: &Joint,
     placed: &[Placed<'_, '_>],
 ) -> Result<(), RecordError> {
-    type Value = fn(&StepState) -> Option<f64>;
-    let accepted = || {
-        placed.iter().filter_map(|placed| {
-            let moment = placed.trial.opening(placed.segment);
-            Some((moment, placed.segment.decision, placed.step?.1))
-        })
-    };
-    let index: Index = accepted().map(|(moment, ..)| moment).collect();
-    let delta = accepted().map(|(_, decision, _)| Some(decision.breakpoint()?.delay));
-    let fine: Vec<_> = accepted().map(|(_, decision, _)| decision.fine).collect();
-    let quantities: [(&str, Value); 6] = [
-        ("delay_s", |step| Some(step.delay_s)),
-        ("average_speed", |step| Some(step.average_speed)),
-        ("input_change", |step| Some(step.input_change)),
-        ("dwell_s", |step| step.dwell_s),
-        ("angle", |step| Some(step.angle)),
-        ("time_s", |step| Some(step.time_s)),
-    ];
-    let mut columns = vec![integers("delta", delta)];
-    let of_steps = |value: Value| accepted().map(move |(.., step)| value(step));
-    columns.extend(quantities.map(|(name, value)| numbers(name, of_steps(value))));
-    columns.extend(fine_columns(&fine));
-    chunks.push("delay/state", index, columns)?;
+    let accepted = placed.iter().filter_map(|placed| {
+        let moment = placed.trial.opening(placed.segment);
+        Some((moment, (placed.segment.decision, placed.step?.1)))
+    });
+    let (moments, steps): (Vec<_>, Vec<Accepted<'_>>) = accepted.unzip();
+    // The last three are of delays between samples.
+    let is_fine = steps.iter().any(|(decision, _)| decision.fine.is_some());
+    let known = if is_fine { &STATE[..] } else { &STATE[..7] };
+    chunks.push("delay/state", moments.iter().copied().collect(), columns(&steps, known))?;
     for (number, signal) in joint.covariates.iter().enumerate() {
-        let measured = accepted()
-            .filter_map(|(moment, _, step)| Some((moment, Some((*step.covariates.get(number)?)?))));
+        let measured = moments.iter().zip(&steps).filter_map(|(moment, (_, step))| {
+            Some((*moment, Some((*step.covariates.get(number)?)?)))
+        });
         let (moments, values): (Vec<_>, Vec<_>) = measured.unzip();
         let entity = child("delay/state/covariate", &signal.name);
         chunks.scalars(entity, moments.into_iter().collect(), &values)?;

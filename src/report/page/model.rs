@@ -3,13 +3,13 @@
 use super::document::{Block, Figure, HALF, WIDTH};
 use super::report::Report;
 use super::simulated;
-use crate::diagnosis::{Curve, CurveOf, sensor_noise};
+use crate::diagnosis::sensor_noise;
 use crate::effect::Stage;
-use crate::experiment::Joint;
 use crate::explain::Revision;
+use crate::figure::Role;
+use crate::figure::curves::Curves;
 use crate::figure::error_share::FeatureShares;
 use crate::figure::ladder::{Rung, panel};
-use crate::figure::{Axis, Mark, Panel, Role, Span};
 use crate::fit::{Split, Termination};
 use crate::model::Component;
 use crate::report::compare::errors_note;
@@ -240,64 +240,16 @@ pub(super) fn share(compared: &ComparedJoint<'_>, file: String) -> Option<Figure
 
 /// A figure for the input, one for the angle and one for the time, as far as the record shows them.
 pub(super) fn curves(compared: &ComparedJoint<'_>, file: &str) -> Vec<Figure> {
-    let curves = &compared.comparison.curves;
-    let of = |wanted: &[CurveOf]| -> Vec<&Curve> {
-        curves.iter().filter(|curve| wanted.contains(&curve.of)).collect()
+    let joint = compared.joint;
+    let figure = |curves: Curves<'_>| {
+        let against = curves.against();
+        let caption = format!(
+            "Speed in the settled parts of the holds, {against}, after the delay; the influence of \
+             the quantities of the other curves is removed."
+        );
+        let (file, name) =
+            (format!("{file}-curve-{}", curves.of()), format!("Speed of {} {against}", joint.name));
+        Figure { file, name, width: HALF, panels: vec![curves.panel(joint, Role::Model)], caption }
     };
-    let branches = of(&[CurveOf::InputRising, CurveOf::InputFalling]);
-    let input = if branches.is_empty() { of(&[CurveOf::Input]) } else { branches };
-    let groups =
-        [(input, "input"), (of(&[CurveOf::Angle]), "angle"), (of(&[CurveOf::Time]), "time")];
-    let shown = groups.into_iter().filter(|(curves, _)| !curves.is_empty());
-    shown
-        .map(|(curves, name)| curve(compared.joint, &curves, format!("{file}-curve-{name}")))
-        .collect()
-}
-
-fn curve(joint: &Joint, curves: &[&Curve], file: String) -> Figure {
-    let places = |values: fn(&Curve) -> &Vec<f64>| {
-        let of = move |curve: &&Curve| {
-            let pairs = curve.x.iter().copied().zip(values(curve).iter().copied());
-            pairs.collect::<Vec<(f64, f64)>>()
-        };
-        curves.iter().map(of).collect::<Vec<_>>()
-    };
-    let bands = curves.iter().flat_map(|curve| {
-        let ends = curve.low.iter().zip(&curve.high);
-        curve.x.iter().zip(ends).map(|(x, (low, high))| vec![(*x, *low), (*x, *high)])
-    });
-    let all = curves.iter().flat_map(|curve| [&curve.low, &curve.high, &curve.model]).flatten();
-    let y = Span::around(all.copied(), 0.06);
-    let x = Span::around(curves.iter().flat_map(|curve| curve.x.iter().copied()), 0.04);
-    let (of_input, of_output) = (joint.input_unit.as_deref(), joint.output_unit.as_deref());
-    let speed = of_output.map(|unit| format!("{unit}/s"));
-    let is_of = |of: CurveOf| curves.iter().all(|curve| curve.of == of);
-    let (across, up, caption) = if is_of(CurveOf::Angle) {
-        (bracketed("output", of_output), "relative speed".to_owned(), "against the output")
-    } else if is_of(CurveOf::Time) {
-        ("time [s]".to_owned(), "relative speed".to_owned(), "against the time")
-    } else {
-        let caption = match curves.len() {
-            1 => "against the delayed input",
-            _ => "against the delayed input, its levels reached from below and from above",
-        };
-        (bracketed("delayed input", of_input), bracketed("speed", speed.as_deref()), caption)
-    };
-    let panel = Panel {
-        x: Axis::new(x, across, 6.0),
-        y: Axis::new(y, up, 5.0),
-        height: 200,
-        marks: vec![
-            Mark::lines(Role::Model, 1.6, places(|curve| &curve.model)).named("model"),
-            Mark::lines(Role::Measured, 1.0, bands.collect()),
-            Mark::dots(Role::Measured, places(|curve| &curve.y).concat())
-                .named("measured, with 95 % bands"),
-        ],
-    };
-    let name = format!("Speed of {} {caption}", joint.name);
-    let caption = format!(
-        "Speed in the settled parts of the holds, {caption}, after the delay; the influence of \
-         the quantities of the other curves is removed."
-    );
-    Figure { file, name, width: HALF, panels: vec![panel], caption }
+    Curves::all(&compared.comparison.curves).map(figure).collect()
 }
