@@ -193,22 +193,38 @@ pub(super) fn over_levels(
     Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
 }
 
+/// Number of the speed among the variables.
+const SPEED: usize = 0;
+
 /// The delay against the speed, and against what it goes with most besides.
 pub(super) fn against(joint: &str, found: &AgainstState, file: &str) -> Vec<Figure> {
-    /// Number of the speed among the variables.
-    const SPEED: usize = 0;
-    let strength = |index: &usize| {
-        let of_kinds = found.kinds.iter().filter_map(|kind| kind.correlations.get(*index));
-        of_kinds.filter_map(|one| one.p_value).fold(f64::INFINITY, f64::min)
-    };
-    let others = (0..found.correlations.len()).filter(|index| *index != SPEED);
-    let strongest = others.min_by(|a, b| strength(a).total_cmp(&strength(b)));
+    let strongest = by_strength(found).into_iter().find(|variable| *variable != SPEED);
     let shown = std::iter::once(SPEED).chain(strongest);
     shown.filter_map(|variable| scatter(joint, found, variable, file)).collect()
 }
 
-/// The delays against one variable, by kind of step; none where it is not known.
+/// All variables, that on which the delay of a kind of step depends most surely first.
+pub(crate) fn by_strength(found: &AgainstState) -> Vec<usize> {
+    let least_p = |index: &usize| {
+        let of_kinds = found.kinds.iter().filter_map(|kind| kind.correlations.get(*index));
+        of_kinds.filter_map(|one| one.p_value).fold(f64::INFINITY, f64::min)
+    };
+    let mut all: Vec<usize> = (0..found.correlations.len()).collect();
+    all.sort_by(|a, b| least_p(a).total_cmp(&least_p(b)));
+    all
+}
+
 fn scatter(joint: &str, found: &AgainstState, variable: usize, file: &str) -> Option<Figure> {
+    let panel = against_panel(found, variable)?;
+    let variable_name = &found.correlations.get(variable)?.variable;
+    let name = format!("Delay of {joint} against {}", panel.x.name);
+    let file = format!("{file}-against-{}", slug(variable_name));
+    let caption = caption(found, variable, variable_name);
+    Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
+}
+
+/// The delays against one variable, by kind of step; none where it is not known.
+pub(crate) fn against_panel(found: &AgainstState, variable: usize) -> Option<Panel> {
     let correlation = found.correlations.get(variable)?;
     let points = |kind: Transition| {
         let same = found.steps.iter().filter(|step| step.transition == kind);
@@ -227,16 +243,12 @@ fn scatter(joint: &str, found: &AgainstState, variable: usize, file: &str) -> Op
     let mark = |(kind, places): (Transition, Vec<Place>)| {
         Mark::dots(delay_levels::role(kind), places).named(kind.id())
     };
-    let panel = Panel {
-        x: Axis::new(x, quantity.clone(), 6.0),
+    Some(Panel {
+        x: Axis::new(x, quantity, 6.0),
         y: Axis::new(y, "delay [s]", 5.0),
         height: 190,
         marks: kinds.into_iter().map(mark).collect(),
-    };
-    let name = format!("Delay of {joint} against {quantity}");
-    let file = format!("{file}-against-{}", slug(&correlation.variable));
-    let caption = caption(found, variable, &correlation.variable);
-    Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
+    })
 }
 
 /// What is said of each kind of step.
