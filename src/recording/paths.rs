@@ -51,8 +51,7 @@ pub(crate) const TRIAL: &str = "trial";
 pub(crate) const HEADLINE: &str = "headline";
 /// Where the cursor is, in words.
 pub(crate) const PLACE: &str = "place";
-/// The decisions by doubt, in words and as lines to click.
-pub(crate) const DOUBT: &str = "doubt";
+/// The decisions by doubt, as lines to click.
 pub(crate) const DOUBT_LOG: &str = "doubt/log";
 /// The decisions by how much they differ from those of other results, likewise and as a drawing.
 pub(crate) const DIFFERENCE: &str = "difference";
