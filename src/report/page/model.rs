@@ -6,10 +6,10 @@ use super::simulated;
 use crate::diagnosis::sensor_noise;
 use crate::effect::Stage;
 use crate::explain::Revision;
-use crate::figure::Role;
 use crate::figure::curves::Curves;
-use crate::figure::error_share::FeatureShares;
+use crate::figure::error_share::{by_feature, unevenness};
 use crate::figure::ladder::{Rung, panel};
+use crate::figure::{Role, error_share};
 use crate::fit::{Split, Termination};
 use crate::model::Component;
 use crate::report::compare::errors_note;
@@ -223,9 +223,9 @@ pub(super) fn ladder(improved: &ImprovedJoint<'_>, file: String) -> Figure {
 /// Shares of the squared error and of the time in each part of the feature whose parts
 /// differ most in them.
 pub(super) fn share(compared: &ComparedJoint<'_>, file: String) -> Option<Figure> {
-    let features = FeatureShares::all(&compared.comparison.regions);
-    let found = features.max_by(|a, b| a.unevenness().total_cmp(&b.unevenness()));
-    let (shares, feature) = found.and_then(|found| Some((found, found.feature()?)))?;
+    let features = by_feature(&compared.comparison.regions);
+    let parts = features.max_by(|a, b| unevenness(a).total_cmp(&unevenness(b)))?;
+    let feature = parts.first()?.feature;
     let joint = compared.joint;
     let by = feature_with_unit(feature, joint);
     let name = format!("Share of the error of {}", joint.name);
@@ -234,7 +234,7 @@ pub(super) fn share(compared: &ComparedJoint<'_>, file: String) -> Option<Figure
          mark (the share of time) is a range with more than its share of the error.",
         compared.comparison.arising
     );
-    let panel = shares.panel(joint, &[(Role::Error, compared.comparison)])?;
+    let panel = error_share::panel(joint, parts, &[(Role::Error, compared.comparison)])?;
     Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
 }
 
