@@ -10,10 +10,10 @@ use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
 use super::palette::{self, color};
 use super::paths;
-use super::shaded::{named, validation};
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::WorstSegment;
 use crate::experiment::Joint;
+use crate::report::page::shaded::{named, validation};
 
 /// Adds `/worst`, `/part` and `/fails`.
 pub(super) fn add(

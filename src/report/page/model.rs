@@ -1,7 +1,6 @@
 //! What is said and drawn of a joint's model: verdict, equations, parameters, errors, ranking.
 
 use super::document::{Block, Figure, HALF, WIDTH};
-use super::report::Report;
 use super::simulated;
 use crate::diagnosis::sensor_noise;
 use crate::effect::Stage;
@@ -10,7 +9,7 @@ use crate::figure::curves::Curves;
 use crate::figure::error_share::{by_feature, unevenness};
 use crate::figure::ladder::{Rung, panel};
 use crate::figure::{Role, error_share};
-use crate::fit::{Split, Termination};
+use crate::fit::Termination;
 use crate::model::Component;
 use crate::report::compare::errors_note;
 use crate::report::conclusion::Topic;
@@ -24,7 +23,7 @@ use crate::wording::{
 };
 
 /// All that is said of the model of a joint.
-pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
+pub(super) fn blocks(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     let compared = &improved.finding.compared;
     let conclusion = improved.conclusion();
     let mut blocks = vec![Block::part("Model")];
@@ -36,7 +35,7 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
     );
     blocks.extend(conclusion.commands.into_iter().map(Block::Code));
     blocks.extend(errors(improved, file));
-    blocks.extend(beside_the_measurement(report, improved, file));
+    blocks.extend(beside_the_measurement(improved, file));
     blocks.extend(failures(improved, file));
     blocks.push(Block::part("Equations and parameters"));
     blocks.push(Block::Code(equations(compared)));
@@ -119,14 +118,9 @@ fn errors(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
 }
 
 /// What the model simulates, and the residual.
-fn beside_the_measurement(
-    report: &Report<'_>,
-    improved: &ImprovedJoint<'_>,
-    file: &str,
-) -> Vec<Block> {
+fn beside_the_measurement(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     let compared = &improved.finding.compared;
-    let split = report.split.unwrap_or_else(|| Split::of(compared.joint));
-    let figure = simulated::figure(improved, split, format!("{file}-simulated"));
+    let figure = simulated::figure(improved, format!("{file}-simulated"));
     let mut blocks = vec![Block::part("Measured and simulated"), Block::Figures(vec![figure])];
     let earlier = simulated::earlier(improved, format!("{file}-earlier-residuals"));
     blocks.extend(earlier.map(|figure| Block::Figures(vec![figure])));

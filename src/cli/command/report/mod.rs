@@ -229,7 +229,6 @@ impl Reported<'_> {
             models,
             against: &against,
             revised: revised.as_ref().map(ModelFile::text),
-            split: args.model.protocol.split(),
             command: &command(),
             recording,
             notes: &notes,

@@ -10,10 +10,10 @@ use crate::fit::Part;
 use crate::wording::misfit_units;
 
 /// Samples of a trial, counted from 0, with the trial's index among those of its joint.
-pub(super) type Spans = Vec<(usize, Range<usize>)>;
+pub(crate) type Spans = Vec<(usize, Range<usize>)>;
 
 /// The part that was not fitted to.
-pub(super) fn validation(comparison: &Comparison) -> Spans {
+pub(crate) fn validation(comparison: &Comparison) -> Spans {
     let steps = comparison.per_step.iter().filter(|step| step.part == Part::Validation);
     joined(steps.map(|step| (step.trial, step.start..step.start + step.samples)))
 }
@@ -24,7 +24,7 @@ fn condition(comparison: &Comparison) -> Option<&FailsWhere> {
 }
 
 /// Its name, and where it holds.
-pub(super) fn named(joint: &Joint, comparison: &Comparison) -> Option<(String, Spans)> {
+pub(crate) fn named(joint: &Joint, comparison: &Comparison) -> Option<(String, Spans)> {
     let units = misfit_units(joint);
     let clauses = condition(comparison)?.clauses.iter().map(|clause| clause.with_unit(&units));
     let name = clauses.collect::<Vec<_>>().join(" and ");
