@@ -7,7 +7,6 @@ use super::error::RecordError;
 use super::layers::Layers;
 use super::layout::JointLayout;
 use super::markdown::plain;
-use super::model_lanes::samples_of;
 use super::palette;
 use super::paths::{self, at, child};
 use super::signals::known;
@@ -15,6 +14,7 @@ use super::{correlogram, error_share, model_lanes, revision, scatter};
 use crate::diagnosis::failure::Region;
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::report::compare::{Section, difference_section, errors_note, model_table, sections};
+use crate::report::page::shaded::worst;
 use crate::report::parameters::parameter_table;
 use crate::report::{ComparedJoint, TextTable};
 use crate::wording::{capitalized, measure, number, percent};
@@ -204,11 +204,10 @@ fn worst_segments(layout: &JointLayout<'_>, judged: &ComparedJoint<'_>) -> Strin
         return "No segment stands out.".to_owned();
     };
     let unit = judged.joint.output_unit.as_deref();
-    let mut rank = 0;
-    let rows = failure.worst_segments.iter().map(|worst| {
-        rank += 1;
-        let trial = layout.trial_of(&worst.trial);
-        let sample = trial.map(|trial| trial.sample(*samples_of(worst, trial).start()));
+    let spans = worst(judged.joint, judged.comparison);
+    let rows = failure.worst_segments.iter().zip(&spans).zip(1_u32..);
+    let rows = rows.map(|((worst, (index, span)), rank)| {
+        let sample = layout.trial(*index).map(|trial| trial.sample(span.start + 1));
         [
             rank.to_string(),
             format!("{}, {} s", worst.trial, number(worst.start_s)),

@@ -1,7 +1,7 @@
 //! A model beside the measurement: what it simulates, the residual, and where that is largest.
 
 use super::document::{Figure, HALF, WIDTH};
-use super::shaded::{Spans, validation};
+use super::shaded::{self, Spans, validation};
 use super::timeline::{Timeline, values_of};
 use crate::diagnosis::failure::WorstSegment;
 use crate::diagnosis::sensor_noise;
@@ -21,7 +21,7 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Figure {
     let panels = simulated_panels(compared, role, &timeline, None);
     let name = format!("Measured and simulated output of {}", compared.joint.name);
     let mut caption = "The measured output beside the simulated one, and the residual.".to_owned();
-    if !worst_parts(compared, &timeline).is_empty() {
+    if worst_mark(compared, &timeline).is_some() {
         caption += " Worst segments are those with the largest sums of squares, and the one with the \
                     largest residual.";
     }
@@ -36,14 +36,7 @@ pub(crate) fn simulated_panels(
     fails: Option<(String, Spans)>,
 ) -> [Panel; 2] {
     let unit = compared.joint.output_unit.as_deref();
-    let shaded = |role: Role, spans: Spans, density: f64| {
-        let ends = spans.into_iter().map(|(trial, span)| {
-            let at = |k: usize| timeline.at(trial, k as f64);
-            (at(span.start + 1), at(span.end))
-        });
-        Mark::new(role, Shape::Spans(ends.collect(), density))
-    };
-    let unfitted = shaded(Role::Faint, validation(compared.comparison), 0.13);
+    let unfitted = timeline.shaded(Role::Faint, validation(compared.comparison), 0.13);
     let borders = timeline.borders();
     let output = Panel {
         x: timeline.axis().bare(),
@@ -58,12 +51,8 @@ pub(crate) fn simulated_panels(
         ],
     };
     let mut marks = vec![unfitted, borders];
-    let fails = fails.map(|(when, spans)| shaded(Role::Rejected, spans, 0.2).named(when));
-    marks.extend(fails);
-    let worst = worst_parts(compared, timeline);
-    if !worst.is_empty() {
-        marks.push(Mark::new(Role::Attention, Shape::Spans(worst, 0.3)).named("worst segments"));
-    }
+    let fails = fails.map(|(when, spans)| timeline.shaded(Role::Rejected, spans, 0.2).named(when));
+    marks.extend(fails.into_iter().chain(worst_mark(compared, timeline)));
     marks.extend(noise(compared).map(|mark| mark.named("95 % of the noise")));
     let left = timeline.lines(|index, _| residual(compared, index));
     marks.push(Mark::lines(role, 1.0, left).named("residual"));
@@ -87,12 +76,7 @@ pub(super) fn earlier(improved: &ImprovedJoint<'_>, file: String) -> Option<Figu
         let axis = timeline.axis();
         let lines = timeline.lines(|index, _| residual(compared, index));
         let mut marks = vec![timeline.borders()];
-        let worst = worst_parts(compared, &timeline);
-        if !worst.is_empty() {
-            let worst = Mark::new(Role::Attention, Shape::Spans(worst, 0.3));
-            marks.push(worst.named("worst segments"));
-        }
-        marks.extend(noise(compared));
+        marks.extend(worst_mark(compared, &timeline).into_iter().chain(noise(compared)));
         marks.push(Mark::lines(Role::of_revision(place), 1.0, lines).named(name));
         marks.extend(noise_edges(compared, timeline.ends()));
         let y = Axis::new(residuals(compared), bracketed("residual", unit), 4.0);
@@ -213,12 +197,9 @@ fn noise_edges(compared: &ComparedJoint<'_>, (from, to): (f64, f64)) -> Option<M
     Some(Mark::lines(Role::Noise, 1.4, edges.to_vec()))
 }
 
-fn worst_parts(compared: &ComparedJoint<'_>, timeline: &Timeline<'_>) -> Vec<(f64, f64)> {
-    let worst = compared.comparison.failure.iter().flat_map(|failure| &failure.worst_segments);
-    let trials = &compared.joint.trials;
-    let part = |worst: &WorstSegment| {
-        let trial = trials.iter().position(|trial| trial.label() == worst.trial)?;
-        Some((timeline.of_log(trial, worst.start_s), timeline.of_log(trial, worst.end_s)))
-    };
-    worst.filter_map(part).collect()
+/// Where the worst segments are, where there are any.
+fn worst_mark(compared: &ComparedJoint<'_>, timeline: &Timeline<'_>) -> Option<Mark> {
+    let worst = shaded::worst(compared.joint, compared.comparison);
+    let is_any = !worst.is_empty();
+    is_any.then(|| timeline.shaded(Role::Attention, worst, 0.3).named("worst segments"))
 }
