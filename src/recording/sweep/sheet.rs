@@ -46,10 +46,12 @@ pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordEr
     panels::add(&mut layers, [placed.into()])?;
     let name = &swept.reported.joint.name;
     let answer = sweep_sentences(swept.grid, &swept.reported).into_iter().next();
-    let answer = answer.map(|answer| {
-        (Vec2D::new(SHEET.0 / 2.0, 4.0), format!("{name}: {answer}"), palette::BORDER)
+    // On what the others depend is said beside the drawing.
+    let answer = answer.iter().filter_map(|answer| answer.split(". ").next()).map(|answer| {
+        let answer = format!("{name}: {}", answer.trim_end_matches('.'));
+        (Vec2D::new(SHEET.0 / 2.0, 4.0), answer, palette::BORDER)
     });
-    layers.texts("answer", vec![answer.into_iter().collect()])?;
+    layers.texts("answer", vec![answer.collect()])?;
     page.add_setting(&mut Layers::rows(chunks, paths::SHEET, swept.settings()).in_front(), plots)?;
     let mut rows = Layers::rows(chunks, paths::SHEET, swept.index.clone()).in_front();
     page.add_step(&mut rows, plots)
