@@ -95,8 +95,8 @@ pub(crate) const SCATTER: &str = "scatter";
 pub(crate) const ERROR_SHARE: &str = "error_share";
 pub(crate) const CORRELATION: &str = "correlation";
 
-/// The revisions of a model: what was found of it; ladder, evidence and ranking; the whole record beside what is simulated;
-/// the share of the error in each region; pages.
+/// The revisions of a model: what was found of it; ladder, what it misses and ranking; the whole record
+/// beside what is simulated; the share of the error in each region; pages.
 pub(crate) const REVISION_HEADLINE: &str = "revision/headline";
 pub(crate) const REVISION_SHEET: &str = "revision/sheet";
 pub(crate) const REVISION_RECORD: &str = "revision/record";

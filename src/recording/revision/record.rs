@@ -11,7 +11,7 @@ use crate::report::ComparedJoint;
 use crate::report::page::shaded::named;
 use crate::report::page::simulated::{simulated_panels, worst_panel};
 
-/// Width and height of the sheet, and of that with ladder, evidence and ranking beside it.
+/// Width and height of the sheet, and of that with ladder, what the model misses and ranking.
 pub(in crate::recording) const SIZE: (f32, f32) = (1860.0, 470.0);
 
 /// Top and bottom of the plots of the output: above them their titles.
