@@ -108,9 +108,11 @@ const OF_THE_STEP: [&str; 4] = ["i", "p", "r", "end"];
 const OF_THE_CANDIDATE: [&str; 8] =
     ["joint", "f_opt", "q", "delta", "delta_s", "sse", "slope_before", "slope_after"];
 
+type OfRow = fn(&Row<'_, '_>) -> Value;
+
 /// What a row has beside the facts.
 #[rustfmt::skip]
-const OWN: &[(&str, Kind, fn(&Row<'_, '_>) -> Value)] = &[
+const OWN: &[(&str, Kind, OfRow)] = &[
     ("f", Whole, |row| row.segment.decision.candidates.best().map(|best| best.f).into()),
     ("j", Whole, |row| row.j.into()),
     ("q", Whole, |row| row.candidate.map(|it| it.breakpoint).into()),

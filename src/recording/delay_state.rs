@@ -62,7 +62,7 @@ pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), R
     fixed.texts("legend", vec![legend(&layout.joint.name, &found)])?;
     let mut rows = Layers::rows(chunks, paths::AGAINST, layout.openings()).in_front();
     let here = steps.iter().map(|(_, state)| {
-        let of_step = state.into_iter().flat_map(|step| {
+        let of_step = state.iter().flat_map(|step| {
             variables.iter().zip(&plots).filter_map(move |(variable, plot)| {
                 let here = Shape::Dots(vec![(step.value(*variable)?, step.delay_s)], 8.0);
                 Some((Mark::new(role(palette::CANDIDATE), here).part("here"), *plot))
@@ -138,9 +138,11 @@ impl Grid {
 /// A decision, with the state of its step.
 type Accepted<'s> = (&'s Decision, &'s StepState);
 
+type OfStep = fn(&Accepted<'_>) -> Value;
+
 /// What a program reads of an accepted step.
 #[rustfmt::skip]
-const STATE: [(&str, Kind, fn(&Accepted<'_>) -> Value); 10] = [
+const STATE: [(&str, Kind, OfStep); 10] = [
     ("delta", Whole, |(decision, _)| decision.breakpoint().map(|best| best.delay).into()),
     ("delay_s", Real, |(_, step)| step.delay_s.into()),
     ("average_speed", Real, |(_, step)| step.average_speed.into()),

@@ -8,11 +8,11 @@ use rerun::StateConfiguration;
 use super::chunk::{Chunks, Index, Moment};
 use super::error::RecordError;
 use super::layout::JointLayout;
-use super::palette::{self, Rgb, color};
+use super::palette::{self, color};
 use super::paths;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
-use crate::report::page::shaded::{Spans, named, validation, worst};
+use crate::report::page::shaded::{named, validation, worst};
 
 /// A span of a trial with its name.
 type Named = ((usize, Range<usize>), String);
@@ -36,11 +36,10 @@ pub(super) fn add(
     chunks.states(paths::WORST, Index::off_the_record(layout.first), hint)?;
     let unfitted = Some(("not fitted".to_owned(), validation(comparison)));
     let grey = palette::dimmed(palette::SMOOTHED);
-    let lanes: [(&str, Rgb, Option<(String, Spans)>); 2] = [
-        (paths::PART, grey, unfitted),
-        (paths::FAILS, palette::REJECTED, named(joint, comparison)),
-    ];
-    for (path, rgb, lane) in lanes {
+    let fails = named(joint, comparison);
+    for (path, rgb, lane) in
+        [(paths::PART, grey, unfitted), (paths::FAILS, palette::REJECTED, fails)]
+    {
         let Some((name, spans)) = lane.filter(|(_, spans)| !spans.is_empty()) else { continue };
         let style = StateConfiguration::new().with_values([name.clone()]);
         chunks.push_static(path, &style.with_colors([color(rgb)]))?;

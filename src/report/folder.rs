@@ -238,13 +238,13 @@ fn cell(joint: &Value, place: &str) -> String {
         }
         Some(Value::Number(count)) if count.is_u64() => count.to_string(),
         Some(value @ Value::Number(_)) => format!("{:.3}{unit}", number(value)),
-        Some(Value::Object(fields)) => match (fields.get("min"), fields.get("max")) {
-            (Some(min), Some(max)) => format!("{:.3} … {:.3}{unit}", number(min), number(max)),
-            _ => {
-                let counts = fields.iter().map(|(name, count)| format!("{name} ({count})"));
-                counts.collect::<Vec<_>>().join(", ")
+        Some(Value::Object(fields)) => {
+            if let (Some(min), Some(max)) = (fields.get("min"), fields.get("max")) {
+                return format!("{:.3} … {:.3}{unit}", number(min), number(max));
             }
-        },
+            let counts = fields.iter().map(|(name, count)| format!("{name} ({count})"));
+            counts.collect::<Vec<_>>().join(", ")
+        }
         _ => String::new(),
     }
 }

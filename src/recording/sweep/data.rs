@@ -13,9 +13,12 @@ use crate::units::Length;
 /// Settings, what they made of the record, and how many combinations they represent.
 type Run<'s> = (&'s Settings, Option<&'s RunSummary>, usize);
 
+type OfRun = fn(&Run<'_>) -> Value;
+type OfStep = fn(&&SweptStep) -> Value;
+
 /// A row per run.
 #[rustfmt::skip]
-const SETTING: &[(&str, Kind, fn(&Run<'_>) -> Value)] = &[
+const SETTING: &[(&str, Kind, OfRun)] = &[
     ("method", Text, |(run, ..)| run.method.to_string().into()),
     ("passband_hz", Real, |(run, ..)| run.low_pass.map(|low_pass| low_pass.cutoff_hz).into()),
     ("alpha", Whole, |(run, ..)| samples(run.alpha_length()).into()),
@@ -30,7 +33,7 @@ const SETTING: &[(&str, Kind, fn(&Run<'_>) -> Value)] = &[
 
 /// A row per step.
 #[rustfmt::skip]
-const STEP: &[(&str, Kind, fn(&&SweptStep) -> Value)] = &[
+const STEP: &[(&str, Kind, OfStep)] = &[
     ("trial", Text, |step| step.trial.as_str().into()),
     ("i", Whole, |step| step.number.into()),
     ("p", Whole, |step| step.sample.into()),
