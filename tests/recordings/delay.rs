@@ -103,7 +103,7 @@ fn the_step_under_the_cursor_is_marked_in_every_plot() {
                 Verdict::Accepted => {
                     assert!(words.contains("✓ δ "), "{words}");
                 }
-                Verdict::Rejected(why) => assert!(words.contains(why.meaning()), "{words}"),
+                Verdict::Rejected(_) => assert!(words.contains("✗"), "{words}"),
             }
         }
     }
