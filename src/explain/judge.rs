@@ -52,9 +52,6 @@ pub fn explain(
     let verdict = if named { Verdict::MissingEffect } else { Verdict::Unexplained };
     decided(&mut ranking, verdict);
     separate(record, &mut ranking, workers);
-    if let Some(best) = ranking.first_mut().filter(|_| named) {
-        best.fit.keep_series(record);
-    }
     let best = ranking.first().filter(|_| named);
     let attribution = best.map_or(attribution, |best| {
         let first = FitOutcome::of(record, fit);

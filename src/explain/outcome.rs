@@ -5,9 +5,7 @@ use std::sync::Arc;
 
 use super::misfit::Errors;
 use crate::effect::RecordRange;
-use crate::fit::{
-    AssessedModel, Assessment, Evaluation, Fit, FitRecord, Termination, fit_to_compare,
-};
+use crate::fit::{AssessedModel, Assessment, Fit, FitRecord, Termination, fit_to_compare};
 use crate::model::JointModel;
 
 /// A fitted model and its errors, without what it simulates.
@@ -23,7 +21,6 @@ pub struct FitOutcome {
     /// Why it stopped.
     pub termination: Termination,
     pub(super) errors: Errors,
-    evaluation: Option<Arc<Evaluation>>,
 }
 
 impl Deref for FitOutcome {
@@ -39,7 +36,7 @@ impl FitOutcome {
     pub(super) fn of(record: &FitRecord<'_>, fit: Fit) -> Self {
         let errors = Errors::of(record, &fit);
         let Fit { assessment: Assessment { assessed, .. }, cost, termination } = fit;
-        Self { assessed, cost, termination, errors, evaluation: None }
+        Self { assessed, cost, termination, errors }
     }
 
     /// What a fit of `model` comes to; none where it cannot be fitted.
@@ -53,24 +50,8 @@ impl FitOutcome {
 
     /// The fit with its series on `record`, the one to which it was fitted.
     pub(super) fn on(&self, record: &FitRecord<'_>) -> Fit {
-        let kept = self.evaluation.as_ref().map(Arc::clone);
-        let evaluation = kept.unwrap_or_else(|| Arc::new(record.evaluate(&self.model)));
+        let evaluation = Arc::new(record.evaluate(&self.model));
         let assessment = Assessment { assessed: self.assessed.clone(), evaluation };
         Fit { assessment, cost: self.cost, termination: self.termination }
-    }
-
-    /// Keeps the series on `record`, for who looks at this model beside the one before.
-    pub(super) fn keep_series(&mut self, record: &FitRecord<'_>) {
-        self.evaluation = Some(self.on(record).assessment.evaluation);
-    }
-
-    /// Keeps them no longer.
-    pub(super) fn drop_series(&mut self) {
-        self.evaluation = None;
-    }
-
-    /// The series, of the candidate that is proposed or was taken.
-    pub fn evaluation(&self) -> Option<&Evaluation> {
-        self.evaluation.as_deref()
     }
 }

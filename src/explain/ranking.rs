@@ -31,7 +31,8 @@ pub(super) enum Scope {
 /// 0.88.
 const FINALISTS: usize = 9;
 
-/// Effects that are fitted before it is asked whether one of them can be added.
+/// Effects that are fitted before it is asked whether one of them can be added: so many that a ranking says
+/// what the best is better than, and two processors are busy with.
 const FITTED_AT_ONCE: usize = 4;
 
 /// What the cost of a finalist may be after the survey, in parts of the least. Chosen: with 1.3 six

@@ -60,13 +60,10 @@ pub struct Revision {
 }
 
 impl Revision {
-    /// Keeps what it came to, and not what its model and its candidates simulate.
+    /// Keeps what it came to, and not what its model simulates.
     pub(super) fn drop_series(&mut self) {
         let evaluation = &mut self.comparison.fit.evaluation;
         *evaluation = Arc::new(evaluation.without_series());
-        for candidate in &mut self.ranking {
-            candidate.fit.drop_series();
-        }
     }
 }
 

@@ -15,8 +15,9 @@ use crate::model::JointModel;
 /// rough descents were in 5 %, and of the best models of 50 steps the worst was at 1.3.
 const AHEAD: f64 = 1.5;
 
-/// Models that are surveyed to the end, at most. The best models of those steps were among the first 12.
-const SURVEYED: usize = 16;
+/// Models that are surveyed to the end, at least and at most. A ranking says what the best is better than;
+/// the best models of those steps were among the first 12.
+const SURVEYED: (usize, usize) = (4, 16);
 
 /// A survey of one of several models, beside what it is known by.
 pub(super) type Surveyed<'m, K> = (&'m (K, JointModel), Survey);
@@ -74,7 +75,8 @@ pub(super) fn surveyed<'m, K: Copy + PartialEq + Send + Sync>(
         begun.sort_by(|a, b| a.1.cost().total_cmp(&b.1.cost()));
         let limit = begun.first().map_or(0.0, |(_, best)| AHEAD * best.cost());
         let promising = begun.partition_point(|(_, rough)| rough.cost() <= limit);
-        begun.truncate(promising.min(SURVEYED));
+        let (least, most) = SURVEYED;
+        begun.truncate(promising.clamp(least, most));
     }
     let ends = workers.map(&begun, |(_, rough)| end_survey(record, rough, range));
     let mut surveys: Vec<_> =

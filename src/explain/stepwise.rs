@@ -157,7 +157,6 @@ pub(super) fn add_stepwise(
         }
         if let Some(index) = found {
             step.ranking[..=index].rotate_right(1);
-            step.ranking[0].fit.keep_series(record);
         }
         let found = found.and(step.ranking.first().cloned());
         let explained = found.is_some();

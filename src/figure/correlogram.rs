@@ -17,16 +17,20 @@ const NOT_KNOWN: &str = "not computed, since sample periods differ or samples ar
 
 /// A panel for each of them: a curve and a band per model.
 pub(crate) fn panels(models: &[(Role, &Comparison)]) -> [Panel; 3] {
-    let of_each: Vec<_> = models.iter().map(|(role, one)| (*role, Correlogram::all(one))).collect();
     [0, 1, 2].map(|place| {
-        let known = of_each.iter().filter_map(|(role, all)| Some((*role, all[place]?)));
-        let known: Vec<(Role, Correlogram<'_>)> = known.collect();
-        let (x, y) = Correlogram::spans(&known);
+        let known = models.iter().filter_map(|(role, one)| Some((*role, correlogram(one, place)?)));
+        let known: Vec<(Role, Correlogram)> = known.collect();
+        let curves = || known.iter().map(|(_, one)| one);
+        let places = || curves().flat_map(|(curve, _)| curve.iter().copied());
+        // Twice the band has room.
+        let room = curves().flat_map(|(_, band)| [0.0, 2.0 * band, -2.0 * band]);
+        let x = Span::around(places().map(|place| place.0).chain(curves().map(|_| 0.0)), 0.0);
+        let y = Span::around(places().map(|place| place.1).chain(room), 0.1);
         let zero = vec![vec![(x.low, 0.0), (x.high, 0.0)], vec![(0.0, y.low), (0.0, y.high)]];
-        let mut marks = vec![Mark::new(Role::Faint, Shape::Lines(zero, 0.8))];
-        for (role, one) in &known {
-            marks.push(Mark::new(*role, Shape::Band(-one.band, one.band)));
-            marks.push(Mark::new(*role, Shape::Lines(vec![one.curve()], 1.3)));
+        let mut marks = vec![Mark::lines(Role::Faint, 0.8, zero)];
+        for (role, (curve, band)) in &known {
+            marks.push(Mark::new(*role, Shape::Band(-band, *band)));
+            marks.push(Mark::lines(*role, 1.3, vec![curve.clone()]));
         }
         if known.is_empty() {
             let words = vec![((x.low, f64::midpoint(y.low, y.high)), NOT_KNOWN.to_owned())];
@@ -37,52 +41,19 @@ pub(crate) fn panels(models: &[(Role, &Comparison)]) -> [Panel; 3] {
     })
 }
 
-/// Correlations at equal steps of the lag.
-#[derive(Clone, Copy, Debug)]
-struct Correlogram<'a> {
-    first_lag_s: f64,
-    lag_step_s: f64,
-    correlation: &'a [f64],
-    /// Correlations of noise stay between this and its negative.
-    band: f64,
-}
+/// Lag in seconds and correlation, and what correlations of noise stay between, with its negative.
+type Correlogram = (Vec<Place>, f64);
 
-impl<'a> Correlogram<'a> {
-    /// Those of a model, in the order of [`NAMES`].
-    fn all(comparison: &'a Comparison) -> [Option<Self>; 3] {
-        let itself = comparison.whiteness.as_ref().map(|whiteness| Self {
-            first_lag_s: whiteness.lag_step_s,
-            lag_step_s: whiteness.lag_step_s,
-            correlation: &whiteness.correlation,
-            band: whiteness.band,
-        });
-        let of_input = comparison.input_correlation.as_ref().map(|all| {
-            [&all.acting, &all.raw].map(|one| Self {
-                first_lag_s: all.first_lag_s,
-                lag_step_s: all.lag_step_s,
-                correlation: &one.correlation,
-                band: one.band,
-            })
-        });
-        let [acting, raw] = of_input.map_or([None, None], |both| both.map(Some));
-        [itself, acting, raw]
-    }
-
-    /// Lag in seconds, and correlation.
-    fn curve(&self) -> Vec<Place> {
-        let lag = |k: usize| self.first_lag_s + k as f64 * self.lag_step_s;
-        self.correlation.iter().enumerate().map(|(k, r)| (lag(k), *r)).collect()
-    }
-
-    /// Ranges with room for all of `several`.
-    fn spans(several: &[(Role, Self)]) -> (Span, Span) {
-        let last = |one: &Self| {
-            one.first_lag_s + one.lag_step_s * one.correlation.len().saturating_sub(1) as f64
-        };
-        let several = || several.iter().map(|(_, one)| one);
-        let lags = several().flat_map(|one| [0.0, one.first_lag_s, last(one)]);
-        let room = |one: &Self| [0.0, 2.0 * one.band, -2.0 * one.band];
-        let values = several().flat_map(|one| one.correlation.iter().copied().chain(room(one)));
-        (Span::around(lags, 0.0), Span::around(values, 0.1))
-    }
+/// That of a model at this place among the [`NAMES`].
+fn correlogram(comparison: &Comparison, place: usize) -> Option<Correlogram> {
+    let (first_s, step_s, correlation, band) = if place == 0 {
+        let itself = comparison.whiteness.as_ref()?;
+        (itself.lag_step_s, itself.lag_step_s, &itself.correlation, itself.band)
+    } else {
+        let all = comparison.input_correlation.as_ref()?;
+        let one = if place == 1 { &all.acting } else { &all.raw };
+        (all.first_lag_s, all.lag_step_s, &one.correlation, one.band)
+    };
+    let places = correlation.iter().enumerate().map(|(k, r)| (first_s + k as f64 * step_s, *r));
+    Some((places.collect(), band))
 }

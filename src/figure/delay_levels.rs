@@ -4,7 +4,7 @@
 use super::panel::{Axis, Mark, Panel, Place, Shape};
 use super::role::Role;
 use super::span::Span;
-use crate::delay::{DelayRow, DelayTable, StepState, Transition};
+use crate::delay::{DelayRow, DelayTable, Transition};
 use crate::wording::bracketed;
 
 /// The medians over the level of the input, which is measured in `unit`, with their intervals and how many
@@ -65,27 +65,5 @@ pub(crate) fn role(kind: Transition) -> Role {
         Transition::Stop => Role::Model,
         Transition::Change => Role::Accepted,
         Transition::Reversal => Role::Attention,
-    }
-}
-
-/// Where a step of the input goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
-    Down,
-    Up,
-}
-
-impl Way {
-    pub(crate) const BOTH: [Self; 2] = [Self::Down, Self::Up];
-
-    pub(crate) fn of(step: &StepState) -> Self {
-        if step.input_change > 0.0 { Self::Up } else { Self::Down }
-    }
-
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Down => "down",
-            Self::Up => "up",
-        }
     }
 }

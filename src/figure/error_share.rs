@@ -8,99 +8,68 @@ use crate::diagnosis::failure::{Feature, Region};
 use crate::experiment::Joint;
 use crate::wording::{feature_with_unit, rounded};
 
-/// All parts of one feature.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FeatureShares<'r> {
-    pub(crate) regions: &'r [Region],
+/// The parts of each feature, in the order of `regions`.
+pub(crate) fn by_feature(regions: &[Region]) -> impl Iterator<Item = &[Region]> {
+    regions.chunk_by(|a, b| a.feature == b.feature)
 }
 
 /// The share of the error and of the time in one part, in percent.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Share {
-    pub(crate) error: f64,
-    pub(crate) time: f64,
+fn share(region: &Region) -> [f64; 2] {
+    [region.share_that_arises, region.share_of_time].map(|share| 100.0 * share)
 }
 
-impl Share {
-    pub(crate) fn of(region: &Region) -> Self {
-        Self { error: 100.0 * region.share_that_arises, time: 100.0 * region.share_of_time }
-    }
-}
-
-impl<'r> FeatureShares<'r> {
-    /// Feature by feature, in the order of `regions`.
-    pub(crate) fn all(regions: &'r [Region]) -> impl Iterator<Item = Self> {
-        regions.chunk_by(|a, b| a.feature == b.feature).map(|regions| Self { regions })
-    }
-
-    pub(crate) fn feature(&self) -> Option<Feature> {
-        self.regions.first().map(|region| region.feature)
-    }
-
-    pub(crate) fn shares(&self) -> impl Iterator<Item = Share> {
-        self.regions.iter().map(Share::of)
-    }
-
-    /// The largest share in percent.
-    pub(crate) fn largest(&self) -> f64 {
-        self.shares().flat_map(|share| [share.error, share.time]).fold(0.0, f64::max)
-    }
-
-    /// How much of the squared error, in percent, would have to move to be spread as the time
-    /// is, counted where it leaves and where it arrives.
-    pub(crate) fn unevenness(&self) -> f64 {
-        self.shares().map(|share| (share.error - share.time).abs()).sum()
-    }
+/// How much of the squared error, in percent, would have to move to be spread as the time is, counted
+/// where it leaves and where it arrives.
+pub(crate) fn unevenness(parts: &[Region]) -> f64 {
+    parts.iter().map(share).map(|[error, time]| (error - time).abs()).sum()
 }
 
 /// A panel for each feature, in the order of the regions of the first model.
 pub(crate) fn panels(joint: &Joint, models: &[(Role, &Comparison)]) -> Vec<Panel> {
-    let first =
-        models.first().into_iter().flat_map(|(_, first)| FeatureShares::all(&first.regions));
-    first.filter_map(|shares| shares.panel(joint, models)).collect()
+    let first = models.first().into_iter().flat_map(|(_, first)| by_feature(&first.regions));
+    first.filter_map(|parts| panel(joint, parts, models)).collect()
 }
 
-impl FeatureShares<'_> {
-    /// A slot for each part of the feature, in it a bar for each of `models`, and across it a line
-    /// at the share of the time. A model that has another number of parts, as its speeds may, has no
-    /// bars.
-    pub(crate) fn panel(&self, joint: &Joint, models: &[(Role, &Comparison)]) -> Option<Panel> {
-        /// Part of a slot that its bars fill.
-        const FILLED: f64 = 0.7;
-        let feature = self.feature()?;
-        let of_model = |(role, comparison): &(Role, &'_ Comparison)| {
-            let mut all = FeatureShares::all(&comparison.regions);
-            let own = all.find(|shares| shares.feature() == Some(feature));
-            let own = own.filter(|own| own.regions.len() == self.regions.len());
-            (*role, own.map_or_else(Vec::new, |own| own.shares().collect::<Vec<_>>()))
+/// A slot for each of the `parts` of a feature, in it a bar for each of `models`, and across it a line at
+/// the share of the time. A model that has another number of parts, as its speeds may, has no bars.
+pub(crate) fn panel(
+    joint: &Joint,
+    parts: &[Region],
+    models: &[(Role, &Comparison)],
+) -> Option<Panel> {
+    /// Part of a slot that its bars fill.
+    const FILLED: f64 = 0.7;
+    let feature = parts.first()?.feature;
+    let of_model = |(role, comparison): &(Role, &Comparison)| {
+        let own = by_feature(&comparison.regions)
+            .find(|own| own.first().is_some_and(|one| one.feature == feature));
+        let own = own.filter(|own| own.len() == parts.len()).unwrap_or_default();
+        (*role, own.iter().map(|region| share(region)[0]).collect::<Vec<f64>>())
+    };
+    let of_models: Vec<(Role, Vec<f64>)> = models.iter().map(of_model).collect();
+    let width = FILLED / of_models.len().max(1) as f64;
+    let bars = |(number, (role, errors)): (u32, &(Role, Vec<f64>))| {
+        let left = (1.0 - FILLED) / 2.0 + width * f64::from(number);
+        let bar = |(slot, error): (u32, &f64)| {
+            let left = f64::from(slot) + left;
+            ((left, 0.0), (left + width, *error))
         };
-        let of_models: Vec<(Role, Vec<Share>)> = models.iter().map(of_model).collect();
-        let width = FILLED / of_models.len().max(1) as f64;
-        let bars = |(number, (role, shares)): (u32, &(Role, Vec<Share>))| {
-            let left = (1.0 - FILLED) / 2.0 + width * f64::from(number);
-            let bar = |(slot, share): (u32, &Share)| {
-                let left = f64::from(slot) + left;
-                ((left, 0.0), (left + width, share.error))
-            };
-            let bars: Vec<(Place, Place)> = (0..).zip(shares).map(bar).collect();
-            Mark::new(*role, Shape::Bars(bars)).named("squared error")
-        };
-        let across = |(slot, share): (u32, Share)| {
-            [0.04, 0.96].map(|x| (f64::from(slot) + x, share.time)).to_vec()
-        };
-        let time = Shape::Lines((0..).zip(self.shares()).map(across).collect(), 1.6);
-        let heights = of_models.iter().flat_map(|(_, shares)| shares).map(|share| share.error);
-        let largest = heights.fold(self.largest(), f64::max);
-        let slots = Span::new(0.0, self.regions.len() as f64);
-        let x = Axis {
-            ticks: names(self.regions),
-            ..Axis::new(slots, feature_with_unit(feature, joint), 1.0)
-        };
-        let mut marks: Vec<Mark> = (0..).zip(&of_models).map(bars).collect();
-        marks.push(Mark::new(Role::Ink, time).named("time"));
-        let y = Axis::new(Span::new(0.0, 1.08 * largest.max(1.0)), "share [%]", 4.0);
-        Some(Panel { x, y, height: 190, marks })
-    }
+        let bars: Vec<(Place, Place)> = (0..).zip(errors).map(bar).collect();
+        Mark::new(*role, Shape::Bars(bars)).named("squared error")
+    };
+    let across = |(slot, region): (u32, &Region)| {
+        [0.04, 0.96].map(|x| (f64::from(slot) + x, share(region)[1])).to_vec()
+    };
+    let heights = of_models.iter().flat_map(|(_, errors)| errors).copied();
+    let largest = heights.chain(parts.iter().flat_map(share)).fold(0.0, f64::max);
+    let slots = Span::new(0.0, parts.len() as f64);
+    let x =
+        Axis { ticks: names(parts), ..Axis::new(slots, feature_with_unit(feature, joint), 1.0) };
+    let mut marks: Vec<Mark> = (0..).zip(&of_models).map(bars).collect();
+    let time = (0..).zip(parts).map(across).collect();
+    marks.push(Mark::lines(Role::Ink, 1.6, time).named("time"));
+    let y = Axis::new(Span::new(0.0, 1.08 * largest.max(1.0)), "share [%]", 4.0);
+    Some(Panel { x, y, height: 190, marks })
 }
 
 /// The name of each slot, or of each border between two, and where it stands.

@@ -9,7 +9,7 @@
 #![cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "what only recordings show"))]
 
 pub(crate) mod correlogram;
-pub(crate) mod course;
+pub(crate) mod curves;
 pub(crate) mod delay_levels;
 pub(crate) mod error_share;
 pub(crate) mod ladder;

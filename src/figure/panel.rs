@@ -40,8 +40,6 @@ pub(crate) enum Shape {
     Spans(Vec<(f64, f64)>, f64),
     /// Filled between two corners.
     Bars(Vec<(Place, Place)>),
-    /// Filled between two heights along the horizontal axis: place, lower and upper height.
-    Area(Vec<[f64; 3]>),
     /// Bars with a tick at each end between two values of the horizontal axis, so many pixels above
     /// the panel.
     Spreads(Vec<(f64, f64)>, f64),
@@ -143,7 +141,7 @@ impl Mark {
 
     /// Whether the grid is drawn over it.
     pub(crate) fn is_ground(&self) -> bool {
-        matches!(self.shape, Shape::Band(..) | Shape::Spans(..) | Shape::Area(_))
+        matches!(self.shape, Shape::Band(..) | Shape::Spans(..))
     }
 }
 

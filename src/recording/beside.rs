@@ -1,7 +1,7 @@
 //! What other methods, settings or logs gave for a step, beside the decision.
 
 use super::palette::{self, Rgb};
-use crate::delay::{Decision, Verdict};
+use crate::delay::Verdict;
 use crate::report::{EstimatedJoint, Recording};
 use crate::study::{JointDifferences, JointResult, StepPair, StepResult};
 use crate::wording::{interval, number, verdict_in_short};
@@ -50,45 +50,18 @@ pub(super) fn weight(others: &[Other<'_>], label: &str, p: usize) -> (u8, f64) {
     pairs.map(StepPair::weight).fold((0, 0.0), larger)
 }
 
-/// What a result says of a step, in words: its delay and interval in samples, and its verdict.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shown {
-    delay: Option<f64>,
-    interval: Option<(f64, f64)>,
-    verdict: Verdict,
+/// The line of the result `name` in a legend, by what it says of a step; its interval is drawn.
+pub(super) fn in_short(step: &StepResult, name: &str) -> String {
+    let delay = step.delay.map_or_else(|| "none".to_owned(), number);
+    match step.verdict {
+        Verdict::Accepted => format!("{name}: δ = {delay} ✓"),
+        Verdict::Rejected(condition) => format!("{name}: δ = {delay} ✗ {condition}"),
+    }
 }
 
-impl Shown {
-    /// What was decided here.
-    pub(super) fn of(decision: &Decision) -> Self {
-        let interval = decision.fine.map(|fine| (fine.low, fine.high));
-        Self { delay: decision.delay(), interval, verdict: decision.verdict() }
-    }
-
-    /// What another result says.
-    pub(super) fn there(step: &StepResult) -> Self {
-        Self { delay: step.delay, interval: step.interval, verdict: step.verdict }
-    }
-
-    /// The line of the result `name` in a legend; its interval is drawn.
-    pub(super) fn in_short(self, name: &str) -> String {
-        let delay = self.delay.map_or_else(|| "none".to_owned(), number);
-        match self.verdict {
-            Verdict::Accepted => format!("{name}: δ = {delay} ✓"),
-            Verdict::Rejected(condition) => format!("{name}: δ = {delay} ✗ {condition}"),
-        }
-    }
-
-    /// The row of the result `name` in a table.
-    pub(super) fn row(self, name: &str) -> String {
-        format!("| {name} | {} | {} |", self.delay(), verdict_in_short(self.verdict, "✓ accepted"))
-    }
-
-    fn delay(self) -> String {
-        let delay = self.delay.map_or_else(|| "none".to_owned(), number);
-        match self.interval {
-            Some(ends) => format!("{delay} ({})", interval(ends)),
-            None => delay,
-        }
-    }
+/// The row of the result `name` in a table: its delay with the interval in samples, and its verdict.
+pub(super) fn row(step: &StepResult, name: &str) -> String {
+    let delay = step.delay.map_or_else(|| "none".to_owned(), number);
+    let ends = step.interval.map_or_else(String::new, |ends| format!(" ({})", interval(ends)));
+    format!("| {name} | {delay}{ends} | {} |", verdict_in_short(step.verdict, "✓ accepted"))
 }

@@ -112,10 +112,17 @@ impl Plot {
         Vec2D::new(self.left - 0.5 * width(text), middle - LABEL_DROP)
     }
 
-    /// Where a text is put to begin beside a place.
+    /// Where a text is put to begin beside a place; one that would run over the frame from within the
+    /// plot ends there, if there is room before it.
     pub(super) fn beside(&self, place: Place, text: &str) -> Vec2D {
+        /// Half the height of a text, and how far one may reach beyond the frame.
+        const HALF: f32 = 14.0;
         let Vec2D([x, y]) = self.at(place);
-        Vec2D::new(x.max(self.left) + 0.5 * width(text), y - LABEL_DROP)
+        let (x, room) = (x.max(self.left), width(text));
+        let is_over = x < self.right - 1.0 && x + room > self.right + HALF && x - room > self.left;
+        let middle = if is_over { x - 0.5 * room } else { x + 0.5 * room };
+        let y = y.min(self.bottom - HALF).max(self.top + HALF);
+        Vec2D::new(middle, y - LABEL_DROP)
     }
 }
 

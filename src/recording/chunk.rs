@@ -24,7 +24,6 @@ use serde_json::Value;
 
 use super::error::RecordError;
 use super::palette::{Rgb, color};
-use crate::delay::FineDelay;
 use crate::report::Kind;
 use crate::wording::number;
 
@@ -383,12 +382,30 @@ fn cells(chunk: &Chunk, row: usize, component: &str) -> Vec<SerializedComponentC
     cell.collect()
 }
 
-/// A column of numbers named `name`; `None` is null.
-pub(super) fn numbers(
+/// A column of a table with rows `R`: its name, what it holds, and the value of a row.
+pub(super) type Column<R> = (&'static str, Kind, fn(&R) -> Value);
+
+/// Such columns of `rows`.
+pub(super) fn columns<R>(rows: &[R], all: &[Column<R>]) -> Vec<SerializedComponentColumn> {
+    let column = |(name, kind, value): &Column<R>| values(name, *kind, rows.iter().map(value));
+    all.iter().map(column).collect()
+}
+
+/// A column of values of a `kind` named `name`; what is not of the kind is null.
+pub(super) fn values(
     name: &'static str,
-    values: impl IntoIterator<Item = Option<f64>>,
+    kind: Kind,
+    values: impl Iterator<Item = Value>,
 ) -> SerializedComponentColumn {
-    column::<_, Float64Array>(name, values)
+    match kind {
+        Kind::Text => {
+            column::<_, StringArray>(name, values.map(|it| Some(it.as_str()?.to_owned())))
+        }
+        Kind::Whole => column::<_, Int64Array>(name, values.map(|it| it.as_i64())),
+        Kind::Samples | Kind::Real | Kind::Plain => {
+            column::<_, Float64Array>(name, values.map(|it| it.as_f64()))
+        }
+    }
 }
 
 /// A column of numbers to be looked at, named `name`: to five digits; `None` is null.
@@ -400,35 +417,6 @@ pub(super) fn shown(
     column::<_, Float32Array>(name, values.into_iter().map(|value| value.map(rounded)))
 }
 
-/// A column of whole numbers named `name`; `None` is null.
-pub(super) fn integers(
-    name: &'static str,
-    values: impl IntoIterator<Item = Option<i64>>,
-) -> SerializedComponentColumn {
-    column::<_, Int64Array>(name, values)
-}
-
-/// A column of texts named `name`; `None` is null.
-pub(super) fn texts(
-    name: &'static str,
-    values: impl IntoIterator<Item = Option<String>>,
-) -> SerializedComponentColumn {
-    column::<_, StringArray>(name, values)
-}
-
-/// A column of values of a `kind` named `name`; `None` and what is not of the kind is null.
-pub(super) fn values(
-    name: &'static str,
-    kind: Kind,
-    values: impl Iterator<Item = Option<Value>>,
-) -> SerializedComponentColumn {
-    match kind {
-        Kind::Text => texts(name, values.map(|value| Some(value?.as_str()?.to_owned()))),
-        Kind::Whole => integers(name, values.map(|value| value?.as_i64())),
-        Kind::Samples | Kind::Real | Kind::Plain => numbers(name, values.map(|it| it?.as_f64())),
-    }
-}
-
 fn column<T, A: Array + FromIterator<Option<T>> + 'static>(
     name: &'static str,
     values: impl IntoIterator<Item = Option<T>>,
@@ -438,20 +426,6 @@ fn column<T, A: Array + FromIterator<Option<T>> + 'static>(
     let lengths = is_there.iter().map(|is_there| usize::from(*is_there));
     let items: A = values.into_iter().flatten().map(Some).collect();
     lists_of(name, items, lengths, Some(is_there.clone().into()))
-}
-
-/// Delays between samples with their intervals; no columns where there is none.
-pub(super) fn fine_columns(delays: &[Option<FineDelay>]) -> Vec<SerializedComponentColumn> {
-    type Part = fn(FineDelay) -> f64;
-    if delays.iter().all(Option::is_none) {
-        return Vec::new();
-    }
-    let parts: [(&str, Part); 3] = [
-        ("fine_delta", |fine| fine.delay),
-        ("delta_low", |fine| fine.low),
-        ("delta_high", |fine| fine.high),
-    ];
-    parts.map(|(name, part)| numbers(name, delays.iter().map(|fine| fine.map(part)))).to_vec()
 }
 
 /// A column of lists of numbers named `name`; `None` is null.

@@ -1,14 +1,16 @@
 //! The numbers of every candidate and every decision.
 
 use rerun::SeriesLines;
+use serde_json::Value;
 
-use super::chunk::{Chunks, Moment, integers, numbers, shown, values};
+use super::chunk::{Chunks, Moment, columns, shown, values};
 use super::error::RecordError;
 use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::paths;
 use crate::delay::{Candidate, Decision};
 use crate::report::Doubted;
+use crate::report::Kind::{self, Real, Whole};
 use crate::report::decisions::{DECISION, decision_text};
 use crate::report::facts::Place;
 use crate::units::signed;
@@ -74,13 +76,9 @@ impl<'l, 'a> Row<'l, 'a> {
     }
 }
 
-fn q(row: &Row<'_, '_>) -> Option<i64> {
-    Some(signed(row.candidate?.breakpoint))
-}
-
 /// Samples from the input step to the breakpoint.
 fn delta(row: &Row<'_, '_>) -> Option<i64> {
-    Some(q(row)? - signed(row.segment.decision.input_step.sample))
+    Some(signed(row.candidate?.breakpoint) - signed(row.segment.decision.input_step.sample))
 }
 
 fn delay_s(row: &Row<'_, '_>) -> Option<f64> {
@@ -110,45 +108,43 @@ const OF_THE_STEP: [&str; 4] = ["i", "p", "r", "end"];
 const OF_THE_CANDIDATE: [&str; 8] =
     ["joint", "f_opt", "q", "delta", "delta_s", "sse", "slope_before", "slope_after"];
 
+type OfRow = fn(&Row<'_, '_>) -> Value;
+
+/// What a row has beside the facts.
+#[rustfmt::skip]
+const OWN: &[(&str, Kind, OfRow)] = &[
+    ("f", Whole, |row| row.segment.decision.candidates.best().map(|best| best.f).into()),
+    ("j", Whole, |row| row.j.into()),
+    ("q", Whole, |row| row.candidate.map(|it| it.breakpoint).into()),
+    ("delta", Whole, |row| delta(row).into()),
+    ("accepted", Whole, |row| row.verdict(|_| i64::from(row.segment.is_accepted())).into()),
+    ("error_rank", Whole, |row| row.rank.into()),
+    ("breakpoint", Whole, |row| row.candidate.map(|it| it.breakpoint).into()),
+    ("sse", Real, |row| row.candidate.map(|it| it.sse).into()),
+    ("slope_before", Real, |row| row.candidate.map(|it| it.before.slope).into()),
+    ("slope_after", Real, |row| row.candidate.map(|it| it.after.slope).into()),
+    ("fine_delta", Real, |row| row.verdict(|decision| decision.fine).flatten().map(|fine| fine.delay).into()),
+];
+
 /// A row per candidate, and one per verdict: without `j`, but with all that is said of the decision,
 /// and the delay between samples where there is one.
 fn add_table(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
-    type Whole = fn(&Row<'_, '_>) -> Option<i64>;
-    type Real = fn(&Row<'_, '_>) -> Option<f64>;
+    type Number = fn(&Row<'_, '_>) -> Option<f64>;
     let (moments, rows): (Vec<_>, Vec<_>) = layout.segments().flat_map(Row::of).unzip();
-    let whole: [(&str, Whole); 7] = [
-        ("f", |row| row.segment.decision.candidates.best().map(|best| signed(best.f))),
-        ("j", |row| row.j.map(signed)),
-        ("q", q),
-        ("delta", delta),
-        ("accepted", |row| row.verdict(|_| i64::from(row.segment.is_accepted()))),
-        ("error_rank", |row| row.rank),
-        ("breakpoint", q),
-    ];
-    let real: [(&str, Real); 4] = [
-        ("sse", |row| Some(row.candidate?.sse)),
-        ("slope_before", |row| Some(row.candidate?.before.slope)),
-        ("slope_after", |row| Some(row.candidate?.after.slope)),
-        ("fine_delta", |row| Some(row.verdict(|decision| decision.fine)??.delay)),
-    ];
     // What a person reads. A viewer orders columns by their names: these are such that the most telling
     // ones come first.
-    let rounded: [(&str, Real); 3] = [
+    let rounded: [(&str, Number); 3] = [
         ("delay_s", delay_s),
         ("error", |row| Some(row.candidate?.sse)),
         ("error_times_least", error_times_least),
     ];
     let facts = DECISION.iter().filter(|fact| !OF_THE_CANDIDATE.contains(&fact.id));
-    let mut columns: Vec<_> = facts
-        .filter(|fact| fact.is_in_tables())
-        .map(|fact| {
-            let is_there = |row: &&Row<'_, '_>| row.j.is_none() || OF_THE_STEP.contains(&fact.id);
-            let value = |row| Some((fact.value)(&Some(row).filter(is_there)?.doubted()));
-            values(fact.id, fact.kind, rows.iter().map(value))
-        })
-        .collect();
-    columns.extend(whole.map(|(name, value)| integers(name, rows.iter().map(value))));
-    columns.extend(real.map(|(name, value)| numbers(name, rows.iter().map(value))));
-    columns.extend(rounded.map(|(name, value)| shown(name, rows.iter().map(value))));
-    chunks.push(paths::DECISION_TABLE, moments.into_iter().collect(), columns)
+    let facts = facts.filter(|fact| fact.is_in_tables()).map(|fact| {
+        let is_there = |row: &&Row<'_, '_>| row.j.is_none() || OF_THE_STEP.contains(&fact.id);
+        let value = |row| Some((fact.value)(&Some(row).filter(is_there)?.doubted()));
+        values(fact.id, fact.kind, rows.iter().map(|row| value(row).unwrap_or_default()))
+    });
+    let rounded = rounded.map(|(name, value)| shown(name, rows.iter().map(value)));
+    let all = facts.chain(columns(&rows, OWN)).chain(rounded);
+    chunks.push(paths::DECISION_TABLE, moments.into_iter().collect(), all)
 }

@@ -2,7 +2,7 @@
 //! record and by rank, lines to click, and what there is to say.
 
 use super::beside::Other;
-use super::canvas::{SHEET, Span};
+use super::canvas::{Plot, SHEET, Span};
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layers::Layers;
@@ -99,18 +99,18 @@ fn draw(
     others: &[Other<'_>],
 ) -> Result<(), RecordError> {
     let steps: Vec<Step> = layout.segments().flat_map(|placed| of_step(&placed, others)).collect();
-    let delays = Placed::new(delays(&steps, others), SIDES, 44.0..=165.0);
-    let ranks = Placed::new(ranks(&steps), SIDES, 250.0..=312.0);
-    let plots = [delays.plot, ranks.plot];
-    panels::add(&mut Layers::fixed(chunks, paths::DIFFERENCE_SHEET), [vec![delays, ranks]])?;
-    let last = plots[1].x_span.high;
+    let mut placed = vec![Placed::new(delays(&steps, others), SIDES, 44.0..=165.0)];
+    placed.extend(ranks(&steps).map(|panel| Placed::new(panel, SIDES, 250.0..=312.0)));
+    let plots: Vec<Plot> = placed.iter().map(|placed| placed.plot).collect();
+    panels::add(&mut Layers::fixed(chunks, paths::DIFFERENCE_SHEET), [placed])?;
+    let last = plots.last().map_or(0.0, |plot| plot.x_span.high);
     let here = layout.segments().map(|(trial, segment)| {
         let time = trial.seconds(segment.decision.input_step.sample);
         let places = [time, (segment.difference as f64).min(last)];
         let here = |at: f64| {
             Mark::new(role(palette::CANDIDATE), Shape::Verticals(vec![at], 1.6)).part("here")
         };
-        places.map(here).into_iter().zip(plots).collect()
+        places.map(here).into_iter().zip(plots.iter().copied()).collect()
     });
     let rows = Layers::rows(chunks, paths::DIFFERENCE_SHEET, layout.openings());
     panels::add_marks(&mut rows.in_front(), here)
@@ -157,15 +157,15 @@ fn delays(steps: &[Step], others: &[Other<'_>]) -> Panel {
 }
 
 /// By how much the delays differ, the largest first; of a step with another verdict a mark where there
-/// is no difference to show.
-fn ranks(steps: &[Step]) -> Panel {
+/// is no difference to show. None where nothing differs.
+fn ranks(steps: &[Step]) -> Option<Panel> {
     let ranked = || steps.iter().filter(|step| step.other_verdict || step.difference != 0.0);
     let bars = |other_verdict: bool| {
         let own = ranked().filter(|step| step.other_verdict == other_verdict);
         own.map(|step| vec![(step.rank, 0.0), (step.rank, step.difference)]).collect()
     };
     let odd = ranked().filter(|step| step.other_verdict).map(|step| (step.rank, 0.0)).collect();
-    let last = ranked().map(|step| step.rank).fold(1.0, f64::max);
+    let last = ranked().map(|step| step.rank).reduce(f64::max)?;
     let y = Span::around(steps.iter().map(|step| step.difference).chain([0.0]), 0.08);
     let name = "delay here − there [s], the largest first";
     let marks = vec![
@@ -174,7 +174,7 @@ fn ranks(steps: &[Step]) -> Panel {
         Mark::new(Role::Rejected, Shape::Crosses(odd)).part("other_verdict"),
     ];
     let x = Axis::new(Span::new(0.0, last + 1.0), "", 10.0);
-    Panel { x, y: Axis::new(y, name, 3.0), height: 40, marks }
+    Some(Panel { x, y: Axis::new(y, name, 3.0), height: 40, marks })
 }
 
 /// Each result that has the step, as it is drawn.

@@ -253,11 +253,6 @@ impl<'a> JointLayout<'a> {
         self.trials.iter().find(|trial| trial.index == index)
     }
 
-    /// The trial with this label.
-    pub(super) fn trial_of(&self, label: &str) -> Option<&TrialLayout<'a>> {
-        self.trials.iter().find(|trial| trial.trial.label() == label)
-    }
-
     /// A signal of all trials: a row per sample that it is known at, and an empty one where it stops, so
     /// that no line is drawn over the gap.
     pub(super) fn series(

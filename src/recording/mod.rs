@@ -50,7 +50,6 @@ mod place;
 mod revision;
 mod scatter;
 mod segment_view;
-mod shaded;
 mod signals;
 mod sweep;
 mod verdict;

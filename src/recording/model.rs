@@ -7,20 +7,17 @@ use super::error::RecordError;
 use super::layers::Layers;
 use super::layout::JointLayout;
 use super::markdown::plain;
-use super::model_lanes::samples_of;
 use super::palette;
 use super::paths::{self, at, child};
 use super::signals::known;
 use super::{correlogram, error_share, model_lanes, revision, scatter};
 use crate::diagnosis::failure::Region;
-use crate::diagnosis::{Comparison, SIGNIFICANCE, sensor_noise};
-use crate::report::compare::{errors_note, model_differences, model_table};
-use crate::report::finding::times_noise;
+use crate::diagnosis::{Comparison, sensor_noise};
+use crate::report::compare::{Section, difference_section, errors_note, model_table, sections};
+use crate::report::page::shaded::worst;
 use crate::report::parameters::parameter_table;
 use crate::report::{ComparedJoint, TextTable};
-use crate::wording::{
-    capitalized, correlation_sentences, fails_or_errs, failure_sentences, measure, number, percent,
-};
+use crate::wording::{capitalized, measure, number, percent};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
@@ -175,58 +172,30 @@ fn reported<'m, 'c>(
     if is_first(models, judged) { models.to_vec() } else { vec![judged] }
 }
 
-/// All figures of all models of the joint.
+/// All figures of all models of the joint, and what is said of them.
 fn page(models: &[&ComparedJoint<'_>], judged: &ComparedJoint<'_>) -> String {
     let joint = judged.joint;
-    let of = if models.len() > 1 { format!(", {}", plain(judged.model)) } else { String::new() };
     let compared: Vec<ComparedJoint<'_>> = models.iter().map(|model| **model).collect();
     let horizon = judged.comparison.fit.evaluation.horizon.to_string();
-    let mut lines = vec![
-        format!("### {}{of}: {}\n", plain(&joint.name), headline(judged)),
-        model_table(&compared).markdown(plain),
-        format!("{}.\n", capitalized(&errors_note(&horizon))),
-    ];
     let noise = sensor_noise(&joint.trials);
     let noise = noise.map(|noise| measure(noise, joint.output_unit.as_deref()));
-    lines.extend(noise.map(|noise| format!("Noise of the sensor: {noise}.\n")));
-    if is_first(models, judged) {
-        for one in model_differences(&compared) {
-            let (model, other) = (plain(one.model), plain(one.other));
-            let said: Vec<_> = one.sentences().iter().map(|sentence| plain(sentence)).collect();
-            lines.push(format!("**{model} against {other}**\n\n- {}\n", said.join("\n- ")));
-        }
-    }
-    let reported = reported(models, judged);
-    for one in &reported {
-        let (model, errs) = (plain(one.model), capitalized(fails_or_errs(one.comparison)));
-        let failures = failure_sentences(joint, one.comparison).into_iter();
-        lines.extend(failures.map(|when| format!("**{errs}** ({model}) {}\n", plain(&when))));
-        let residual = correlation_sentences(one.comparison).join("; ");
-        if !residual.is_empty() {
-            lines.push(format!("**Residual** ({model}): {}\n", plain(&residual)));
-        }
-    }
-    lines.extend(reconciled(&reported));
-    lines.join("\n")
-}
-
-/// Why a model may be adequate though its residual is not white.
-fn reconciled(models: &[&ComparedJoint<'_>]) -> Option<String> {
-    let is_odd = |compared: &&&ComparedJoint<'_>| {
-        let Comparison { lack_of_fit, whiteness, .. } = compared.comparison;
-        let white = whiteness.as_ref().is_none_or(|found| found.p_value >= SIGNIFICANCE);
-        lack_of_fit.is_some_and(|test| test.adequate) && !white
+    let noise =
+        noise.map_or_else(String::new, |noise| format!("Noise of the sensor: {noise}.\n\n"));
+    let reported: Vec<_> = reported(models, judged).into_iter().copied().collect();
+    let differences = is_first(models, judged).then(|| difference_section(&compared));
+    let sections = sections(&reported).into_iter().chain(differences);
+    let section = |(heading, lines): Section| {
+        let lines: Vec<String> = lines.iter().map(|line| plain(line)).collect();
+        format!("**{}**\n\n- {}\n\n", capitalized(&heading), lines.join("\n- "))
     };
-    let odd: Vec<String> = models.iter().filter(is_odd).map(|it| plain(it.model)).collect();
-    (!odd.is_empty()).then(|| {
-        format!(
-            "{}: adequate although the residual is not white. The whiteness test finds any \
-             autocorrelation, which coloured noise has, and in a long record even a negligible \
-             misfit; the test for lack of fit asks whether the residual contains motion of \
-             relevant size.\n",
-            odd.join(", ")
-        )
-    })
+    let sections = sections.filter(|(_, lines)| !lines.is_empty()).map(section);
+    format!(
+        "### {}\n\n{}\n{}.\n\n{noise}{}",
+        plain(&joint.name),
+        model_table(&compared).markdown(plain),
+        capitalized(&errors_note(&horizon)),
+        sections.collect::<String>()
+    )
 }
 
 /// Where the judged model is worst, a row per segment; where it begins on the timeline `sample`, too.
@@ -235,11 +204,10 @@ fn worst_segments(layout: &JointLayout<'_>, judged: &ComparedJoint<'_>) -> Strin
         return "No segment stands out.".to_owned();
     };
     let unit = judged.joint.output_unit.as_deref();
-    let mut rank = 0;
-    let rows = failure.worst_segments.iter().map(|worst| {
-        rank += 1;
-        let trial = layout.trial_of(&worst.trial);
-        let sample = trial.map(|trial| trial.sample(*samples_of(worst, trial).start()));
+    let spans = worst(judged.joint, judged.comparison);
+    let rows = failure.worst_segments.iter().zip(&spans).zip(1_u32..);
+    let rows = rows.map(|((worst, (index, span)), rank)| {
+        let sample = layout.trial(*index).map(|trial| trial.sample(span.start + 1));
         [
             rank.to_string(),
             format!("{}, {} s", worst.trial, number(worst.start_s)),
@@ -262,37 +230,4 @@ fn worst_segments(layout: &JointLayout<'_>, judged: &ComparedJoint<'_>) -> Strin
 /// Whether models are compared with the first one; revisions of a model are shown by their ladder.
 fn is_first(models: &[&ComparedJoint<'_>], judged: &ComparedJoint<'_>) -> bool {
     models.first().is_some_and(|first| first.model == judged.model)
-}
-
-/// Times the noise up to which they are worth a count: ten parts in a hundred at most are noise then.
-const COUNTED: f64 = 100.0;
-
-/// What a reviewer should know first.
-fn headline(judged: &ComparedJoint<'_>) -> String {
-    let comparison = judged.comparison;
-    let times = comparison.validation.zip(sensor_noise(&judged.joint.trials));
-    let followed = comparison.validation.map(|error| error.fit_percent).filter(|part| *part > 0.0);
-    let followed = followed.map_or_else(String::new, |part| {
-        format!(
-            "the model explains {part:.0} % of the motion; \
-             "
-        )
-    });
-    let times = times.map(|(error, noise)| error.rmse / noise.max(f64::MIN_POSITIVE));
-    let unit = judged.joint.output_unit.as_deref();
-    let error = comparison.validation.map(|error| measure(error.rmse, unit)).unwrap_or_default();
-    match (comparison.lack_of_fit, times) {
-        (Some(test), _) if test.adequate => {
-            "the model is adequate: no lack of fit is shown".to_owned()
-        }
-        // Many times the noise say no more than the error itself.
-        (_, Some(times)) if times < COUNTED => {
-            format!("{followed}the error is {error}, {}", times_noise(times))
-        }
-        (_, Some(_)) if followed.is_empty() => {
-            format!("the model explains nothing of the motion; the error is {error}")
-        }
-        (_, Some(_)) => format!("{followed}the error is {error}"),
-        _ => "there is an error beyond the noise".to_owned(),
-    }
 }

@@ -30,12 +30,6 @@ pub(super) const PROPOSED: Rgb = (170, 255, 80);
 pub(super) const MEASURED: Rgb = (200, 205, 210);
 /// What noise alone would leave.
 pub(super) const NOISE: Rgb = (86, 180, 233);
-/// A step of the input up.
-pub(super) const UP: Rgb = (95, 160, 255);
-/// A step of the input down.
-pub(super) const DOWN: Rgb = (240, 150, 195);
-/// Half of what was found lies there.
-pub(super) const BAND: Rgb = (40, 50, 58);
 /// The viewer's own ground.
 pub(super) const GROUND: Rgb = (13, 16, 17);
 /// Grid lines.

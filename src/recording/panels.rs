@@ -125,7 +125,7 @@ fn apart(
 }
 
 /// The colour of a meaning on the viewer's dark ground.
-fn rgb(role: Role) -> Rgb {
+pub(super) fn rgb(role: Role) -> Rgb {
     match role {
         Role::Ink => palette::BORDER,
         Role::Faint => palette::RAW,
@@ -196,7 +196,6 @@ impl Drawn {
             Shape::Bars(bars) => {
                 self.strips.extend(bars.iter().map(|bar| (filled(plot, (*bar).into()), rgb)));
             }
-            Shape::Area(heights) => self.strips.push((area(plot, heights), rgb)),
             Shape::Spreads(spreads, above) => {
                 let bars = spreads.iter().flat_map(|ends| spread(plot, *ends, *above));
                 self.strips.extend(bars.map(|line| (line, rgb)));
@@ -225,30 +224,11 @@ fn filled(plot: &Plot, corners: [Place; 2]) -> Vec<Vec2D> {
     let [a, b] = corners.map(|at| plot.at(at));
     let (top, bottom) = (a.y().min(b.y()), a.y().max(b.y()));
     let (top, bottom) = ((top + HATCH).min(bottom), (bottom - HATCH).max(top));
-    to_and_fro(hatched(a.x().min(b.x()), a.x().max(b.x())).map(|x| [x, top, bottom]))
-}
-
-/// The area between two heights along the horizontal axis, likewise.
-fn area(plot: &Plot, heights: &[[f64; 3]]) -> Vec<Vec2D> {
-    let on_sheet = |of: &[f64; 3]| [plot.x(of[0]), plot.y(of[1]), plot.y(of[2])];
-    let pairs = heights.iter().zip(heights.iter().skip(1)).flat_map(|(from, to)| {
-        let (from, to) = (on_sheet(from), on_sheet(to));
-        hatched(from[0], to[0]).map(move |x| {
-            let part = ((x - from[0]) / (to[0] - from[0]).max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
-            let between = |k: usize| from[k] + part * (to[k] - from[k]);
-            [x, between(1), between(2)]
-        })
-    });
-    to_and_fro(pairs)
-}
-
-/// One line through columns, each of a place and two heights.
-fn to_and_fro(columns: impl Iterator<Item = [f32; 3]>) -> Vec<Vec2D> {
-    let column = |(number, [x, a, b]): (usize, [f32; 3])| {
-        let (from, to) = if number % 2 == 0 { (a, b) } else { (b, a) };
+    let column = |(number, x): (usize, f32)| {
+        let (from, to) = if number % 2 == 0 { (top, bottom) } else { (bottom, top) };
         [Vec2D::new(x, from), Vec2D::new(x, to)]
     };
-    columns.enumerate().flat_map(column).collect()
+    hatched(a.x().min(b.x()), a.x().max(b.x())).enumerate().flat_map(column).collect()
 }
 
 /// Places between two others that lines of radius [`HATCH`] cover without a gap.
@@ -330,7 +310,6 @@ fn name(mark: &Mark) -> &str {
         Shape::Band(..) => "band",
         Shape::Spans(..) => "spans",
         Shape::Bars(_) => "bars",
-        Shape::Area(_) => "area",
         Shape::Spreads(..) => "spreads",
         Shape::Words(_) => "words",
         Shape::Flags(_) => "flags",
@@ -395,7 +374,7 @@ impl Part {
         #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
         let radius = match mark.shape {
             Shape::Lines(_, width) | Shape::Verticals(_, width) => width as f32,
-            Shape::Spans(..) | Shape::Bars(_) | Shape::Area(_) => HATCH,
+            Shape::Spans(..) | Shape::Bars(_) => HATCH,
             _ => 1.0,
         };
         let key = Key { name: name(mark).to_owned(), model: model(mark, models) };
@@ -477,15 +456,6 @@ mod tests {
 
     fn unit() -> (Span, Span) {
         (Span::new(0.0, 1.0), Span::new(0.0, 10.0))
-    }
-
-    #[test]
-    fn a_band_reaches_from_height_to_height() {
-        let plot = Plot::new((0.0, 100.0), 0.0..=100.0, unit());
-        let strip = area(&plot, &[[0.0, 2.0, 6.0], [1.0, 2.0, 6.0]]);
-        let rows = strip.iter().map(Vec2D::y);
-        let (low, high) = (rows.clone().fold(0.0, f32::max), rows.fold(100.0, f32::min));
-        assert!((low - 80.0).abs() < 1e-3 && (high - 40.0).abs() < 1e-3, "{low} {high}");
     }
 
     #[test]

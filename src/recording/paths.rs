@@ -51,8 +51,7 @@ pub(crate) const TRIAL: &str = "trial";
 pub(crate) const HEADLINE: &str = "headline";
 /// Where the cursor is, in words.
 pub(crate) const PLACE: &str = "place";
-/// The decisions by doubt, in words and as lines to click.
-pub(crate) const DOUBT: &str = "doubt";
+/// The decisions by doubt, as lines to click.
 pub(crate) const DOUBT_LOG: &str = "doubt/log";
 /// The decisions by how much they differ from those of other results, likewise and as a drawing.
 pub(crate) const DIFFERENCE: &str = "difference";
@@ -96,8 +95,8 @@ pub(crate) const SCATTER: &str = "scatter";
 pub(crate) const ERROR_SHARE: &str = "error_share";
 pub(crate) const CORRELATION: &str = "correlation";
 
-/// The revisions of a model: what was found of it; ladder, evidence and ranking; the whole record beside what is simulated;
-/// the share of the error in each region; pages.
+/// The revisions of a model: what was found of it; ladder, what it misses and ranking; the whole record
+/// beside what is simulated; the share of the error in each region; pages.
 pub(crate) const REVISION_HEADLINE: &str = "revision/headline";
 pub(crate) const REVISION_SHEET: &str = "revision/sheet";
 pub(crate) const REVISION_RECORD: &str = "revision/record";

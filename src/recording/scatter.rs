@@ -33,31 +33,36 @@ pub(super) fn add(
     let all: Vec<Vec<Pairs>> = models.iter().map(|model| quantities(model)).collect();
     let unit = judged.joint.output_unit.as_deref();
     let place = |(place, pairs): (usize, Pairs)| {
-        let of_each = all.iter().map(|all| all.get(place));
+        let curves = all.iter().enumerate().map(|(number, all)| {
+            let curve = all.get(place).map_or_else(Vec::new, curve);
+            (Role::of_revision(number), curve)
+        });
         let left = 460.0 * place as f32;
         // There is room for one name above each plot; the residual is named above the first.
         let y = if place == 0 { bracketed("residual", unit) } else { String::new() };
-        Placed::new(panel(&pairs, of_each, y), (left + 105.0, left + 445.0), 48.0..=324.0)
+        Placed::new(panel(&pairs, curves, y), (left + 105.0, left + 445.0), 48.0..=324.0)
     };
     let placed = quantities(judged).into_iter().enumerate().map(place).collect();
     panels::add(&mut Layers::fixed(chunks, paths::SCATTER), [placed])
 }
 
-/// The points of `pairs`, and a curve through those of each model; what is off the plot is left out.
-fn panel<'p>(
-    pairs: &Pairs,
-    of_each: impl Iterator<Item = Option<&'p Pairs>>,
-    name: String,
-) -> Panel {
+/// The residual of a model against the quantity that its mean follows most, in the colour of `role`.
+pub(super) fn clearest(compared: &ComparedJoint<'_>, role: Role) -> Option<Panel> {
+    let curves = quantities(compared).into_iter().map(|pairs| (curve(&pairs), pairs));
+    let followed = |curve: &[Place]| curve.iter().map(|(_, mean)| mean * mean).sum::<f64>();
+    let (curve, pairs) = curves.max_by(|a, b| followed(&a.0).total_cmp(&followed(&b.0)))?;
+    let name = bracketed("residual", compared.joint.output_unit.as_deref());
+    Some(panel(&pairs, [(role, curve)].into_iter(), name))
+}
+
+/// The points of `pairs`, and curves through those of models; what is off the plot is left out.
+fn panel(pairs: &Pairs, curves: impl Iterator<Item = (Role, Vec<Place>)>, name: String) -> Panel {
     let x = Span::around(most_of(&pairs.x), 0.03);
     let y = Span::around(most_of(&pairs.residual), 0.05);
     let every = pairs.x.len().div_ceil(POINTS).max(1);
     let places = pairs.x.iter().copied().zip(pairs.residual.iter().copied()).step_by(every);
     let mut marks = vec![Mark::dots(Role::Measured, places.collect())];
-    marks.extend(of_each.enumerate().map(|(number, own)| {
-        let curve = own.map_or_else(Vec::new, curve);
-        Mark::lines(Role::of_revision(number), 2.4, vec![curve])
-    }));
+    marks.extend(curves.map(|(role, curve)| Mark::lines(role, 2.4, vec![curve])));
     let y = Axis::new(y, name, 3.0);
     Panel { x: Axis::new(x, pairs.name.clone(), 4.0), y, height: 190, marks }
 }
@@ -94,7 +99,7 @@ fn quantities(compared: &ComparedJoint<'_>) -> Vec<Pairs> {
 }
 
 /// Seconds since the acting input last changed.
-pub(super) fn since_step(acting: &[f64], period_s: f64) -> Vec<f64> {
+fn since_step(acting: &[f64], period_s: f64) -> Vec<f64> {
     let (mut before, mut samples) = (f64::NAN, 0.0);
     let since = |level: &f64| {
         #[expect(clippy::float_cmp, reason = "a step is any change")]

@@ -5,7 +5,7 @@
 //! what belongs to a candidate is set at each of its ticks and cleared before and after,
 //! so that nothing leaks into the next segment.
 
-use super::beside::{Other, Shown};
+use super::beside::{Other, in_short};
 use super::canvas::Plot;
 use super::chunk::Chunks;
 use super::error::RecordError;
@@ -80,12 +80,12 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let mut close = self.figure.close_up(sensor_noise(&trial.estimated.joint.trials));
         close.y.name = self.figure.delay_text(trial.trial.period().seconds());
         if let Some((method, others)) = beside.filter(|(_, others)| !others.is_empty()) {
-            let own = Shown::of(segment.decision).in_short(method.id());
+            let here = StepResult::of(trial.trial, segment.decision);
+            let own = in_short(&here, method.id());
             let own = Mark::lines(self.figure.verdict(), 1.0, Vec::new()).named(own);
             close.marks.push(own.part("chosen"));
             for (index, other) in others.iter().enumerate() {
-                let p = segment.decision.input_step.sample;
-                if let Some(pair) = other.pair(trial.trial.label(), p) {
+                if let Some(pair) = other.pair(&here.trial, here.p) {
                     self.add_other((&mut output, &mut close), &pair.there, (index, other));
                 }
             }
@@ -107,7 +107,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         (index, other): (usize, &Other<'_>),
     ) {
         let (role, part) = (role(other.rgb), format!("other_{index}"));
-        let name = Shown::there(step).in_short(other.name);
+        let name = in_short(step, other.name);
         let named = Mark::lines(role, 1.8, Vec::new()).named(name).part(part.clone());
         close.marks.push(named);
         let Some(delay) = step.delay else { return };

@@ -4,7 +4,7 @@ use std::iter::once;
 
 use rerun::{Color, StateConfiguration};
 
-use super::beside::{Other, Shown};
+use super::beside::{Other, row};
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
 use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
@@ -18,6 +18,7 @@ use crate::report::decisions::DECISION;
 use crate::report::estimate::onset_sentence;
 use crate::report::facts::Place;
 use crate::report::{DelayRange, EstimatedJoint, JointSummary};
+use crate::study::StepResult;
 use crate::wording::{doubt_percent, number, rounded, verdict_in_short};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
@@ -167,16 +168,14 @@ fn typical_delay(estimated: EstimatedJoint<'_>) -> Option<String> {
 
 /// The table of all results, where there are several.
 fn methods(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>, others: &[Other<'_>]) -> String {
-    let (label, p) = (trial.trial.label(), segment.decision.input_step.sample);
-    let found = |other: &Other<'_>| {
-        Some(Shown::there(&other.pair(label, p)?.there).row(&plain(other.name)))
-    };
+    let here = StepResult::of(trial.trial, segment.decision);
+    let found =
+        |other: &Other<'_>| Some(row(&other.pair(&here.trial, here.p)?.there, &plain(other.name)));
     let others: Vec<String> = others.iter().filter_map(found).collect();
     if others.is_empty() {
         return String::new();
     }
-    let first = Shown::of(segment.decision)
-        .row(&format!("{}, here", trial.estimated.estimate.settings.method));
+    let first = row(&here, &format!("{}, here", trial.estimated.estimate.settings.method));
     let others = others.join("\n");
     format!("\n| result | δ, samples | verdict |\n|---|---|---|\n{first}\n{others}\n")
 }

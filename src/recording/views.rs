@@ -234,7 +234,6 @@ impl Tab<'_> {
         let lists = [
             Page::list(doubtful, self.at(paths::DOUBT_LOG), "doubt"),
             Page::list("All: click a number", self.at(paths::VERDICT_LOG), "decision"),
-            self.text("Doubts", paths::DOUBT),
         ];
         Page::tabs("Lists", lists)
     }

@@ -28,18 +28,36 @@ pub struct ComparedJoint<'a> {
     pub comparison: &'a Comparison,
 }
 
+/// A heading, and a line for each joint and model of which there is something to say.
+pub(crate) type Section = (String, Vec<String>);
+
 /// A table of errors, one row per joint and model, the parameters below it, and how the first model
 /// of each joint compares with its others.
 pub(crate) fn compare_text(joints: &[ComparedJoint<'_>]) -> String {
-    let differences = model_differences(joints);
-    let differences = differences.iter().flat_map(ComparedModels::lines);
-    compare_table(joints) + &section("one model against another", differences)
+    compare_table(joints) + &section_text(difference_section(joints))
 }
 
-/// Lines below an empty one and a heading; nothing where there are no lines.
-fn section(heading: &str, lines: impl Iterator<Item = String>) -> String {
-    let lines: Vec<_> = lines.collect();
+/// A section below an empty line; nothing where there are no lines.
+fn section_text((heading, lines): Section) -> String {
     if lines.is_empty() { String::new() } else { format!("\n{heading}:\n{}\n", lines.join("\n")) }
+}
+
+/// How the residuals of models are correlated, and where their errors arise.
+pub(crate) fn sections(joints: &[ComparedJoint<'_>]) -> [Section; 2] {
+    let arising = horizons_of(joints.iter().copied(), |comparison| comparison.arising);
+    let failures = joints.iter().flat_map(failure_sentences).collect();
+    let residuals = joints.iter().filter_map(residual_line).collect();
+    [
+        ("residual of the training part".to_owned(), residuals),
+        (format!("where the error arises ({arising})"), failures),
+    ]
+}
+
+/// How the first model of each joint compares with its others.
+pub(crate) fn difference_section(joints: &[ComparedJoint<'_>]) -> Section {
+    let differences = model_differences(joints);
+    let lines = differences.iter().flat_map(ComparedModels::lines).collect();
+    ("one model against another".to_owned(), lines)
 }
 
 /// A table of errors, one row per joint and model, and the parameters below it.
@@ -51,14 +69,9 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     let table = errors_table(["joint", "model"], joints.iter().map(row));
     let model = |of: &ComparedJoint<'_>| model_text(of.joint, of.comparison, Some(of.model));
     let models: Vec<_> = joints.iter().map(model).collect();
-    let arising = horizons_of(joints.iter().copied(), |comparison| comparison.arising);
-    let failures = joints.iter().flat_map(failure_sentences);
-    let failures = section(&format!("where the error arises ({arising})"), failures);
-    let residuals =
-        section("residual of the training part", joints.iter().filter_map(residual_line));
-    let models = models.join("\n");
-    let horizon = horizons(joints.iter().copied());
-    format!("{table}\n{}\n\n{models}\n{residuals}{failures}", errors_note(&horizon))
+    let sections = sections(joints).map(section_text).concat();
+    let (horizon, models) = (horizons(joints.iter().copied()), models.join("\n"));
+    format!("{table}\n{}\n\n{models}\n{sections}", errors_note(&horizon))
 }
 
 /// The errors of models of one joint: of one or two a column each, since beside a page of pictures there
@@ -84,16 +97,16 @@ pub(crate) fn model_table(models: &[ComparedJoint<'_>]) -> TextTable {
 
 /// The first model of a joint beside another one.
 #[derive(Debug)]
-pub(crate) struct ComparedModels<'a> {
-    pub(crate) joint: &'a Joint,
-    pub(crate) model: &'a str,
-    pub(crate) other: &'a str,
-    pub(crate) difference: ModelDifference,
+struct ComparedModels<'a> {
+    joint: &'a Joint,
+    model: &'a str,
+    other: &'a str,
+    difference: ModelDifference,
 }
 
 impl ComparedModels<'_> {
     /// Which of the two is better, how surely, and where.
-    pub(crate) fn sentences(&self) -> Vec<String> {
+    fn sentences(&self) -> Vec<String> {
         let Self { joint, model, other, difference: found } = self;
         let unit = joint.output_unit.as_deref();
         let part = if found.is_validation { "validation part" } else { "whole record" };
@@ -138,7 +151,7 @@ impl ComparedModels<'_> {
 }
 
 /// The first model of each joint beside each of its others.
-pub(crate) fn model_differences<'a>(joints: &[ComparedJoint<'a>]) -> Vec<ComparedModels<'a>> {
+fn model_differences<'a>(joints: &[ComparedJoint<'a>]) -> Vec<ComparedModels<'a>> {
     let mut found = Vec::new();
     for (index, other) in joints.iter().enumerate() {
         let of_joint = |it: &&ComparedJoint<'a>| it.joint.name == other.joint.name;

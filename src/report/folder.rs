@@ -123,30 +123,12 @@ impl FolderReport {
 
     /// A table of the joints across all logs.
     pub(crate) fn text(&self) -> String {
-        let across = self.across();
-        let table = if self.command == "improve" {
-            let header = [
-                "joint",
-                "logs",
-                "adequate",
-                "validation rmse min",
-                "median",
-                "max",
-                "effects (logs)",
-            ];
-            TextTable::of(header, &[1, 2, 3, 4, 5], across.iter().map(improved_cells))
-        } else {
-            let header = [
-                "joint",
-                "logs",
-                "steps",
-                "accepted",
-                "delay min",
-                "median",
-                "max",
-                "medians of the logs",
-            ];
-            TextTable::of(header, &[1, 2, 3, 4, 5, 6], across.iter().map(estimated_cells))
+        let columns = if self.command == "improve" { &IMPROVED_TEXT[..] } else { &ESTIMATED_TEXT };
+        let row = |joint: &Value| columns.iter().map(|(_, place)| cell(joint, place)).collect();
+        let table = TextTable {
+            header: columns.iter().map(|(heading, _)| (*heading).to_owned()).collect(),
+            rows: self.across().iter().map(row).collect(),
+            numbers: (1..columns.len() - 1).collect(),
         };
         format!("{table}\n{}, each by itself\n", counted(self.logs.len(), "log"))
     }
@@ -174,6 +156,30 @@ const IMPROVED: [SummaryColumn; 8] = [
     ("train_rmse", Kind::Real, "/error/train/rmse"),
     ("validation_rmse", Kind::Real, "/error/validation/rmse"),
     ("noise_floor", Kind::Real, "/error/noise_floor"),
+];
+
+/// Heading of a column for people, and where in the JSON of a joint across its logs its value stands.
+type TextColumn = (&'static str, &'static str);
+
+const ESTIMATED_TEXT: [TextColumn; 8] = [
+    ("joint", "/joint"),
+    ("logs", "/logs"),
+    ("steps", "/steps"),
+    ("accepted", "/accepted"),
+    ("delay min", "/delay_s/min"),
+    ("median", "/delay_s/median"),
+    ("max", "/delay_s/max"),
+    ("medians of the logs", "/median_delay_s_of_logs"),
+];
+
+const IMPROVED_TEXT: [TextColumn; 7] = [
+    ("joint", "/joint"),
+    ("logs", "/logs"),
+    ("adequate", "/adequate"),
+    ("validation rmse min", "/validation_rmse/min"),
+    ("median", "/validation_rmse/median"),
+    ("max", "/validation_rmse/max"),
+    ("effects (logs)", "/effects"),
 ];
 
 /// The runs of a log, one for each method.
@@ -219,52 +225,28 @@ fn across(name: &str, logs: &[&Value]) -> Value {
     })
 }
 
-/// What stands at a `place` of a joint, a number to the thousandth with its `unit`; nothing where there is
-/// none.
-fn cell(joint: &Value, place: &str, unit: &str) -> String {
+/// What stands at a `place` of a joint: a number to the thousandth, delays in seconds; the ends of a range;
+/// names with their counts. Nothing where there is none.
+fn cell(joint: &Value, place: &str) -> String {
+    let unit = if place.contains("delay") { " s" } else { "" };
+    let number = |value: &Value| value.as_f64().unwrap_or_default();
     match joint.pointer(place) {
         Some(Value::String(text)) => text.clone(),
-        Some(Value::Number(number)) if number.is_u64() => number.to_string(),
-        known => known
-            .and_then(Value::as_f64)
-            .map_or_else(String::new, |number| format!("{number:.3}{unit}")),
+        Some(count) if place == "/accepted" => {
+            let steps = joint.get("steps").map_or(1.0, number).max(1.0);
+            format!("{count} ({})", percent(number(count) / steps))
+        }
+        Some(Value::Number(count)) if count.is_u64() => count.to_string(),
+        Some(value @ Value::Number(_)) => format!("{:.3}{unit}", number(value)),
+        Some(Value::Object(fields)) => {
+            if let (Some(min), Some(max)) = (fields.get("min"), fields.get("max")) {
+                return format!("{:.3} … {:.3}{unit}", number(min), number(max));
+            }
+            let counts = fields.iter().map(|(name, count)| format!("{name} ({count})"));
+            counts.collect::<Vec<_>>().join(", ")
+        }
+        _ => String::new(),
     }
-}
-
-fn estimated_cells(joint: &Value) -> [String; 8] {
-    let at = |place: &str| cell(joint, place, " s");
-    let count = |place: &str| joint.get(place).and_then(Value::as_f64).unwrap_or_default();
-    let share = percent(count("accepted") / count("steps").max(1.0));
-    let of_logs = cell(joint, "/median_delay_s_of_logs/min", "");
-    let medians = match at("/median_delay_s_of_logs/max") {
-        none if none.is_empty() => none,
-        max => format!("{of_logs} … {max}"),
-    };
-    [
-        at("/joint"),
-        at("/logs"),
-        at("/steps"),
-        format!("{} ({share})", at("/accepted")),
-        at("/delay_s/min"),
-        at("/delay_s/median"),
-        at("/delay_s/max"),
-        medians,
-    ]
-}
-
-fn improved_cells(joint: &Value) -> [String; 7] {
-    let effects = joint.get("effects").and_then(Value::as_object).into_iter().flatten();
-    let effects: Vec<_> = effects.map(|(name, logs)| format!("{name} ({logs})")).collect();
-    let [joint, logs, adequate, min, median, max] = [
-        "/joint",
-        "/logs",
-        "/adequate",
-        "/validation_rmse/min",
-        "/validation_rmse/median",
-        "/validation_rmse/max",
-    ]
-    .map(|place| cell(joint, place, ""));
-    [joint, logs, adequate, min, median, max, effects.join(", ")]
 }
 
 /// The document of `--results … --format json` and `merge`; `failures` are messages on logs that

@@ -94,12 +94,12 @@ mod parquet_file {
     use std::io::{Error, Result, Write};
     use std::sync::Arc;
 
-    use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
-    use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+    use arrow_array::{ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
+    use parquet::arrow::ArrowWriter;
+    use parquet::arrow::arrow_writer::ArrowWriterOptions;
+    use parquet::basic::{Compression, ZstdLevel};
     use parquet::errors::ParquetError;
     use parquet::file::properties::WriterProperties;
-    use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
-    use parquet::schema::types::Type;
 
     use serde_json::Value;
 
@@ -115,68 +115,38 @@ mod parquet_file {
         }
 
         fn write(&self, out: impl Write + Send) -> std::result::Result<(), ParquetError> {
-            let fields = self.columns.iter().map(|(name, kind)| field(name, *kind).map(Arc::new));
-            let fields = fields.collect::<std::result::Result<_, _>>()?;
-            let schema = Type::group_type_builder("table").with_fields(fields).build()?;
+            let columns = self.columns.iter().enumerate().map(|(place, (name, kind))| {
+                let cells = self.rows.iter().filter_map(|row| row.get(place));
+                (name, kind.array(cells), *kind != Kind::Text)
+            });
+            let batch = RecordBatch::try_from_iter_with_nullable(columns)?;
             let properties = WriterProperties::builder()
                 .set_created_by(concat!("tauscope ", env!("CARGO_PKG_VERSION")).to_owned())
-                .set_compression(Compression::ZSTD(parquet::basic::ZstdLevel::default()));
-            let properties = Arc::new(properties.build());
-            let mut file = SerializedFileWriter::new(out, Arc::new(schema), properties)?;
-            let mut rows = file.next_row_group()?;
-            for (place, (_, kind)) in self.columns.iter().enumerate() {
-                if let Some(writer) = rows.next_column()? {
-                    let cells = self.rows.iter().filter_map(|row| row.get(place));
-                    write_column(writer, *kind, cells)?;
-                }
-            }
-            rows.close()?;
+                .set_compression(Compression::ZSTD(ZstdLevel::default()));
+            let options = ArrowWriterOptions::new()
+                .with_properties(properties.build())
+                .with_skip_arrow_metadata(true)
+                .with_schema_root("table".to_owned());
+            let mut file = ArrowWriter::try_new_with_options(out, batch.schema(), options)?;
+            file.write(&batch)?;
             file.close().map(drop)
         }
     }
 
-    fn field(name: &str, kind: Kind) -> std::result::Result<Type, ParquetError> {
-        let (physical, logical, repetition) = match kind {
-            Kind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String), Repetition::REQUIRED),
-            Kind::Whole => (Physical::INT64, None, Repetition::OPTIONAL),
-            Kind::Samples | Kind::Real | Kind::Plain => {
-                (Physical::DOUBLE, None, Repetition::OPTIONAL)
-            }
-        };
-        Type::primitive_type_builder(name, physical)
-            .with_logical_type(logical)
-            .with_repetition(repetition)
-            .build()
-    }
-
-    fn write_column<'a>(
-        mut writer: SerializedColumnWriter<'_>,
-        kind: Kind,
-        cells: impl Iterator<Item = &'a Value>,
-    ) -> std::result::Result<(), ParquetError> {
-        match kind {
-            Kind::Text => {
-                let texts: Vec<ByteArray> =
-                    cells.map(|cell| cell.as_str().unwrap_or_default().into()).collect();
-                writer.typed::<ByteArrayType>().write_batch(&texts, None, None)?;
-            }
-            Kind::Whole => optional::<Int64Type>(&mut writer, cells.map(Value::as_i64))?,
-            Kind::Samples | Kind::Real | Kind::Plain => {
-                optional::<DoubleType>(&mut writer, cells.map(Value::as_f64))?;
+    impl Kind {
+        /// Cells as a column: numbers where there are any.
+        fn array<'a>(self, cells: impl Iterator<Item = &'a Value>) -> ArrayRef {
+            match self {
+                Self::Text => {
+                    let texts = cells.map(|cell| cell.as_str().unwrap_or_default());
+                    Arc::new(StringArray::from_iter_values(texts))
+                }
+                Self::Whole => Arc::new(cells.map(Value::as_i64).collect::<Int64Array>()),
+                Self::Samples | Self::Real | Self::Plain => {
+                    Arc::new(cells.map(Value::as_f64).collect::<Float64Array>())
+                }
             }
         }
-        writer.close()
-    }
-
-    /// Writes the numbers that are there, and where they are.
-    fn optional<T: DataType<T: Copy>>(
-        writer: &mut SerializedColumnWriter<'_>,
-        numbers: impl Iterator<Item = Option<T::T>>,
-    ) -> std::result::Result<(), ParquetError> {
-        let numbers: Vec<Option<T::T>> = numbers.collect();
-        let present: Vec<T::T> = numbers.iter().copied().flatten().collect();
-        let levels: Vec<i16> = numbers.iter().map(|number| i16::from(number.is_some())).collect();
-        writer.typed::<T>().write_batch(&present, Some(&levels), None).map(drop)
     }
 }
 

@@ -31,7 +31,8 @@ pub struct StepResult {
 }
 
 impl StepResult {
-    fn of(trial: &Trial, decision: &Decision) -> Self {
+    /// What was decided on a step of `trial`.
+    pub(crate) fn of(trial: &Trial, decision: &Decision) -> Self {
         let best = decision.candidates.best();
         let delay = decision.delay();
         Self {

@@ -292,7 +292,7 @@ const PLACES: [(&str, &[&str]); 23] = [
     ("flate2", &["src/experiment/format"]),
     ("encoding_rs", &["src/experiment/format/text.rs"]),
     ("jiff", &["src/experiment/format/date.rs"]),
-    ("arrow_array", &["src/experiment/format/parquet.rs"]),
+    ("arrow_array", &["src/experiment/format/parquet.rs", "src/report/table.rs"]),
     ("arrow_cast", &["src/experiment/format/parquet.rs"]),
     ("arrow_schema", &["src/experiment/format/parquet.rs"]),
     ("calamine", &["src/experiment/format/xlsx.rs"]),

@@ -30,11 +30,6 @@ impl ProtocolArgs {
     pub(crate) fn with(&self, mode: Mode) -> Protocol {
         Protocol { mode, split: self.split, horizon: self.horizon.unwrap_or(Horizon::Auto) }
     }
-
-    /// How training and validation are divided, where that was said.
-    pub(crate) fn split(&self) -> Option<Split> {
-        self.split
-    }
 }
 
 /// What follows the effect in the command that adds it to the model of a joint, for each of

@@ -4,14 +4,9 @@
 //! What is drawn lies on the other timelines too, at their first moment, so that the page is
 //! never empty; there the last revision is seen.
 
-mod evidence;
-mod figure;
-mod holds;
 mod ladder;
-mod law;
 mod pages;
 mod record;
-mod residual;
 mod words;
 
 pub(super) use ladder::judged;

@@ -2,18 +2,18 @@
 
 use rerun::TextDocument;
 
-use super::figure::Held;
 use super::ladder::Ladders;
-use super::{evidence, record, words};
+use super::{record, words};
 use crate::diagnosis::Comparison;
 use crate::explain::{Change, Revision};
-use crate::figure::Role;
-use crate::recording::chunk::{Chunks, Index, Moment, lists};
+use crate::figure::curves::Curves;
+use crate::figure::{Panel, Role};
+use crate::recording::chunk::{Chunks, Index, Moment};
 use crate::recording::error::RecordError;
 use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
-use crate::recording::paths;
-use crate::recording::{error_share, panels};
+use crate::recording::panels::Placed;
+use crate::recording::{error_share, panels, paths, scatter};
 use crate::report::{ComparedJoint, ImprovedJoint};
 
 /// Rows of the joint that is recorded.
@@ -54,13 +54,11 @@ pub(in crate::recording) fn add(
     });
     let models: Vec<ComparedJoint<'_>> = models.collect();
     record::add(&mut steps.layers(paths::REVISION_RECORD), layout, &models)?;
-    let evidence = evidence::evidence(improved);
-    steps.evidence(&evidence)?;
     let ladders = Ladders::new(improved);
-    let rows = evidence.figures.iter().enumerate().map(|(at, figure)| {
-        let mut placed = ladders.placed(at);
-        placed.push(figure.placed(at, ladders.between()));
-        placed
+    let rows = models.iter().enumerate().map(|(at, compared)| {
+        let what_misses = what_misses(compared, Role::of_revision(at));
+        let placed = what_misses.map(|panel| Placed::new(panel, ladders.between(), 44.0..=420.0));
+        ladders.placed(at).into_iter().chain(placed).collect()
     });
     panels::add(&mut steps.layers(paths::REVISION_SHEET), rows)?;
     steps.shares(&models)
@@ -98,26 +96,6 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Speeds and laws, for programs.
-    fn evidence(&mut self, evidence: &evidence::Evidence) -> Result<(), RecordError> {
-        type Column = fn(&Held) -> f64;
-        let points = |value: Column| -> Vec<Vec<f64>> {
-            evidence.held.iter().map(|held| held.iter().map(value).collect()).collect()
-        };
-        let law = |place: fn(&(f64, f64)) -> f64| -> Vec<Vec<f64>> {
-            evidence.laws.iter().map(|law| law.iter().map(place).collect()).collect()
-        };
-        let columns = [
-            lists("input", &points(|held| held.level)),
-            lists("speed", &points(|held| held.speed)),
-            lists("speed_std_error", &points(|held| held.std_error)),
-            lists("simulated_speed", &points(|held| held.simulated.unwrap_or(f64::NAN))),
-            lists("law_input", &law(|point| point.0)),
-            lists("law_speed", &law(|point| point.1)),
-        ];
-        self.chunks.push("revision/evidence", self.numbers.clone(), columns)
-    }
-
     fn words(
         &mut self,
         layout: &JointLayout<'_>,
@@ -142,6 +120,16 @@ impl Steps<'_> {
             error_share::placed(compared.joint, &[model])
         });
         panels::add(&mut self.layers(paths::REVISION_SHARE), of_each)
+    }
+}
+
+/// The measured curve that the model is farthest from; where it leaves none, its residual against what
+/// it follows most.
+fn what_misses(compared: &ComparedJoint<'_>, model: Role) -> Option<Panel> {
+    let curves = Curves::all(&compared.comparison.curves).filter(|one| one.departure() > 0.0);
+    match curves.max_by(|a, b| a.departure().total_cmp(&b.departure())) {
+        Some(curves) => Some(curves.panel(compared.joint, model)),
+        None => scatter::clearest(compared, model),
     }
 }
 

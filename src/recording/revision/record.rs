@@ -7,12 +7,11 @@ use crate::recording::error::RecordError;
 use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
 use crate::recording::panels::{self, Placed};
-use crate::recording::shaded::{Spans, named, validation};
 use crate::report::ComparedJoint;
-use crate::report::page::simulated::{Marked, simulated_panels, worst_panel};
-use crate::report::page::timeline::Timeline;
+use crate::report::page::shaded::named;
+use crate::report::page::simulated::{simulated_panels, worst_panel};
 
-/// Width and height of the sheet, and of that with ladder, evidence and ranking beside it.
+/// Width and height of the sheet, and of that with ladder, what the model misses and ranking.
 pub(in crate::recording) const SIZE: (f32, f32) = (1860.0, 470.0);
 
 /// Top and bottom of the plots of the output: above them their titles.
@@ -27,8 +26,8 @@ pub(in crate::recording) fn add(
     let timeline = layout.timeline();
     let drawn = |(number, compared): (usize, &ComparedJoint<'_>)| {
         let role = Role::of_revision(number);
-        let [output, residual] =
-            simulated_panels(compared, role, &timeline, marked(compared, &timeline));
+        let fails = named(compared.joint, compared.comparison);
+        let [output, residual] = simulated_panels(compared, role, &timeline, fails);
         let close_up = worst_panel(compared, role, &timeline);
         let end = SIZE.0 - 15.0;
         let right = if close_up.is_some() { 1060.0 } else { end };
@@ -40,18 +39,4 @@ pub(in crate::recording) fn add(
         whole.into_iter().chain(close_up).collect()
     };
     panels::add(rows, models.iter().enumerate().map(drawn))
-}
-
-/// What was not fitted, and where the model fails.
-fn marked(compared: &ComparedJoint<'_>, timeline: &Timeline<'_>) -> Marked {
-    let ends = |spans: Spans| {
-        let ends = spans.into_iter().map(|(trial, span)| {
-            let at = |k: usize| timeline.at(trial, k as f64);
-            (at(span.start + 1), at(span.end))
-        });
-        ends.collect::<Vec<_>>()
-    };
-    let comparison = compared.comparison;
-    let fails = named(compared.joint, comparison).map(|(name, spans)| (name, ends(spans)));
-    Marked { unfitted: ends(validation(comparison)), fails }
 }

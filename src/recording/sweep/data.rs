@@ -1,17 +1,53 @@
 //! What a program reads: a row per setting, and a row per step.
 
+use serde_json::Value;
+
 use super::swept::Swept;
 use crate::delay::Settings;
-use crate::delay::sweep::{Agreement, RunSummary, Spread, SweptStep};
-use crate::recording::chunk::{Chunks, integers, lists, numbers, texts};
+use crate::delay::sweep::{RunSummary, SweptStep};
+use crate::recording::chunk::{Chunks, columns, lists};
 use crate::recording::error::RecordError;
-use crate::units::{Length, signed};
+use crate::report::Kind::{self, Real, Text, Whole};
+use crate::units::Length;
 
-/// Adds `/sweep/setting` and `/sweep/step` below `root`.
-pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
-    add_settings(chunks, swept)?;
-    add_steps(chunks, swept)
-}
+/// Settings, what they made of the record, and how many combinations they represent.
+type Run<'s> = (&'s Settings, Option<&'s RunSummary>, usize);
+
+type OfRun = fn(&Run<'_>) -> Value;
+type OfStep = fn(&&SweptStep) -> Value;
+
+/// A row per run.
+#[rustfmt::skip]
+const SETTING: &[(&str, Kind, OfRun)] = &[
+    ("method", Text, |(run, ..)| run.method.to_string().into()),
+    ("passband_hz", Real, |(run, ..)| run.low_pass.map(|low_pass| low_pass.cutoff_hz).into()),
+    ("alpha", Whole, |(run, ..)| samples(run.alpha_length()).into()),
+    ("beta", Whole, |(run, ..)| samples(run.beta_length()).filter(|_| !run.method.spec().has_intervals).into()),
+    ("combinations", Whole, |(.., combinations)| (*combinations).into()),
+    ("accepted", Whole, |(_, found, _)| found.map(|run| run.accepted).into()),
+    ("disagreements", Whole, |(_, found, _)| found.map(|run| run.disagreements).into()),
+    ("median_delay_s", Real, |(_, found, _)| found.and_then(|run| run.median_s).into()),
+    ("agrees", Real, |(_, found, _)| found.and_then(|run| run.agrees).into()),
+    ("lag_mean_s", Real, |(_, found, _)| found.and_then(|run| run.lag_s).into()),
+];
+
+/// A row per step.
+#[rustfmt::skip]
+const STEP: &[(&str, Kind, OfStep)] = &[
+    ("trial", Text, |step| step.trial.as_str().into()),
+    ("i", Whole, |step| step.number.into()),
+    ("p", Whole, |step| step.sample.into()),
+    ("tried", Whole, |step| step.tried.into()),
+    ("accepted", Whole, |step| step.accepted.into()),
+    ("agree", Whole, |step| (step.accepted - step.disagreeing()).into()),
+    ("agreed", Real, |step| step.agreement.map(|agreed| agreed.delay).into()),
+    ("agreed_low", Real, |step| step.agreement.map(|agreed| agreed.low).into()),
+    ("agreed_high", Real, |step| step.agreement.map(|agreed| agreed.high).into()),
+    ("min", Real, |step| step.spread.map(|all| all.min).into()),
+    ("max", Real, |step| step.spread.map(|all| all.max).into()),
+    ("delay_hangs_on", Text, |step| step.delay_depends_on.as_ref().map(|on| on.factor.to_string()).into()),
+    ("verdict_hangs_on", Text, |step| step.verdict_depends_on.map(|on| on.to_string()).into()),
+];
 
 /// A number of samples; none of what is in seconds.
 fn samples(length: Length) -> Option<usize> {
@@ -21,63 +57,21 @@ fn samples(length: Length) -> Option<usize> {
     }
 }
 
-fn has_rows(run: &Settings) -> bool {
-    !run.method.spec().has_intervals
-}
-
-fn add_settings(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
-    let runs = || swept.grid.runs().iter();
-    let whole = |of: fn(&Settings) -> Option<usize>| runs().map(move |run| of(run).map(signed));
-    let summaries = || swept.reported.sweep.runs.iter().map(Option::as_ref);
-    let count = |of: fn(&RunSummary) -> usize| summaries().map(move |run| Some(signed(of(run?))));
-    let number = |of: fn(&RunSummary) -> Option<f64>| summaries().map(move |run| of(run?));
-    let delays = |run: usize| {
-        let steps = swept.reported.sweep.steps.iter();
-        steps.map(|step| Swept::delay(step, run)).collect::<Vec<_>>()
-    };
-    let columns = [
-        texts("method", runs().map(|run| Some(run.method.to_string()))),
-        numbers("passband_hz", runs().map(|run| Some(run.low_pass?.cutoff_hz))),
-        integers("alpha", whole(|run| samples(run.alpha_length()))),
-        integers("beta", whole(|run| has_rows(run).then(|| samples(run.beta_length()))?)),
-        integers("combinations", swept.votes.iter().map(|votes| Some(signed(*votes)))),
-        integers("accepted", count(|run| run.accepted)),
-        integers("disagreements", count(|run| run.disagreements)),
-        numbers("median_delay_s", number(|run| run.median_s)),
-        numbers("agrees", number(|run| run.agrees)),
-        numbers("lag_mean_s", number(|run| run.lag_s)),
-        lists("delays", &(0..runs().len()).map(delays).collect::<Vec<_>>()),
-    ];
-    chunks.push("sweep/setting", swept.settings(), columns)
-}
-
-fn add_steps(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
-    let steps = || swept.steps.iter().map(|(step, _)| *step);
-    let whole = |of: fn(&SweptStep) -> usize| steps().map(move |step| Some(signed(of(step))));
-    let agreed = |of: fn(Agreement) -> f64| steps().map(move |step| step.agreement.map(of));
-    let spread = |of: fn(Spread) -> f64| steps().map(move |step| step.spread.map(of));
-    let on = |step: &SweptStep| step.delay_depends_on.as_ref().map(|on| on.factor.to_string());
-    let delays = |step: &SweptStep| {
+/// Adds `/sweep/setting` and `/sweep/step` below `root`.
+pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
+    let runs = swept.grid.runs().iter().zip(&swept.reported.sweep.runs).zip(&swept.votes);
+    let runs: Vec<Run<'_>> =
+        runs.map(|((run, found), votes)| (run, found.as_ref(), *votes)).collect();
+    let all = &swept.reported.sweep.steps;
+    let of_run = |run: usize| all.iter().map(|step| Swept::delay(step, run)).collect::<Vec<_>>();
+    let mut settings = columns(&runs, SETTING);
+    settings.push(lists("delays", &(0..runs.len()).map(of_run).collect::<Vec<_>>()));
+    chunks.push("sweep/setting", swept.settings(), settings)?;
+    let steps: Vec<&SweptStep> = swept.steps.iter().map(|(step, _)| *step).collect();
+    let of_step = |step: &&SweptStep| {
         (0..step.delays.len()).map(|run| Swept::delay(step, run)).collect::<Vec<_>>()
     };
-    let columns = [
-        texts("trial", steps().map(|step| Some(step.trial.clone()))),
-        integers("i", whole(|step| step.number)),
-        integers("p", whole(|step| step.sample)),
-        integers("tried", whole(|step| step.tried)),
-        integers("accepted", whole(|step| step.accepted)),
-        integers("agree", whole(|step| step.accepted - step.disagreeing())),
-        numbers("agreed", agreed(|agreed| agreed.delay)),
-        numbers("agreed_low", agreed(|agreed| agreed.low)),
-        numbers("agreed_high", agreed(|agreed| agreed.high)),
-        numbers("min", spread(|all| all.min)),
-        numbers("max", spread(|all| all.max)),
-        texts("delay_hangs_on", steps().map(on)),
-        texts(
-            "verdict_hangs_on",
-            steps().map(|step| step.verdict_depends_on.map(|on| on.to_string())),
-        ),
-        lists("delays", &steps().map(delays).collect::<Vec<_>>()),
-    ];
-    chunks.push("sweep/step", swept.index.clone(), columns)
+    let mut of_steps = columns(&steps, STEP);
+    of_steps.push(lists("delays", &steps.iter().map(of_step).collect::<Vec<_>>()));
+    chunks.push("sweep/step", swept.index.clone(), of_steps)
 }

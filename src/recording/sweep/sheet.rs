@@ -17,7 +17,7 @@ use crate::recording::layers::Layers;
 use crate::recording::palette::{self, Rgb, role};
 use crate::recording::panels::{self, Placed};
 use crate::recording::paths;
-use crate::report::sweep::text::settings_in_words;
+use crate::report::sweep::text::{settings_in_words, sweep_sentences};
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1130.0);
@@ -44,8 +44,14 @@ pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordEr
         layers.stays("map", &place)?;
     }
     panels::add(&mut layers, [placed.into()])?;
-    let answer = (Vec2D::new(SHEET.0 / 2.0, 4.0), headline(swept), palette::BORDER);
-    layers.texts("answer", vec![vec![answer]])?;
+    let name = &swept.reported.joint.name;
+    let answer = sweep_sentences(swept.grid, &swept.reported).into_iter().next();
+    // On what the others depend is said beside the drawing.
+    let answer = answer.iter().filter_map(|answer| answer.split(". ").next()).map(|answer| {
+        let answer = format!("{name}: {}", answer.trim_end_matches('.'));
+        (Vec2D::new(SHEET.0 / 2.0, 4.0), answer, palette::BORDER)
+    });
+    layers.texts("answer", vec![answer.collect()])?;
     page.add_setting(&mut Layers::rows(chunks, paths::SHEET, swept.settings()).in_front(), plots)?;
     let mut rows = Layers::rows(chunks, paths::SHEET, swept.index.clone()).in_front();
     page.add_step(&mut rows, plots)
@@ -318,23 +324,4 @@ fn delay_span(swept: &Swept<'_>) -> Span {
     let ends = [BEYOND, 1.0 - BEYOND].into_iter().filter_map(|part| quantile(&delays, part));
     let agreed = steps().filter_map(|step| Some(step.agreement?.delay * step.period_s));
     Span::around(ends.chain(agreed), 0.06)
-}
-
-/// The answer in a line.
-fn headline(swept: &Swept<'_>) -> String {
-    let name = &swept.reported.joint.name;
-    let judged = swept.reported.sweep.judged().count();
-    let settled = swept.reported.sweep.judged().filter(|step| step.is_unanimous()).count();
-    match (judged, judged - settled) {
-        (0, _) => format!("{name}: no step is accepted with any of the settings"),
-        (_, 0) => format!("{name}: all {judged} delays are the same whatever the settings"),
-        (_, 1) => {
-            format!(
-                "{name}: {settled} of {judged} delays are the same, 1 is sensitive to a setting"
-            )
-        }
-        (_, sensitive) => format!(
-            "{name}: {settled} of {judged} delays are the same, {sensitive} are sensitive to a setting"
-        ),
-    }
 }

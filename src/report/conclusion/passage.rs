@@ -3,6 +3,7 @@
 
 use crate::diagnosis::failure::WorstSegment;
 use crate::diagnosis::{Curve, CurveOf, ShownBy};
+use crate::figure::curves::farthest;
 use crate::report::Finding;
 use crate::report::finding::{in_proportion, times_as_large};
 use crate::wording::{
@@ -167,25 +168,4 @@ impl Finding<'_> {
             CurveOf::Time => gain(format!("{} s after the start", rounded(x))),
         })
     }
-}
-
-/// Where the model is farthest beyond the band of a curve: the place, what was measured, half the
-/// width of its band, and the model's value; none where it is within the band everywhere, or off by a
-/// part of the curve that nobody sees.
-fn farthest(curve: &Curve) -> Option<(f64, f64, f64, f64)> {
-    /// Part of the curve's largest value that is seen in a drawing.
-    const SEEN: f64 = 0.02;
-    /// Half widths of a 95 % band: of the few dozen points of all curves none is out by chance.
-    const BEYOND: f64 = 1.8;
-    let largest = curve.y.iter().fold(0.0_f64, |largest, y| largest.max(y.abs()));
-    let points = curve.x.iter().zip(&curve.y).zip(curve.high.iter().zip(&curve.model));
-    let off = points.map(|((x, y), (high, model))| (*x, *y, high - y, *model));
-    let times = |(_, y, band, model): &(f64, f64, f64, f64)| {
-        (model - y).abs() / band.max(f64::MIN_POSITIVE)
-    };
-    let seen = off.filter(|point| {
-        let (_, y, _, model) = *point;
-        times(point) > BEYOND && (model - y).abs() > SEEN * largest
-    });
-    seen.max_by(|a, b| (a.1 - a.3).abs().total_cmp(&(b.1 - b.3).abs()))
 }

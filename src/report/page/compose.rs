@@ -22,7 +22,9 @@ impl Report<'_> {
         let by = Some(by).filter(|by| !by.is_empty()).map(Block::text);
         let start = [Block::text(self.extent()), Block::Contents(self.contents())];
         let mut blocks: Vec<_> = by.into_iter().chain(start).collect();
-        blocks.extend(delays::overview(self.joints).map(|figure| Block::Figures(vec![figure])));
+        // Of models the delays are what they are made from.
+        let overview = delays::overview(self.joints).filter(|_| self.models.is_empty());
+        blocks.extend(overview.map(|figure| Block::Figures(vec![figure])));
         if !self.failures.is_empty() {
             blocks.push(Block::Lead("Left out".to_owned()));
             blocks.push(Block::List(self.failures.to_vec()));

@@ -8,6 +8,7 @@ use crate::delay::{
 };
 use crate::experiment::Trial;
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, delay_levels, thinned_places};
+use crate::numerics::quantile;
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;
 use crate::report::answer::dead_time_sentences;
@@ -193,22 +194,38 @@ pub(super) fn over_levels(
     Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
 }
 
+/// Number of the speed among the variables.
+const SPEED: usize = 0;
+
 /// The delay against the speed, and against what it goes with most besides.
 pub(super) fn against(joint: &str, found: &AgainstState, file: &str) -> Vec<Figure> {
-    /// Number of the speed among the variables.
-    const SPEED: usize = 0;
-    let strength = |index: &usize| {
-        let of_kinds = found.kinds.iter().filter_map(|kind| kind.correlations.get(*index));
-        of_kinds.filter_map(|one| one.p_value).fold(f64::INFINITY, f64::min)
-    };
-    let others = (0..found.correlations.len()).filter(|index| *index != SPEED);
-    let strongest = others.min_by(|a, b| strength(a).total_cmp(&strength(b)));
+    let strongest = by_strength(found).into_iter().find(|variable| *variable != SPEED);
     let shown = std::iter::once(SPEED).chain(strongest);
     shown.filter_map(|variable| scatter(joint, found, variable, file)).collect()
 }
 
-/// The delays against one variable, by kind of step; none where it is not known.
+/// All variables, that on which the delay of a kind of step depends most surely first.
+pub(crate) fn by_strength(found: &AgainstState) -> Vec<usize> {
+    let least_p = |index: &usize| {
+        let of_kinds = found.kinds.iter().filter_map(|kind| kind.correlations.get(*index));
+        of_kinds.filter_map(|one| one.p_value).fold(f64::INFINITY, f64::min)
+    };
+    let mut all: Vec<usize> = (0..found.correlations.len()).collect();
+    all.sort_by(|a, b| least_p(a).total_cmp(&least_p(b)));
+    all
+}
+
 fn scatter(joint: &str, found: &AgainstState, variable: usize, file: &str) -> Option<Figure> {
+    let panel = against_panel(found, variable)?;
+    let variable_name = &found.correlations.get(variable)?.variable;
+    let name = format!("Delay of {joint} against {}", panel.x.name);
+    let file = format!("{file}-against-{}", slug(variable_name));
+    let caption = caption(found, variable, variable_name);
+    Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
+}
+
+/// The delays against one variable, by kind of step; none where it is not known.
+pub(crate) fn against_panel(found: &AgainstState, variable: usize) -> Option<Panel> {
     let correlation = found.correlations.get(variable)?;
     let points = |kind: Transition| {
         let same = found.steps.iter().filter(|step| step.transition == kind);
@@ -227,16 +244,12 @@ fn scatter(joint: &str, found: &AgainstState, variable: usize, file: &str) -> Op
     let mark = |(kind, places): (Transition, Vec<Place>)| {
         Mark::dots(delay_levels::role(kind), places).named(kind.id())
     };
-    let panel = Panel {
-        x: Axis::new(x, quantity.clone(), 6.0),
+    Some(Panel {
+        x: Axis::new(x, quantity, 6.0),
         y: Axis::new(y, "delay [s]", 5.0),
         height: 190,
         marks: kinds.into_iter().map(mark).collect(),
-    };
-    let name = format!("Delay of {joint} against {quantity}");
-    let file = format!("{file}-against-{}", slug(&correlation.variable));
-    let caption = caption(found, variable, &correlation.variable);
-    Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
+    })
 }
 
 /// What is said of each kind of step.
@@ -261,27 +274,24 @@ fn caption(found: &AgainstState, variable: usize, name: &str) -> String {
 
 /// How the delays of each joint are spread; none of fewer than two joints.
 pub(super) fn overview(joints: &[EstimatedJoint<'_>]) -> Option<Figure> {
-    let rows: Vec<_> = joints.iter().filter_map(|joint| Spread::of(*joint)).collect();
-    if rows.len() < 2 {
+    let spread = |joint: &EstimatedJoint<'_>| Some((joint.joint.name.clone(), spread(*joint)?));
+    let (names, spreads): (Vec<String>, Vec<[f64; 5]>) = joints.iter().filter_map(spread).unzip();
+    if names.len() < 2 {
         return None;
     }
-    let names: Vec<String> = rows.iter().map(|row| row.name.clone()).collect();
-    let row = |index: usize| -(index as f64);
-    let line = |from: fn(&Spread) -> f64, to: fn(&Spread) -> f64| {
-        let ends =
-            |(index, one): (usize, &Spread)| vec![(from(one), row(index)), (to(one), row(index))];
-        rows.iter().enumerate().map(ends).collect::<Vec<_>>()
+    let rows = || (0_u32..).map(|row| -f64::from(row)).zip(&spreads);
+    let line = |from: usize, to: usize| {
+        rows().map(|(row, at)| vec![(at[from], row), (at[to], row)]).collect::<Vec<_>>()
     };
-    let medians = rows.iter().enumerate().map(|(index, one)| (one.median, row(index))).collect();
-    let x = Span::around(rows.iter().flat_map(|one| [one.low, one.high]).chain([0.0]), 0.03);
+    let x = Span::around(spreads.iter().flat_map(|at| [at[0], at[4]]).chain([0.0]), 0.03);
     let panel = Panel {
         x: Axis::new(x, "delay [s]", 8.0),
         y: Axis::of_names(&names, ""),
-        height: 22 * u32::try_from(rows.len()).unwrap_or(1) + 10,
+        height: 22 * u32::try_from(names.len()).unwrap_or(1) + 10,
         marks: vec![
-            Mark::lines(Role::Faint, 1.2, line(|s| s.low, |s| s.high)).named("least to greatest"),
-            Mark::lines(Role::Smoothed, 6.0, line(|s| s.lower, |s| s.upper)).named("middle half"),
-            Mark::dots(Role::Ink, medians).named("median"),
+            Mark::lines(Role::Faint, 1.2, line(0, 4)).named("least to greatest"),
+            Mark::lines(Role::Smoothed, 6.0, line(1, 3)).named("middle half"),
+            Mark::dots(Role::Ink, rows().map(|(row, at)| (at[2], row)).collect()).named("median"),
         ],
     };
     let [file, name, caption] =
@@ -289,27 +299,13 @@ pub(super) fn overview(joints: &[EstimatedJoint<'_>]) -> Option<Figure> {
     Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
 }
 
-/// How the accepted delays of a joint are spread, in seconds.
-struct Spread {
-    name: String,
-    low: f64,
-    lower: f64,
-    median: f64,
-    upper: f64,
-    high: f64,
-}
-
-impl Spread {
-    fn of(estimated: EstimatedJoint<'_>) -> Option<Self> {
-        let mut delays: Vec<f64> = doubted(estimated)
-            .filter_map(|found| found.delay_s(found.decision.accepted_delay()))
-            .collect();
-        delays.sort_by(f64::total_cmp);
-        let at = |share: f64| crate::numerics::quantile(&delays, share);
-        let name = estimated.joint.name.clone();
-        let (low, high) = (*delays.first()?, *delays.last()?);
-        Some(Self { name, low, lower: at(0.25)?, median: at(0.5)?, upper: at(0.75)?, high })
-    }
+/// The least, the quartiles and the greatest of the accepted delays of a joint, in seconds.
+fn spread(estimated: EstimatedJoint<'_>) -> Option<[f64; 5]> {
+    let delays = doubted(estimated).filter_map(|it| it.delay_s(it.decision.accepted_delay()));
+    let mut delays: Vec<f64> = delays.collect();
+    delays.sort_by(f64::total_cmp);
+    let at = |share: f64| quantile(&delays, share);
+    Some([*delays.first()?, at(0.25)?, at(0.5)?, at(0.75)?, *delays.last()?])
 }
 
 /// What is said and drawn of it; nothing for an input that is made of steps.

@@ -24,7 +24,7 @@ pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>, file: &
     let mut blocks = vec![Block::Figures(vec![record_figure(estimated, format!("{file}-record"))])];
     // Where there is a model, the delays are what it is made from.
     if let Some(improved) = report.model_of(estimated.joint) {
-        blocks.extend(model::blocks(report, improved, file));
+        blocks.extend(model::blocks(improved, file));
     }
     blocks.extend(dead_time_blocks(estimated, file));
     let segments = segment::figures(estimated, &format!("{file}-segment"));

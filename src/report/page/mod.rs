@@ -13,6 +13,7 @@ mod plot;
 mod render;
 pub(crate) mod report;
 mod segment;
+pub(crate) mod shaded;
 pub(crate) mod simulated;
 pub(crate) mod timeline;
 

@@ -1,16 +1,15 @@
 //! What is said and drawn of a joint's model: verdict, equations, parameters, errors, ranking.
 
 use super::document::{Block, Figure, HALF, WIDTH};
-use super::report::Report;
 use super::simulated;
-use crate::diagnosis::{Curve, CurveOf, sensor_noise};
+use crate::diagnosis::sensor_noise;
 use crate::effect::Stage;
-use crate::experiment::Joint;
 use crate::explain::Revision;
-use crate::figure::error_share::FeatureShares;
+use crate::figure::curves::Curves;
+use crate::figure::error_share::{by_feature, unevenness};
 use crate::figure::ladder::{Rung, panel};
-use crate::figure::{Axis, Mark, Panel, Role, Span};
-use crate::fit::{Split, Termination};
+use crate::figure::{Role, error_share};
+use crate::fit::Termination;
 use crate::model::Component;
 use crate::report::compare::errors_note;
 use crate::report::conclusion::Topic;
@@ -24,7 +23,7 @@ use crate::wording::{
 };
 
 /// All that is said of the model of a joint.
-pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
+pub(super) fn blocks(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     let compared = &improved.finding.compared;
     let conclusion = improved.conclusion();
     let mut blocks = vec![Block::part("Model")];
@@ -36,7 +35,7 @@ pub(super) fn blocks(report: &Report<'_>, improved: &ImprovedJoint<'_>, file: &s
     );
     blocks.extend(conclusion.commands.into_iter().map(Block::Code));
     blocks.extend(errors(improved, file));
-    blocks.extend(beside_the_measurement(report, improved, file));
+    blocks.extend(beside_the_measurement(improved, file));
     blocks.extend(failures(improved, file));
     blocks.push(Block::part("Equations and parameters"));
     blocks.push(Block::Code(equations(compared)));
@@ -119,14 +118,9 @@ fn errors(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
 }
 
 /// What the model simulates, and the residual.
-fn beside_the_measurement(
-    report: &Report<'_>,
-    improved: &ImprovedJoint<'_>,
-    file: &str,
-) -> Vec<Block> {
+fn beside_the_measurement(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     let compared = &improved.finding.compared;
-    let split = report.split.unwrap_or_else(|| Split::of(compared.joint));
-    let figure = simulated::figure(improved, split, format!("{file}-simulated"));
+    let figure = simulated::figure(improved, format!("{file}-simulated"));
     let mut blocks = vec![Block::part("Measured and simulated"), Block::Figures(vec![figure])];
     let earlier = simulated::earlier(improved, format!("{file}-earlier-residuals"));
     blocks.extend(earlier.map(|figure| Block::Figures(vec![figure])));
@@ -223,9 +217,9 @@ pub(super) fn ladder(improved: &ImprovedJoint<'_>, file: String) -> Figure {
 /// Shares of the squared error and of the time in each part of the feature whose parts
 /// differ most in them.
 pub(super) fn share(compared: &ComparedJoint<'_>, file: String) -> Option<Figure> {
-    let features = FeatureShares::all(&compared.comparison.regions);
-    let found = features.max_by(|a, b| a.unevenness().total_cmp(&b.unevenness()));
-    let (shares, feature) = found.and_then(|found| Some((found, found.feature()?)))?;
+    let features = by_feature(&compared.comparison.regions);
+    let parts = features.max_by(|a, b| unevenness(a).total_cmp(&unevenness(b)))?;
+    let feature = parts.first()?.feature;
     let joint = compared.joint;
     let by = feature_with_unit(feature, joint);
     let name = format!("Share of the error of {}", joint.name);
@@ -234,70 +228,22 @@ pub(super) fn share(compared: &ComparedJoint<'_>, file: String) -> Option<Figure
          mark (the share of time) is a range with more than its share of the error.",
         compared.comparison.arising
     );
-    let panel = shares.panel(joint, &[(Role::Error, compared.comparison)])?;
+    let panel = error_share::panel(joint, parts, &[(Role::Error, compared.comparison)])?;
     Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
 }
 
 /// A figure for the input, one for the angle and one for the time, as far as the record shows them.
 pub(super) fn curves(compared: &ComparedJoint<'_>, file: &str) -> Vec<Figure> {
-    let curves = &compared.comparison.curves;
-    let of = |wanted: &[CurveOf]| -> Vec<&Curve> {
-        curves.iter().filter(|curve| wanted.contains(&curve.of)).collect()
+    let joint = compared.joint;
+    let figure = |curves: Curves<'_>| {
+        let against = curves.against();
+        let caption = format!(
+            "Speed in the settled parts of the holds, {against}, after the delay; the influence of \
+             the quantities of the other curves is removed."
+        );
+        let (file, name) =
+            (format!("{file}-curve-{}", curves.of()), format!("Speed of {} {against}", joint.name));
+        Figure { file, name, width: HALF, panels: vec![curves.panel(joint, Role::Model)], caption }
     };
-    let branches = of(&[CurveOf::InputRising, CurveOf::InputFalling]);
-    let input = if branches.is_empty() { of(&[CurveOf::Input]) } else { branches };
-    let groups =
-        [(input, "input"), (of(&[CurveOf::Angle]), "angle"), (of(&[CurveOf::Time]), "time")];
-    let shown = groups.into_iter().filter(|(curves, _)| !curves.is_empty());
-    shown
-        .map(|(curves, name)| curve(compared.joint, &curves, format!("{file}-curve-{name}")))
-        .collect()
-}
-
-fn curve(joint: &Joint, curves: &[&Curve], file: String) -> Figure {
-    let places = |values: fn(&Curve) -> &Vec<f64>| {
-        let of = move |curve: &&Curve| {
-            let pairs = curve.x.iter().copied().zip(values(curve).iter().copied());
-            pairs.collect::<Vec<(f64, f64)>>()
-        };
-        curves.iter().map(of).collect::<Vec<_>>()
-    };
-    let bands = curves.iter().flat_map(|curve| {
-        let ends = curve.low.iter().zip(&curve.high);
-        curve.x.iter().zip(ends).map(|(x, (low, high))| vec![(*x, *low), (*x, *high)])
-    });
-    let all = curves.iter().flat_map(|curve| [&curve.low, &curve.high, &curve.model]).flatten();
-    let y = Span::around(all.copied(), 0.06);
-    let x = Span::around(curves.iter().flat_map(|curve| curve.x.iter().copied()), 0.04);
-    let (of_input, of_output) = (joint.input_unit.as_deref(), joint.output_unit.as_deref());
-    let speed = of_output.map(|unit| format!("{unit}/s"));
-    let is_of = |of: CurveOf| curves.iter().all(|curve| curve.of == of);
-    let (across, up, caption) = if is_of(CurveOf::Angle) {
-        (bracketed("output", of_output), "relative speed".to_owned(), "against the output")
-    } else if is_of(CurveOf::Time) {
-        ("time [s]".to_owned(), "relative speed".to_owned(), "against the time")
-    } else {
-        let caption = match curves.len() {
-            1 => "against the delayed input",
-            _ => "against the delayed input, its levels reached from below and from above",
-        };
-        (bracketed("delayed input", of_input), bracketed("speed", speed.as_deref()), caption)
-    };
-    let panel = Panel {
-        x: Axis::new(x, across, 6.0),
-        y: Axis::new(y, up, 5.0),
-        height: 200,
-        marks: vec![
-            Mark::lines(Role::Model, 1.6, places(|curve| &curve.model)).named("model"),
-            Mark::lines(Role::Measured, 1.0, bands.collect()),
-            Mark::dots(Role::Measured, places(|curve| &curve.y).concat())
-                .named("measured, with 95 % bands"),
-        ],
-    };
-    let name = format!("Speed of {} {caption}", joint.name);
-    let caption = format!(
-        "Speed in the settled parts of the holds, {caption}, after the delay; the influence of \
-         the quantities of the other curves is removed."
-    );
-    Figure { file, name, width: HALF, panels: vec![panel], caption }
+    Curves::all(&compared.comparison.curves).map(figure).collect()
 }

@@ -311,7 +311,7 @@ impl Mark {
                 area.draw(&Rectangle::new(block, filled(self.role, 0.3)))
             }
             Shape::Bars(_) => area.draw(&Rectangle::new(block, filled(self.role, 1.0))),
-            Shape::Words(_) | Shape::Named(_) | Shape::Area(_) | Shape::Flags(_) => Ok(()),
+            Shape::Words(_) | Shape::Named(_) | Shape::Flags(_) => Ok(()),
         }
     }
 
@@ -339,7 +339,7 @@ impl Mark {
                 })
             }
             // Only recordings have them.
-            Shape::Named(_) | Shape::Area(_) | Shape::Flags(_) => Ok(()),
+            Shape::Named(_) | Shape::Flags(_) => Ok(()),
             Shape::Crosses(places) => {
                 apart(places).into_iter().try_for_each(|place| area.draw(&cross(place, role)))
             }

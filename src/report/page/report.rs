@@ -2,7 +2,6 @@
 
 use crate::delay::Settings;
 use crate::experiment::{Experiment, Joint};
-use crate::fit::Split;
 use crate::report::difference::Against;
 use crate::report::{EstimatedJoint, ImprovedJoint};
 
@@ -23,8 +22,6 @@ pub(crate) struct Report<'a> {
     pub(crate) against: &'a [Against<'a>],
     /// The model file with what was found, as text.
     pub(crate) revised: Option<&'a str>,
-    /// How training and validation were split; as [`Split::of`] says without it.
-    pub(crate) split: Option<Split>,
     /// The command that makes this report.
     pub(crate) command: &'a str,
     /// The command that also reports models, where none were asked for.

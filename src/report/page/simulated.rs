@@ -1,51 +1,42 @@
 //! A model beside the measurement: what it simulates, the residual, and where that is largest.
 
 use super::document::{Figure, HALF, WIDTH};
+use super::shaded::{self, Spans, validation};
 use super::timeline::{Timeline, values_of};
 use crate::diagnosis::failure::WorstSegment;
 use crate::diagnosis::sensor_noise;
-use crate::experiment::{Joint, Trial};
+use crate::experiment::Trial;
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, thinned_places};
-use crate::fit::{FitRecord, Horizon, Part, Split, Window};
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::{bracketed, measure, percent, worst_segment_text};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
 
-/// Parts of the record that are marked, on its timeline: what was not fitted, and where the model
-/// fails, with the condition.
-#[derive(Default)]
-pub(crate) struct Marked {
-    pub(crate) unfitted: Vec<(f64, f64)>,
-    pub(crate) fails: Option<(String, Vec<(f64, f64)>)>,
-}
-
 /// Measured and simulated output over time, and the residual.
-pub(super) fn figure(improved: &ImprovedJoint<'_>, split: Split, file: String) -> Figure {
+pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Figure {
     let compared = &improved.finding.compared;
     let role = Role::of_revision(improved.revisions.len().saturating_sub(1));
     let timeline = Timeline::of(compared.joint);
-    let unfitted = unfitted(compared.joint, split, &timeline);
-    let panels = simulated_panels(compared, role, &timeline, Marked { unfitted, fails: None });
+    let panels = simulated_panels(compared, role, &timeline, None);
     let name = format!("Measured and simulated output of {}", compared.joint.name);
     let mut caption = "The measured output beside the simulated one, and the residual.".to_owned();
-    if !worst_parts(compared, &timeline).is_empty() {
+    if worst_mark(compared, &timeline).is_some() {
         caption += " Worst segments are those with the largest sums of squares, and the one with the \
                     largest residual.";
     }
     Figure { file, name, width: WIDTH, panels: panels.into(), caption }
 }
 
-/// The output above, the residual below.
+/// The output above, the residual below, which says where the model `fails` and under which condition.
 pub(crate) fn simulated_panels(
     compared: &ComparedJoint<'_>,
     role: Role,
     timeline: &Timeline<'_>,
-    marked: Marked,
+    fails: Option<(String, Spans)>,
 ) -> [Panel; 2] {
     let unit = compared.joint.output_unit.as_deref();
-    let unfitted = Mark::new(Role::Faint, Shape::Spans(marked.unfitted, 0.13));
+    let unfitted = timeline.shaded(Role::Faint, validation(compared.comparison), 0.13);
     let borders = timeline.borders();
     let output = Panel {
         x: timeline.axis().bare(),
@@ -60,13 +51,8 @@ pub(crate) fn simulated_panels(
         ],
     };
     let mut marks = vec![unfitted, borders];
-    marks.extend(marked.fails.map(|(condition, places)| {
-        Mark::new(Role::Rejected, Shape::Spans(places, 0.2)).named(condition)
-    }));
-    let worst = worst_parts(compared, timeline);
-    if !worst.is_empty() {
-        marks.push(Mark::new(Role::Attention, Shape::Spans(worst, 0.3)).named("worst segments"));
-    }
+    let fails = fails.map(|(when, spans)| timeline.shaded(Role::Rejected, spans, 0.2).named(when));
+    marks.extend(fails.into_iter().chain(worst_mark(compared, timeline)));
     marks.extend(noise(compared).map(|mark| mark.named("95 % of the noise")));
     let left = timeline.lines(|index, _| residual(compared, index));
     marks.push(Mark::lines(role, 1.0, left).named("residual"));
@@ -90,12 +76,7 @@ pub(super) fn earlier(improved: &ImprovedJoint<'_>, file: String) -> Option<Figu
         let axis = timeline.axis();
         let lines = timeline.lines(|index, _| residual(compared, index));
         let mut marks = vec![timeline.borders()];
-        let worst = worst_parts(compared, &timeline);
-        if !worst.is_empty() {
-            let worst = Mark::new(Role::Attention, Shape::Spans(worst, 0.3));
-            marks.push(worst.named("worst segments"));
-        }
-        marks.extend(noise(compared));
+        marks.extend(worst_mark(compared, &timeline).into_iter().chain(noise(compared)));
         marks.push(Mark::lines(Role::of_revision(place), 1.0, lines).named(name));
         marks.extend(noise_edges(compared, timeline.ends()));
         let y = Axis::new(residuals(compared), bracketed("residual", unit), 4.0);
@@ -216,22 +197,9 @@ fn noise_edges(compared: &ComparedJoint<'_>, (from, to): (f64, f64)) -> Option<M
     Some(Mark::lines(Role::Noise, 1.4, edges.to_vec()))
 }
 
-/// What parameters were not fitted to.
-fn unfitted(joint: &Joint, split: Split, timeline: &Timeline<'_>) -> Vec<(f64, f64)> {
-    let record = FitRecord::new(joint, split, Horizon::FreeRun);
-    let ends = |window: &Window| {
-        let at = |sample: usize| timeline.at(window.trial, sample as f64);
-        (at(window.start + 1), at(window.end))
-    };
-    record.part(Part::Validation).map(ends).collect()
-}
-
-fn worst_parts(compared: &ComparedJoint<'_>, timeline: &Timeline<'_>) -> Vec<(f64, f64)> {
-    let worst = compared.comparison.failure.iter().flat_map(|failure| &failure.worst_segments);
-    let trials = &compared.joint.trials;
-    let part = |worst: &WorstSegment| {
-        let trial = trials.iter().position(|trial| trial.label() == worst.trial)?;
-        Some((timeline.of_log(trial, worst.start_s), timeline.of_log(trial, worst.end_s)))
-    };
-    worst.filter_map(part).collect()
+/// Where the worst segments are, where there are any.
+fn worst_mark(compared: &ComparedJoint<'_>, timeline: &Timeline<'_>) -> Option<Mark> {
+    let worst = shaded::worst(compared.joint, compared.comparison);
+    let is_any = !worst.is_empty();
+    is_any.then(|| timeline.shaded(Role::Attention, worst, 0.3).named("worst segments"))
 }

@@ -1,5 +1,6 @@
 //! Trials on one time axis, and signals as lines along it.
 
+use super::shaded::Spans;
 use crate::experiment::{Joint, Trial};
 use crate::figure::{Axis, Mark, Place, Role, Shape, Span, thinned_to};
 
@@ -71,6 +72,14 @@ impl<'a> Timeline<'a> {
         let places = (1..self.trials.len()).map(|trial| self.at(trial, 1.0));
         let places = if self.trials.len() > MOST { Vec::new() } else { places.collect() };
         Mark::new(Role::Faint, Shape::Verticals(places, 0.5))
+    }
+
+    /// Parts of the record, as dense as that.
+    pub(super) fn shaded(&self, role: Role, spans: Spans, density: f64) -> Mark {
+        let ends = spans.into_iter().map(|(trial, span)| {
+            (self.at(trial, (span.start + 1) as f64), self.at(trial, span.end as f64))
+        });
+        Mark::new(role, Shape::Spans(ends.collect(), density))
     }
 
     /// A signal of each trial as lines, thinned to what can be seen.

@@ -18,16 +18,13 @@ use crate::wording::legible;
 const MOST: usize = 4000;
 
 /// The page on the decisions of `report`, the most doubtful ones first.
-///
-/// # Errors
-/// Never: what is on the page is numbers and texts.
-pub(crate) fn review_page(report: &Report<'_>) -> serde_json::Result<String> {
+pub(crate) fn review_page(report: &Report<'_>) -> String {
     let name = name_of(&report.experiment.sources);
     page(&name, report.joints)
 }
 
-fn page(name: &str, joints: &[EstimatedJoint<'_>]) -> serde_json::Result<String> {
-    let data = serde_json::to_string(&page_json(name, joints, MOST))?;
+fn page(name: &str, joints: &[EstimatedJoint<'_>]) -> String {
+    let data = page_json(name, joints, MOST).to_string();
     // Within a script nothing may look like its end.
     let data = data.replace('<', "\\u003c");
     let title = html(&format!("Review of {name}"));
@@ -40,7 +37,7 @@ fn page(name: &str, joints: &[EstimatedJoint<'_>]) -> serde_json::Result<String>
     ];
     let page = include_str!("page.html").to_owned();
     let page = parts.into_iter().fold(page, |page, (place, text)| page.replacen(place, text, 1));
-    Ok(legible(&page))
+    legible(&page)
 }
 
 /// The log, without its folder.

@@ -233,7 +233,6 @@ impl Reported<'_> {
             models,
             against: &against,
             revised: revised.as_ref().map(ModelFile::text),
-            split: args.model.protocol.split(),
             command: &command,
             with_models: with_models.as_deref(),
             recording,
@@ -318,7 +317,7 @@ fn write_files(report: &Report<'_>, target: &Target, verbosity: Verbosity) -> an
         let _bar = Bar::spinner(verbosity, "writing the report");
         target.write(&report.document())?;
         if let Some(path) = &target.review {
-            write_bytes(path, review_page(report)?)?;
+            write_bytes(path, review_page(report))?;
         }
     }
     verbosity.say("report", target.path.display().to_string());

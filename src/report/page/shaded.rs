@@ -1,21 +1,36 @@
-//! Parts of the record that are marked behind a residual: what the model was not fitted to, and
-//! where it fails.
+//! Parts of the record that are marked behind a residual: what the model was not fitted to, where it is
+//! worst, and where it fails.
 
 use std::ops::Range;
 
 use crate::diagnosis::Comparison;
-use crate::diagnosis::failure::FailsWhere;
+use crate::diagnosis::failure::{FailsWhere, WorstSegment};
 use crate::experiment::Joint;
 use crate::fit::Part;
+use crate::units::floor_to_index;
 use crate::wording::misfit_units;
 
 /// Samples of a trial, counted from 0, with the trial's index among those of its joint.
-pub(super) type Spans = Vec<(usize, Range<usize>)>;
+pub(crate) type Spans = Vec<(usize, Range<usize>)>;
 
 /// The part that was not fitted to.
-pub(super) fn validation(comparison: &Comparison) -> Spans {
+pub(crate) fn validation(comparison: &Comparison) -> Spans {
     let steps = comparison.per_step.iter().filter(|step| step.part == Part::Validation);
     joined(steps.map(|step| (step.trial, step.start..step.start + step.samples)))
+}
+
+/// The worst segments, in their order.
+pub(crate) fn worst(joint: &Joint, comparison: &Comparison) -> Spans {
+    let segments = comparison.failure.iter().flat_map(|failure| &failure.worst_segments);
+    let span = |worst: &WorstSegment| {
+        let mut trials = joint.trials.iter().enumerate();
+        let (index, trial) = trials.find(|(_, trial)| trial.label() == worst.trial)?;
+        let [first, last] = [worst.start_s, worst.end_s].map(|time_s| {
+            floor_to_index(((time_s - trial.time_s(1)) / trial.period().seconds()).round())
+        });
+        Some((index, first..last + 1))
+    };
+    segments.filter_map(span).collect()
 }
 
 /// The condition under which most of the error arises.
@@ -24,7 +39,7 @@ fn condition(comparison: &Comparison) -> Option<&FailsWhere> {
 }
 
 /// Its name, and where it holds.
-pub(super) fn named(joint: &Joint, comparison: &Comparison) -> Option<(String, Spans)> {
+pub(crate) fn named(joint: &Joint, comparison: &Comparison) -> Option<(String, Spans)> {
     let units = misfit_units(joint);
     let clauses = condition(comparison)?.clauses.iter().map(|clause| clause.with_unit(&units));
     let name = clauses.collect::<Vec<_>>().join(" and ");
