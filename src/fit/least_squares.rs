@@ -7,12 +7,11 @@ use super::descent::Limits;
 use super::problem::Problem;
 use super::record::FitRecord;
 use super::result::{AssessedModel, Assessment, Fit, FitError, Parameter, Status};
-use super::search::{Search, comparing, whole};
+use super::search::{Search, check_record, comparing, plain, whole};
 use super::space::Space;
 use super::survey::{Survey, survey};
 use super::turn;
-use super::window::Part;
-use crate::effect::{RecordRange, UNLIMITED};
+use crate::effect::RecordRange;
 use crate::experiment::{LARGEST, Trial};
 use crate::model::JointModel;
 
@@ -157,24 +156,6 @@ fn check_changes(record: &FitRecord<'_>) -> Result<(), FitError> {
         }
     }
     Ok(())
-}
-
-/// Whether there are samples enough, and a model of them has parameters within their bounds.
-pub(super) fn check_record(record: &FitRecord<'_>, space: &Space) -> Result<(), FitError> {
-    let mut outputs = record.joint().trials.iter().flat_map(Trial::output);
-    if outputs.any(|output| output.abs() > UNLIMITED) {
-        return Err(FitError::BeyondParameters);
-    }
-    let samples = record.training_samples();
-    let parameters = space.free.len();
-    if samples <= parameters + record.part(Part::Training).count() {
-        return Err(FitError::TooFewSamples { samples, parameters });
-    }
-    Ok(())
-}
-
-pub(super) fn plain(model: &JointModel) -> Vec<f64> {
-    model.values().iter().map(|value| value.value).collect()
 }
 
 impl Search<'_, '_> {

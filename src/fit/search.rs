@@ -7,8 +7,11 @@ use nalgebra::DMatrix;
 use super::descent::{Ended, Limits, descend};
 use super::problem::Problem;
 use super::record::FitRecord;
-use super::result::Termination;
+use super::result::{FitError, Termination};
 use super::space::Space;
+use super::window::Part;
+use crate::effect::UNLIMITED;
+use crate::experiment::Trial;
 use crate::model::JointModel;
 
 /// A descent from one start.
@@ -99,4 +102,23 @@ impl<'p, 'r> Search<'p, 'r> {
         let flat = levels.into_iter().filter(|index| slopes.column(*index).amax() <= 0.0);
         flat.chain(sloped).collect()
     }
+}
+
+/// Whether a record has samples enough for the free parameters, and outputs that these can reach.
+pub(super) fn check_record(record: &FitRecord<'_>, space: &Space) -> Result<(), FitError> {
+    let mut outputs = record.joint().trials.iter().flat_map(Trial::output);
+    if outputs.any(|output| output.abs() > UNLIMITED) {
+        return Err(FitError::BeyondParameters);
+    }
+    let samples = record.training_samples();
+    let parameters = space.free.len();
+    if samples <= parameters + record.part(Part::Training).count() {
+        return Err(FitError::TooFewSamples { samples, parameters });
+    }
+    Ok(())
+}
+
+/// The values of all parameters of a model.
+pub(super) fn plain(model: &JointModel) -> Vec<f64> {
+    model.values().iter().map(|value| value.value).collect()
 }

@@ -5,11 +5,10 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use super::beginning::Beginning;
-use super::least_squares::{check_record, plain};
 use super::problem::cost_of;
 use super::record::FitRecord;
 use super::result::{AssessedModel, Assessment, Fit, FitError, Parameter, Status, Termination};
-use super::search::{ROUGH, Search, comparing};
+use super::search::{ROUGH, Search, check_record, comparing, plain};
 use super::space::Space;
 use super::starts::starts;
 use super::turn;
