@@ -155,27 +155,30 @@ impl<'a> Study<'a> {
         text: impl FnOnce() -> String,
         json: impl FnOnce() -> J,
     ) -> anyhow::Result<Completion> {
-        // A report has said it with the delays.
+        // A report has named spikes with the delays.
         let has_said = self.session.command == "report" && !self.settings.paper;
-        let notes = notes_on_models(self.joints(), !has_said);
+        let spikes = self.joints().iter().filter(|_| !has_said).filter_map(note_on_spikes);
+        let inputs = self.joints().iter().filter_map(note_on_noisy_input);
+        let notes: Vec<String> = spikes.chain(inputs).collect();
         self.session.warn(failures, &notes);
         self.session.end(Completion::without(failures), text, json)
     }
 }
 
-/// What fits and errors of models leave out in the records of `joints`; spikes are named `with_spikes`
-/// alone.
-fn notes_on_models(joints: &[Joint], with_spikes: bool) -> Vec<String> {
-    let note = |joint: &Joint| {
-        let spikes = Some(joint).filter(|_| with_spikes).and_then(spikes_of);
-        let spikes = spikes.map(|spikes| format!("{spikes}: excluded from fits and errors"));
-        let noise = joint.trials.property::<Mended>().has_noisy_input.then(|| {
-            "the input has noise or glitches: models use the levels at which it is held".to_owned()
-        });
-        let said = spikes.into_iter().chain(noise);
-        said.map(|note| format!("joint `{}`: {note}", joint.name)).collect::<Vec<_>>()
-    };
-    joints.iter().flat_map(note).collect()
+/// The spikes that fits and errors of models leave out, where there are any.
+fn note_on_spikes(joint: &Joint) -> Option<String> {
+    let spikes = spikes_of(joint)?;
+    Some(format!("joint `{}`: {spikes}: excluded from fits and errors", joint.name))
+}
+
+/// That models do not take the input of `joint` as it was logged, where that is so.
+fn note_on_noisy_input(joint: &Joint) -> Option<String> {
+    joint.trials.property::<Mended>().has_noisy_input.then(|| {
+        format!(
+            "joint `{}`: the input has noise or glitches: models use the levels at which it is held",
+            joint.name
+        )
+    })
 }
 
 /// `revision 0` and so on, to the last number there is.
