@@ -80,7 +80,7 @@ fn the_step_under_the_cursor_is_marked_in_every_plot() {
     for joint in recorded.joints() {
         let page = |part: &str| format!("/{}/against/{part}", joint.joint.name);
         let steps = joint.against_state().steps;
-        let kinds = ["start", "stop", "change", "reversal"].map(|kind| page(kind));
+        let kinds = ["start", "stop", "change", "reversal"].map(&page);
         let drawn = kinds.iter().filter(|kind| back.chunks.contains_key(*kind));
         let drawn = drawn.map(|kind| back.points(kind)).collect::<Vec<_>>().concat();
         assert_eq!(drawn.len(), 5 * steps.len());
