@@ -128,7 +128,7 @@ mod tests {
         assert!(budget.take_values(usize::MAX, 8).is_err());
         let refused = budget.take(41).unwrap_err().to_string();
         assert!(
-            refused.contains("reading it would need 101 bytes of memory, and 100 bytes"),
+            refused.contains("reading it would need 101 bytes of memory, but 100 bytes"),
             "{refused}"
         );
         budget.take(40).unwrap();

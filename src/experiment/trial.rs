@@ -133,6 +133,13 @@ impl Trial {
         &self.unlogged
     }
 
+    /// The samples that were logged, in runs between those that were filled in.
+    pub(crate) fn logged(&self) -> impl Iterator<Item = Range<usize>> {
+        let starts = std::iter::once(0).chain(self.unlogged.iter().map(|gap| gap.end));
+        let ends = self.unlogged.iter().map(|gap| gap.start).chain([self.len()]);
+        starts.zip(ends).map(|(start, end)| start..end).filter(|run| !run.is_empty())
+    }
+
     /// This trial with samples, in order, at which the output was not measured, but is interpolated: its
     /// sensor is slower than the input is logged.
     #[must_use]

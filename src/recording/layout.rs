@@ -347,6 +347,17 @@ impl<'a> TrialLayout<'a> {
         comparison.fit.evaluation.residuals.get(self.index).map_or(&[], Vec::as_slice)
     }
 
+    /// Values at every sample; none at those that were filled in while nothing was logged.
+    pub(super) fn logged(&self, values: &[f64]) -> Vec<Option<f64>> {
+        let mut logged = vec![None; values.len()];
+        for k in self.trial.logged().flatten() {
+            if let (Some(logged), Some(value)) = (logged.get_mut(k), values.get(k)) {
+                *logged = Some(*value);
+            }
+        }
+        logged
+    }
+
     pub(super) fn sample(&self, k: usize) -> i64 {
         self.start.sample(k)
     }

@@ -33,10 +33,10 @@ pub(super) fn add(
     for (compared, rgb) in models.iter().zip(palette::models()) {
         let (name, comparison) = (compared.model, compared.comparison);
         let model = child(paths::MODEL, name);
-        let simulated = layout.series(|trial| known(trial.simulated(comparison)));
+        let simulated = layout.series(|trial| trial.logged(trial.simulated(comparison)));
         let style = line(format!("{name}: simulated"), rgb, 1.5);
         chunks.series(at(&model, paths::SIMULATED), &style, simulated)?;
-        let residual = layout.series(|trial| known(trial.residual(comparison)));
+        let residual = layout.series(|trial| trial.logged(trial.residual(comparison)));
         let style = line(format!("{name}: measured − simulated"), rgb, 1.5);
         chunks.series(at(&model, paths::RESIDUAL), &style, residual)?;
         figures(chunks, &model, comparison)?;

@@ -23,7 +23,7 @@ pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), R
             known(trial.trial.input())
         }),
         (paths::OUTPUT_RAW, format!("measured{output}"), (palette::RAW, 1.0), drawn, |trial| {
-            known(trial.trial.output())
+            trial.logged(trial.trial.output())
         }),
         (
             paths::OUTPUT_SMOOTHED,

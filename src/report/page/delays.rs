@@ -19,7 +19,11 @@ use crate::wording::{bracketed, capitalized, p_cell};
 pub(super) fn record_figure(estimated: EstimatedJoint<'_>, file: String) -> Figure {
     let joint = estimated.joint;
     let name = format!("Input and output of {} over time", joint.name);
-    let caption = "Input and output over time, with the breakpoint of each input step.".to_owned();
+    let mut caption =
+        "Input and output over time, with the breakpoint of each input step.".to_owned();
+    if joint.trials.iter().any(|trial| !trial.unlogged().is_empty()) {
+        caption += " Lines are interrupted where nothing was logged.";
+    }
     let panels = record_panels(estimated, &Timeline::of(joint)).into();
     Figure { file, name, width: WIDTH, panels, caption }
 }
@@ -28,7 +32,9 @@ pub(super) fn record_figure(estimated: EstimatedJoint<'_>, file: String) -> Figu
 pub(crate) fn record_panels(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> [Panel; 2] {
     let joint = estimated.joint;
     let (accepted, rejected) = breakpoints(estimated, timeline);
-    let span = |values: fn(&Trial) -> &[f64]| Span::around(values_of(joint, values), 0.06);
+    let span = |values: fn(&Trial) -> &[f64]| {
+        Span::around(values_of(joint, |_, trial| values(trial)), 0.06)
+    };
     let measured = Mark::lines(Role::Measured, 1.3, timeline.lines(|_, t| t.output()));
     let mut marks = vec![timeline.borders(), measured.named("output")];
     // An input that moves all the time has no breakpoints.

@@ -1,5 +1,7 @@
 //! A model beside the measurement: what it simulates, the residual, and where that is largest.
 
+use std::ops::Range;
+
 use super::document::{Figure, HALF, WIDTH};
 use super::shaded::{self, Spans, validation};
 use super::timeline::{Timeline, values_of};
@@ -131,15 +133,15 @@ pub(crate) fn worst_panel(
     let worst = compared.comparison.failure.as_ref()?.worst_segments.first()?;
     let mut trials = compared.joint.trials.iter().enumerate();
     let (index, trial) = trials.find(|(_, trial)| trial.label() == worst.trial)?;
-    let cut = |values: &[f64]| around(values, trial, worst);
-    let on_timeline = |places: Vec<Place>| -> Vec<Place> {
-        places.into_iter().map(|(x, y)| (timeline.of_log(index, x), y)).collect()
+    let cut = |values: &[f64]| -> Vec<Vec<Place>> {
+        let mut lines = around(values, trial, worst);
+        lines.iter_mut().flatten().for_each(|place| place.0 = timeline.of_log(index, place.0));
+        lines
     };
-    let [measured, simulated] =
-        [cut(trial.output()), cut(simulated(compared, index))].map(on_timeline);
+    let [measured, simulated] = [trial.output(), simulated(compared, index)].map(cut);
     let ends = [worst.start_s, worst.end_s].map(|end| timeline.of_log(index, end));
-    let x = Span::around(measured.iter().map(|place| place.0), 0.0);
-    let y = Span::around(measured.iter().chain(&simulated).map(|place| place.1), 0.08);
+    let x = Span::around(measured.iter().flatten().map(|place| place.0), 0.0);
+    let y = Span::around(measured.iter().chain(&simulated).flatten().map(|place| place.1), 0.08);
     let unit = compared.joint.output_unit.as_deref();
     Some(Panel {
         x: Axis::new(x, "time [s]", 6.0),
@@ -147,19 +149,22 @@ pub(crate) fn worst_panel(
         height: 190,
         marks: vec![
             Mark::new(Role::Attention, Shape::Spans(vec![ends.into()], 0.22)),
-            Mark::lines(Role::Measured, 3.0, vec![measured]).named("measured"),
-            Mark::lines(role, 1.4, vec![simulated]).named("simulated"),
+            Mark::lines(Role::Measured, 3.0, measured).named("measured"),
+            Mark::lines(role, 1.4, simulated).named("simulated"),
         ],
     })
 }
 
-/// The samples of a segment, with a part of it before and after.
-fn around(values: &[f64], trial: &Trial, worst: &WorstSegment) -> Vec<Place> {
+/// The logged samples of a segment, with a part of it before and after.
+fn around(values: &[f64], trial: &Trial, worst: &WorstSegment) -> Vec<Vec<Place>> {
     let room = 0.5 * (worst.end_s - worst.start_s).max(trial.period().seconds());
     let (from, to) = (worst.start_s - room, worst.end_s + room);
-    let places = values.iter().enumerate().map(|(k, y)| (trial.time_s(k + 1), *y));
-    let inside: Vec<Place> = places.filter(|place| (from..=to).contains(&place.0)).collect();
-    thinned_places(&inside, 900)
+    let line = |run: Range<usize>| {
+        let places = run.filter_map(|k| Some((trial.time_s(k + 1), *values.get(k)?)));
+        let inside: Vec<Place> = places.filter(|place| (from..=to).contains(&place.0)).collect();
+        thinned_places(&inside, 900)
+    };
+    trial.logged().map(line).filter(|line| !line.is_empty()).collect()
 }
 
 fn simulated<'a>(compared: &ComparedJoint<'a>, trial: usize) -> &'a [f64] {
@@ -173,13 +178,13 @@ fn residual<'a>(compared: &ComparedJoint<'a>, trial: usize) -> &'a [f64] {
 }
 
 fn outputs(compared: &ComparedJoint<'_>) -> Span {
-    let all = &compared.comparison.fit.evaluation.simulated;
-    let simulated = all.iter().flat_map(|simulated| simulated.output.iter().copied());
-    Span::around(values_of(compared.joint, Trial::output).chain(simulated), 0.06)
+    let measured = values_of(compared.joint, |_, trial| trial.output());
+    let simulated = values_of(compared.joint, |index, _| simulated(compared, index));
+    Span::around(measured.chain(simulated), 0.06)
 }
 
 fn residuals(compared: &ComparedJoint<'_>) -> Span {
-    let all = compared.comparison.fit.evaluation.residuals.iter().flatten().copied();
+    let all = values_of(compared.joint, |index, _| residual(compared, index));
     let band = sensor_noise(&compared.joint.trials).unwrap_or(0.0) * BAND;
     Span::around(all.chain([-band, band]), 0.06)
 }

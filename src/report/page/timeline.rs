@@ -82,19 +82,22 @@ impl<'a> Timeline<'a> {
         Mark::new(role, Shape::Spans(ends.collect(), density))
     }
 
-    /// A signal of each trial as lines, thinned to what can be seen.
+    /// A signal of each trial as lines, thinned to what can be seen; none where nothing was logged.
     pub(super) fn lines<'v>(
         &self,
         values: impl Fn(usize, &'a Trial) -> &'v [f64],
     ) -> Vec<Vec<Place>> {
         let all: usize = self.trials.iter().map(Trial::len).sum();
-        let line = |(index, trial): (usize, &'a Trial)| {
+        let runs = |(index, trial): (usize, &'a Trial)| {
             let values = values(index, trial);
+            trial.logged().map(move |run| (index, run.start, values.get(run).unwrap_or_default()))
+        };
+        let line = |(index, start, values): (usize, usize, &'v [f64])| {
             let kept = thinned_to(values, points(values.len(), all));
-            let place = |k: usize| Some((self.at(index, (k + 1) as f64), *values.get(k)?));
+            let place = |k: usize| Some((self.at(index, (start + k + 1) as f64), *values.get(k)?));
             kept.into_iter().filter_map(place).collect()
         };
-        self.trials.iter().enumerate().map(line).collect()
+        self.trials.iter().enumerate().flat_map(runs).map(line).collect()
     }
 
     /// A signal that is held between its changes, in steps.
@@ -106,12 +109,16 @@ impl<'a> Timeline<'a> {
     }
 }
 
-/// A signal's values in all trials.
-pub(super) fn values_of(
-    joint: &Joint,
-    values: fn(&Trial) -> &[f64],
-) -> impl Iterator<Item = f64> + '_ {
-    joint.trials.iter().flat_map(move |trial| values(trial).iter().copied())
+/// A signal's values in all trials, where they were logged.
+pub(super) fn values_of<'v>(
+    joint: &'v Joint,
+    values: impl Fn(usize, &'v Trial) -> &'v [f64],
+) -> impl Iterator<Item = f64> {
+    let logged = move |(index, trial): (usize, &'v Trial)| {
+        let values = values(index, trial);
+        trial.logged().flat_map(move |run| values.get(run).unwrap_or_default()).copied()
+    };
+    joint.trials.iter().enumerate().flat_map(logged)
 }
 
 /// Time of the end of the last sample.
