@@ -2,14 +2,15 @@
 //! beside what the model makes of the same.
 //!
 //! After the delay of the model the input is held; of each hold the settled part is cut into pieces,
-//! each with the slope `v` of the measured output. They are described by a product of free curves,
+//! each with the slope `v` of the measured output, but where that was filled in. They are described by a product of free curves,
 //!
 //! ```text
 //! v = a(level) · b(angle) · c(time)
 //! ```
 //!
-//! each a value per level of the input, or per interval of the angle or of time, with `b` and `c` one
-//! on average. With the other two held each is a linear least-squares problem without local minima;
+//! each a value per level of the input, or per interval of the angle or of time, with `b` and `c` one on
+//! average, values weighted as the record determines them: where the joint hardly moved, its factor is
+//! anything. With the other two held each is a linear least-squares problem without local minima;
 //! they take turns. How many intervals an angle or a time has is cross-validated: every third block
 //! of pieces is left out, and the number is taken that predicts it best. Bands are 95 % of the standard
 //! error, with the residual's own variance. Where the levels reached from below and from above differ
@@ -164,6 +165,9 @@ fn of_hold(
     let parts = (samples / length).max(usize::from(samples >= SHORTEST));
     let part = |part: usize| {
         let (start, end) = (from + samples * part / parts, from + samples * (part + 1) / parts);
+        if trial.unlogged().iter().any(|gap| gap.start < end && start < gap.end) {
+            return None;
+        }
         let output = trial.output().get(start..end)?;
         let velocity = simulated.velocity.get(start..end)?;
         Some(Piece {
@@ -177,6 +181,13 @@ fn of_hold(
     };
     let finite = |piece: &Piece| piece.speed.is_finite() && piece.simulated.is_finite();
     (0..parts).filter_map(part).filter(finite).collect()
+}
+
+/// The mean of `values` with these `weights`; one where nothing has a weight.
+fn weighted_mean(values: &[f64], weights: &[f64]) -> f64 {
+    let sum: f64 = values.iter().zip(weights).map(|(value, weight)| value * weight).sum();
+    let mean = sum / weights.iter().sum::<f64>();
+    if mean.is_normal() { mean } else { 1.0 }
 }
 
 /// The levels of pieces, ascending.
@@ -218,7 +229,7 @@ impl Product {
                 };
                 curves[index] = with.iter().zip(&square).map(one).collect();
                 if index > 0 {
-                    let average = mean(&curves[index]);
+                    let average = weighted_mean(&curves[index], &square);
                     curves[index].iter_mut().for_each(|value| *value /= average);
                 }
                 weights[index] = square;
@@ -419,6 +430,15 @@ mod tests {
             assert!((model - 8.0 * x).abs() < 1e-6, "{x}: {model}");
         }
         assert!(curve(&found, CurveOf::InputRising).is_none(), "no hysteresis");
+    }
+
+    #[test]
+    fn a_factor_that_nothing_determines_changes_no_other() {
+        // Only the second level, at which the joint hardly moves, is tried in the second interval.
+        let values = [10.0, 10.0, 1e-3, 5e-2];
+        let all = [0; 4];
+        let found = Product::of(&values, [&[0, 0, 1, 1], &[0, 0, 0, 1], &all]);
+        assert!((found.values[0][0] - 10.0).abs() < 0.1, "{:?}", found.values);
     }
 
     #[test]

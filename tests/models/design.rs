@@ -463,7 +463,7 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
         ("--output-range=-1,1", "give --model or a log"),
         ("--dead-band avoid", "no model has it"),
         ("--model plain.toml --dead-band avoid", "the model has none"),
-        ("--levels=-1,1 --dead-band=-2,2", "fewer than two are left"),
+        ("--levels=-1,1 --dead-band=-2,2", "fewer than two levels are left"),
         ("--hold 5,6 --duration 3", "too short for a rest and a hold of 5 s"),
         ("--model boom.toml --joint bucket", "not in the model file, which has boom"),
         ("--separate dead_band --model boom.toml", "expected two effects"),
