@@ -9,7 +9,6 @@ use super::layout::JointLayout;
 use super::markdown::plain;
 use super::palette;
 use super::paths::{self, at, child};
-use super::signals::known;
 use super::{correlogram, error_share, model_lanes, revision, scatter};
 use crate::diagnosis::failure::Region;
 use crate::diagnosis::{Comparison, sensor_noise};

@@ -54,6 +54,6 @@ pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), R
 }
 
 /// Values at every sample.
-pub(super) fn known(values: &[f64]) -> Vec<Option<f64>> {
+fn known(values: &[f64]) -> Vec<Option<f64>> {
     values.iter().copied().map(Some).collect()
 }

@@ -229,7 +229,7 @@ mod recorded {
             assert!((summed - sum).abs() <= 1e-9 * sum.abs().max(1.0));
         }
         let page = page(&back, "/boom/model_page");
-        assert!(page.contains("**right against wrong**"), "{page}");
+        assert!(page.contains("right is better by more than chance"), "{page}");
         let part = back.texts("/boom/part", "StateChange:state");
         assert!(part.iter().any(|(_, name)| name == "not fitted"), "{part:?}");
     }
