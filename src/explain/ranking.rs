@@ -160,11 +160,11 @@ impl<'a, 'r> Search<'a, 'r> {
         }
         let mut extensions = Vec::new();
         for some in surveys.chunks(FITTED_AT_ONCE) {
-            let fits = fitted(self.record, some, self.range, workers).into_iter();
-            extensions.extend(fits.map(|(id, fit)| Extension { effects: vec![id], fit }));
             if !are_asked_for && self.has_one_to_add(&extensions) {
                 break;
             }
+            let fits = fitted(self.record, some, self.range, workers).into_iter();
+            extensions.extend(fits.map(|(id, fit)| Extension { effects: vec![id], fit }));
         }
         extensions
     }

@@ -124,11 +124,12 @@ pub fn end_survey(
     begun: &RoughSurvey,
     range: &RecordRange<'_>,
 ) -> Option<Survey> {
+    let (best, _) = begun.places.first()?;
+    let coarse = record.for_training().coarser_for(&best.model);
+    let samples = coarse.training_samples();
     let ends = begun.places.iter().map(|(place, slopes)| {
         let model = &place.model;
         let space = Space::of(model, range);
-        let coarse = record.for_training().coarser_for(model);
-        let samples = coarse.training_samples();
         let _turn = turn::wait_for(samples * space.free.len());
         let search = Search::new(&coarse, model, &space, plain(model)).knowing(slopes.clone());
         let search = search.descended(comparing(samples));
