@@ -27,6 +27,8 @@ pub enum Dimension {
     PerOutput,
     /// 1 / output unit².
     PerOutputSquared,
+    /// 1 / output unit³.
+    PerOutputCubed,
     /// Units of the measured signal on which the effect depends.
     Signal,
     /// 1 / unit of that signal.
@@ -35,7 +37,7 @@ pub enum Dimension {
 
 impl Dimension {
     /// All dimensions of parameters that a user's own effect may have.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::One,
         Self::Seconds,
         Self::PerSecond,
@@ -46,6 +48,7 @@ impl Dimension {
         Self::OutputPerSecond,
         Self::PerOutput,
         Self::PerOutputSquared,
+        Self::PerOutputCubed,
     ];
 
     /// Its name in files.
@@ -61,6 +64,7 @@ impl Dimension {
             Self::OutputPerSecond => "output_per_second",
             Self::PerOutput => "per_output",
             Self::PerOutputSquared => "per_output_squared",
+            Self::PerOutputCubed => "per_output_cubed",
             Self::Signal => "signal",
             Self::PerSignal => "per_signal",
         }
@@ -84,6 +88,7 @@ impl Dimension {
             Self::OutputPerSecond => format!("{output}/s"),
             Self::PerOutput => format!("1/{output}"),
             Self::PerOutputSquared => format!("1/{output}^2"),
+            Self::PerOutputCubed => format!("1/{output}^3"),
             Self::Signal | Self::PerSignal => self.of_signal(None),
         }
     }

@@ -33,12 +33,17 @@ static SPEC: Spec = Spec::new(
         .typical(0.1),
     Parameter::new("period", "angle from one crest to the next", Dimension::Output)
         .between(1e-9, super::UNLIMITED)
+        .plausible(0.0, LONGEST)
         .neutral(1.0),
     Parameter::new("phase", "phase at the angle 0, rad", Dimension::One).between(-TAU, TAU),
 ])
 .confused_with(&["position_gain", "gravity_load"])
 .equations(Equations::new(&["ripple = amplitude * sin(2 * pi * position / period + phase)
              out = signal * max(1 + ripple, 0.05)"]));
+
+/// The longest period that is plausible, in parts of the span of the output: one that the record shows
+/// twice. What does not repeat is a linkage.
+const LONGEST: f64 = 0.5;
 
 /// Smallest factor that is left of the gain.
 const SMALLEST_FACTOR: f64 = 0.05;
@@ -54,10 +59,11 @@ impl Effect for PositionRipple {
         at.signal * (1.0 + ripple).max(SMALLEST_FACTOR)
     }
 
-    /// Periods that the record shows twice or more: what does not repeat is a linkage.
+    /// Periods that the record shows once or more: beyond those that are plausible, so that a descent which
+    /// wants a longer one is seen to.
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
         let span = record.output_span();
-        vec![(0.0, 0.95), (1e-3 * span, 0.5 * span), (-TAU, TAU)]
+        vec![(0.0, 0.95), (1e-3 * span, span), (-TAU, TAU)]
     }
 
     /// At the period at which the record ripples most.

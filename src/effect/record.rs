@@ -117,6 +117,7 @@ impl RecordRange<'_> {
             Dimension::OutputPerSecond => positive(self.speed_abs_max),
             Dimension::PerOutput => 1.0 / self.output_span(),
             Dimension::PerOutputSquared => self.output_span().powi(-2),
+            Dimension::PerOutputCubed => self.output_span().powi(-3),
         }
     }
 
@@ -136,7 +137,8 @@ impl RecordRange<'_> {
             Dimension::PerInput
             | Dimension::SecondsPerInput
             | Dimension::PerOutput
-            | Dimension::PerOutputSquared => (-REACH * size, REACH * size),
+            | Dimension::PerOutputSquared
+            | Dimension::PerOutputCubed => (-REACH * size, REACH * size),
         }
     }
 

@@ -36,3 +36,10 @@ pub struct Attribution {
     /// Effects that are significant, and that have no practical consequence.
     pub refinements: Vec<&'static str>,
 }
+
+impl Attribution {
+    /// Whether effects lower the error, and each of them is doubtful.
+    pub(super) fn is_doubtful_throughout(&self) -> bool {
+        self.found.is_empty() && !self.doubtful.is_empty()
+    }
+}

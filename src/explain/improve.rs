@@ -5,6 +5,7 @@ use super::contribution::Attribution;
 use super::decide::in_order;
 use super::exchange::{Exchange, is_free_form};
 use super::extension::ids;
+use super::judgement::Refusal;
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
@@ -85,13 +86,22 @@ pub fn improve(
     {
         turn_to(&mut ended, other);
     }
-    let verdict = ended.verdict;
+    let mut verdict = ended.verdict;
     let attribution = if ended.was_stopped {
         Attribution::default()
     } else {
         let grown = Grown { record, first: &start, whole: &ended.fit, misfit, options };
         attributed(&grown, ended.refinements, workers, visit)
     };
+    // As many effects as may be added were, and each of them may only imitate one from outside the catalogue.
+    if verdict == Verdict::MissingEffect && attribution.is_doubtful_throughout() {
+        verdict = Verdict::Unexplained;
+        let last = revisions.iter_mut().rfind(|revision| !revision.ranking.is_empty());
+        let next = last.into_iter().flat_map(|revision| &mut revision.ranking);
+        next.filter(|one| one.judgement.is_added()).for_each(|one| {
+            one.judgement.refusal = Some(Refusal::NotTheWhole);
+        });
+    }
     Improvement { revisions, verdict, attribution }
 }
 

@@ -10,8 +10,8 @@ use crate::fit::{Fit, FitRecord, Part};
 /// of another form than the catalogue's, 1 of 312 effects that act took less, and 5 of 33 that do not.
 const CONSEQUENCE: f64 = 0.03;
 
-/// The share from which it has one where the error without it is far from the noise: there something is
-/// missing for sure.
+/// The share from which it has one where the error without it is far from the noise, or where it takes nearly
+/// all that is left: there something is missing for sure.
 const FAR_FROM_NOISE: f64 = 0.01;
 
 /// The part of the misfit below which what a model leaves is explained.
@@ -116,14 +116,23 @@ impl Misfit {
     }
 
     /// Whether an effect has a practical consequence with which the error falls from that of
-    /// `worse` to that of `better`: where it takes a part of the misfit, or where the error without it is
-    /// beyond a few times the noise and it takes a part of what is left, however small a part of the
-    /// misfit that is.
+    /// `worse` to that of `better`: where it takes a part of the misfit, a smaller one where what is left
+    /// without it is as large as the noise and it takes most of that; or where the error without it is beyond
+    /// a few times the noise and it takes a part of what is left, however small a part of the misfit that is.
     pub(super) fn has_consequence(self, worse: &Errors, better: &Errors) -> bool {
         /// The part of the squared error beyond the noise. Chosen: an eighth of the error.
         const OF_WHAT_IS_LEFT: f64 = 0.25;
-        self.share(worse, better) >= self.least_share(worse)
+        /// The part of it that is most of it: half of the error is left at most.
+        const MOST: f64 = 0.75;
+        let takes_most = self.is_beside_noise(worse) && self.takes(MOST, worse, better);
+        let least = if takes_most { FAR_FROM_NOISE } else { self.least_share(worse) };
+        self.share(worse, better) >= least
             || self.is_far_from_noise(worse) && self.takes(OF_WHAT_IS_LEFT, worse, better)
+    }
+
+    /// Whether what a model leaves beside the noise is at least as large as that.
+    fn is_beside_noise(self, errors: &Errors) -> bool {
+        errors.judged().powi(2) > 2.0 * self.noise.powi(2)
     }
 
     /// The share of the misfit from which an effect has a practical consequence, where the error without
@@ -244,5 +253,8 @@ mod tests {
         assert!(misfit.has_consequence(&of(0.08), &of(0.04)), "most of what is left");
         assert!(!misfit.has_consequence(&of(0.08), &of(0.075)), "little of what is left");
         assert!(!misfit.has_consequence(&of(0.025), &of(0.012)), "what is left is near the noise");
+        let larger = Misfit { first: 0.5, ..misfit };
+        assert!(larger.has_consequence(&of(0.025), &of(0.012)), "nearly all of what is left");
+        assert!(!larger.has_consequence(&of(0.025), &of(0.017)), "less than most of it");
     }
 }

@@ -76,15 +76,6 @@ impl Bounds {
         (value - self.low).min(self.high - value)
     }
 
-    /// Two values on either side of `value` for a difference, within the bounds.
-    pub(super) fn around(self, value: f64) -> (f64, f64) {
-        /// Large against rounding, small against what curves.
-        const PART: f64 = 1e-5;
-        let size = if self.is_bounded() { self.high - self.low } else { value.abs().max(1e-3) };
-        let step = PART * size.min(value.abs().max(0.01 * size));
-        ((value - step).max(self.low), (value + step).min(self.high))
-    }
-
     /// Whether an error of this size leaves the value anywhere within the bounds.
     pub(super) fn is_lost_in(self, std_error: f64) -> bool {
         self.is_bounded() && std_error > 0.5 * (self.high - self.low)

@@ -17,11 +17,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::evaluation::Evaluation;
-use super::record::FitRecord;
 use super::result::Status;
 use super::space::Space;
-use crate::model::JointModel;
 use crate::numerics::{PseudoInverse, column_products, rank};
 
 /// The covariance of fitted parameters.
@@ -33,37 +30,17 @@ pub(super) struct Covariance {
 }
 
 impl Covariance {
-    /// The covariance at `model`, evaluated as `here`, of its parameters that are free in `space`.
+    /// The covariance at `values`, all of a model's, of those that are free in `space`: from the slopes of
+    /// the residuals to these and the residuals there.
     pub(super) fn of(
-        record: &FitRecord<'_>,
-        model: &JointModel,
-        here: &Evaluation,
+        slopes: DMatrix<f64>,
+        residuals: &DVector<f64>,
         space: &Space,
+        values: &[f64],
     ) -> Self {
         let (free, bounds) = (&space.free, &space.bounds);
-        let residuals = record.training(&here.residuals);
-        let values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
-        let mut jacobian = DMatrix::zeros(residuals.len(), free.len());
-        for ((index, bounds), mut column) in free.iter().zip(bounds).zip(jacobian.column_iter_mut())
-        {
-            let (low, high) = bounds.around(values[*index]);
-            if high <= low {
-                continue;
-            }
-            let at = |there: f64| {
-                let mut values = values.clone();
-                values[*index] = there;
-                model.with_values(&values)
-            };
-            if let [low_residuals, high_residuals] =
-                record.training_near(&[at(low), at(high)], here).as_slice()
-            {
-                low_residuals.sub_to(high_residuals, &mut column);
-                column /= high - low;
-            }
-        }
         let noise = residuals.norm() / (residuals.len() as f64).sqrt();
-        let mut sums = Sums::of(jacobian, &residuals);
+        let mut sums = Sums::of(slopes, residuals);
         for (place, index) in free.iter().enumerate() {
             if let Some(width) = space.width_between_jumps(place, values[*index]) {
                 sums.observe(place, noise, width / 12.0_f64.sqrt());

@@ -161,15 +161,17 @@ fn check_changes(record: &FitRecord<'_>) -> Result<(), FitError> {
 impl Search<'_, '_> {
     /// The fit to the training windows that was searched, on all of `whole`.
     fn into_fit(self, whole: &FitRecord<'_>) -> Fit {
-        Fit { assessment: self.assessment(whole), cost: self.cost, termination: self.termination }
+        let (cost, termination) = (self.cost, self.termination);
+        Fit { assessment: self.assessment(whole), cost, termination }
     }
 
     /// The model as it is now, on all of `whole`.
-    fn assessment(&self, whole: &FitRecord<'_>) -> Assessment {
-        let Problem { record, space, .. } = &self.problem;
-        let model = self.problem.model_now();
-        let evaluation = self.problem.here();
-        let covariance = Covariance::of(record, &model, evaluation, space);
+    fn assessment(mut self, whole: &FitRecord<'_>) -> Assessment {
+        let slopes = self.slopes.take();
+        let Problem { space, .. } = &self.problem;
+        let (model, residuals) = (self.problem.model_now(), self.problem.residuals());
+        let slopes = slopes.unwrap_or_else(|| self.problem.jacobian(&residuals));
+        let covariance = Covariance::of(slopes, &residuals, space, &plain(&model));
         let parameter = |(index, (name, value)): (usize, (String, f64))| {
             let free = space.free.iter().position(|free| *free == index);
             let status = free.map_or(Status::Fixed, |free| covariance.status(space, free, value));

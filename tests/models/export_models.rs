@@ -47,7 +47,7 @@ const EFFECTS: [(&str, &str); 32] = [
         "positive = 0.2, negative = 0.3, time_constant = 0.15, negative_viscous = 1.6",
     ),
     ("gravity_load", "kappa = 0.4, y0 = 10.0, creep = 0.5"),
-    ("position_gain", "slope = 0.004, curvature = -2e-5, reference = 5.0"),
+    ("position_gain", "slope = 0.004, curvature = -2e-5, cubic = 1e-7, reference = 5.0"),
     ("thermal_drift", "rate = 0.003, time_constant = 40.0"),
     ("supply_droop", "droop = 0.35"),
     ("leakage", "rate = 0.05, y0 = 10.0"),

@@ -273,8 +273,8 @@ impl<'a> Fine<'a> {
                     v * pressure.sqrt() - p[2] * g
                 }
                 "position_gain" => {
-                    let x = y - p[2];
-                    v / (1.0 - p[0] * x - p[1] * x * x).max(0.05)
+                    let x = y - p[3];
+                    v / (1.0 - p[0] * x - p[1] * x * x - p[2] * x.powi(3)).max(0.05)
                 }
                 "thermal_drift" => v * (1.0 + p[0] * p[1] * (1.0 - (-t / p[1]).exp())),
                 "supply_droop" => v - v * p[0] * others,
@@ -367,7 +367,7 @@ fn effects_of_the_dynamics_are_exact() {
 #[test]
 fn effects_of_the_load_are_those_of_the_midpoint_rule() {
     assert_within(&[("gravity_load", &[0.5, 30.0, 2.0])], 5e-5);
-    assert_within(&[("position_gain", &[0.006, -0.000_05, 20.0])], 5e-5);
+    assert_within(&[("position_gain", &[0.006, -0.000_05, 1e-6, 20.0])], 5e-5);
     assert_within(&[("thermal_drift", &[0.05, 6.0])], 1e-7);
     assert_within(&[("supply_droop", &[0.4])], 1e-10);
     assert_within(&[("leakage", &[0.3, 15.0])], 1e-5);
@@ -404,7 +404,7 @@ fn effects_together() {
             ("dead_band", &[-0.5, 0.7]),
             ("variable_delay", &[-0.01, 0.02, 0.01, 0.001, 3.0, 2.0, 20.0, 0.0]),
             ("coulomb_friction", &[0.3, 0.3, 0.1]),
-            ("position_gain", &[0.004, -0.000_03, 0.0]),
+            ("position_gain", &[0.004, -0.000_03, 0.0, 0.0]),
             ("backlash", &[0.5]),
         ],
         1e-4,
