@@ -16,7 +16,7 @@ use crate::fit::{AssessedModel, Fit, FitRecord};
 
 /// What candidates for one model are judged by.
 pub(super) struct Judge<'a, 'r> {
-    record: &'a FitRecord<'r>,
+    pub(super) record: &'a FitRecord<'r>,
     pub(super) base: &'a Fit,
     pub(super) own: Errors,
     pub(super) misfit: Misfit,
@@ -201,7 +201,9 @@ mod tests {
         ];
         let ranked = |tried| {
             let options = Options { effects: effects.clone(), tried, ..Options::default() };
-            let all = rank(&record, &base, 0.01, &options, Scope::SingleEffects, &Sequential);
+            let misfit = Misfit::of(&record, &Errors::of(&record, &base));
+            let judge = Judge::new(&record, &base, misfit, &options);
+            let all = rank(&judge, Scope::SingleEffects, &Sequential);
             all.iter().map(Candidate::name).collect::<Vec<_>>()
         };
         let (some, all) = (ranked(Tried::WhereLacking), ranked(Tried::Always));
@@ -215,9 +217,9 @@ mod tests {
         let record = FitRecord::new(&joint, Split::Blocks, Horizon::Auto);
         let base = integrator(&record);
         let options = Options { effects: vec![&DirectionGain], ..Options::default() };
-        let ranking = rank(&record, &base, 0.01, &options, Scope::SingleEffects, &Sequential);
         let misfit = Misfit::of(&record, &Errors::of(&record, &base));
         let judge = Judge::new(&record, &base, misfit, &options);
+        let ranking = rank(&judge, Scope::SingleEffects, &Sequential);
         let candidate = &ranking[0];
         let sound = judge.judge(candidate);
         assert!(sound.is_added(), "{sound:?}");

@@ -39,8 +39,9 @@ pub fn explain(
     workers: &impl Workers,
 ) -> Explanation {
     let options = &*options.of(record.joint());
+    let misfit = Misfit::of(record, &Errors::of(record, &fit));
     let mut step = Step::new(record, Change::Start, fit);
-    let lacks = step.rank_missing(record, options, workers);
+    let lacks = step.rank_missing(record, misfit, options, workers);
     let Step { fit, lack_of_fit, mut ranking, .. } = step;
     let base = compare_knowing(record, fit.clone(), lack_of_fit);
     let attribution = Attribution::default();
@@ -82,8 +83,9 @@ pub(crate) fn named(
     options: &Options,
     workers: &impl Workers,
 ) -> Vec<Candidate> {
+    let misfit = Misfit::of(record, &Errors::of(record, &fit));
     let mut step = Step::new(record, Change::Start, fit);
-    let lacks = step.rank_missing(record, options, workers);
+    let lacks = step.rank_missing(record, misfit, options, workers);
     let is_named = lacks && is_named(record, &step.fit, &mut step.ranking, options, workers);
     if is_named { step.ranking } else { Vec::new() }
 }

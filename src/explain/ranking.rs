@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::comparison::{MUCH_LESS, compared};
-use super::decide::is_founded;
+use super::decide::Judge;
 use super::eligible::{eligible, free_forms, steady_refinements};
 use super::extension::Extension;
 use super::limiting_case::put_limiting_cases_first;
@@ -39,23 +39,17 @@ const FITTED_AT_ONCE: usize = 4;
 /// measured joints get the same models in 96 % of the time.
 const HOPELESS: f64 = 3.0;
 
-/// Ranks the effects of `options` by how well the model of `base` with each of them, fitted,
+/// Ranks the effects that `judge` is asked about by how well its model with each of them, fitted,
 /// explains the record, best first.
 ///
 /// Of a residual that is rounding nothing is left to explain.
-pub(super) fn rank(
-    record: &FitRecord<'_>,
-    base: &Fit,
-    noise_floor: f64,
-    options: &Options,
-    scope: Scope,
-    workers: &impl Workers,
-) -> Vec<Candidate> {
+pub(super) fn rank(judge: &Judge<'_, '_>, scope: Scope, workers: &impl Workers) -> Vec<Candidate> {
+    let Judge { record, base, .. } = *judge;
     if record.is_exact(&base.evaluation) {
         return Vec::new();
     }
     let range = record.range_for(&base.model);
-    let search = Search::new(record, base, noise_floor, options, &range);
+    let search = Search::new(judge, &range);
     let ranking = search.singles(scope, workers);
     let shows = |ranking: &[Candidate]| ranking.iter().any(Candidate::is_significant);
     if scope == Scope::SingleEffects || shows(&ranking) {
@@ -77,15 +71,12 @@ pub(super) enum Beside {
 
 /// A [`rank`]ing of `singles` beside what else may explain the record.
 pub(super) fn rank_beside(
-    record: &FitRecord<'_>,
-    base: &Fit,
-    options: &Options,
+    judge: &Judge<'_, '_>,
     (singles, what): (&[Candidate], Beside),
     workers: &impl Workers,
 ) -> Vec<Candidate> {
-    let range = record.range_for(&base.model);
-    let noise = sensor_noise(&record.measured().trials).unwrap_or(0.0);
-    let search = Search::new(record, base, noise, options, &range);
+    let range = judge.record.range_for(&judge.base.model);
+    let search = Search::new(judge, &range);
     match what {
         Beside::Pairs => search.beside_pairs(singles, workers),
         Beside::FreeForms => search.beside_free_forms(singles, workers),
@@ -94,6 +85,7 @@ pub(super) fn rank_beside(
 
 /// A model, and what may be missing from it.
 struct Search<'a, 'r> {
+    judge: &'a Judge<'a, 'r>,
     record: &'a FitRecord<'r>,
     base: &'a Fit,
     /// Standard deviation of the measurement noise, output units.
@@ -106,16 +98,12 @@ struct Search<'a, 'r> {
 }
 
 impl<'a, 'r> Search<'a, 'r> {
-    fn new(
-        record: &'a FitRecord<'r>,
-        base: &'a Fit,
-        noise_floor: f64,
-        options: &'a Options,
-        range: &'a RecordRange<'a>,
-    ) -> Self {
+    fn new(judge: &'a Judge<'a, 'r>, range: &'a RecordRange<'a>) -> Self {
+        let Judge { record, base, options, .. } = *judge;
+        let noise_floor = sensor_noise(&record.measured().trials).unwrap_or(0.0);
         let effects = eligible(record, &base.model, options);
         let refinements = steady_refinements(record, &base.model, options);
-        Self { record, base, noise_floor, effects, refinements, options, range }
+        Self { judge, record, base, noise_floor, effects, refinements, options, range }
     }
 
     /// The base with each effect by itself, ranked.
@@ -180,14 +168,10 @@ impl<'a, 'r> Search<'a, 'r> {
         surveys.sort_by_key(|((id, _), _)| ranked.iter().position(|one| one.effects == [*id]));
     }
 
-    /// Whether one of `extensions` is shown and nothing speaks against its effects.
+    /// Whether nothing speaks against one of `extensions`.
     fn has_one_to_add(&self, extensions: &[Extension]) -> bool {
         let candidates = compared(self.record, self.base, self.noise_floor, extensions.to_vec());
-        candidates.iter().any(|one| {
-            one.is_shown()
-                && one.judgement.generalises
-                && is_founded(self.record, &one.fit, &one.effects, self.options)
-        })
+        candidates.iter().any(|one| self.judge.judge(one).is_added())
     }
 
     /// The candidates of `ranking` among the best pairs of effects.

@@ -66,6 +66,7 @@ impl Step {
     pub(super) fn rank_missing(
         &mut self,
         record: &FitRecord<'_>,
+        misfit: Misfit,
         options: &Options,
         workers: &impl Workers,
     ) -> bool {
@@ -73,9 +74,9 @@ impl Step {
             return false;
         }
         if self.ranking.is_empty() {
-            let floor = sensor_noise(&record.measured().trials).unwrap_or(0.0);
             let scope = if self.is_adequate() { Scope::SingleEffects } else { Scope::Everything };
-            self.ranking = rank(record, &self.fit, floor, options, scope, workers);
+            let judge = Judge::new(record, &self.fit, misfit, options);
+            self.ranking = rank(&judge, scope, workers);
         }
         let lacks = !self.is_at_the_noise()
             && (!self.is_adequate() || self.ranking.iter().any(Candidate::is_beyond_doubt));
@@ -134,7 +135,7 @@ pub(super) fn add_stepwise(
     let matched_by_many = are_strokes(&record.joint().trials) || are_few;
     let mut step = first;
     loop {
-        if !step.rank_missing(record, options, workers) {
+        if !step.rank_missing(record, misfit, options, workers) {
             let was_stopped = !visit(&step);
             return ended(Verdict::Adequate, step.fit, was_stopped);
         }
@@ -222,7 +223,7 @@ fn found_beside(
     if !is_due || !singles.iter().any(Candidate::is_significant) {
         return None;
     }
-    let mut ranking = rank_beside(record, judge.base, judge.options, (singles, what), workers);
+    let mut ranking = rank_beside(judge, (singles, what), workers);
     let index = judge.judge_all(&mut ranking)?;
     let found = &ranking[index];
     let change = Change::between(&judge.base.model, &found.fit.model, found.newest());
