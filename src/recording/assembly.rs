@@ -67,7 +67,7 @@ impl<'a> Content for Recording<'a> {
                 layout.rank_by_difference(|label, p| weight(&others, label, p));
             }
             let add = move |chunks: &mut Chunks| add_joint(chunks, self, &layout, &others);
-            Tab { joint: Some(&joint.name), add: Box::new(add) }
+            Tab { joint: &joint.name, add: Box::new(add) }
         };
         self.layouts(growth).map(tab).collect()
     }

@@ -209,16 +209,6 @@ fn a_pipe_is_written_to_and_neither_probed_nor_replaced() {
 }
 
 #[test]
-#[cfg(feature = "rrd")]
-fn an_output_has_no_name_of_a_part_of_a_recording() {
-    let folder = folder();
-    let command = "estimate log.csv -o many.rrd --decisions many_3.rrd";
-    let ended = tauscope(folder.path()).args(command.split(' ')).output().unwrap();
-    assert_eq!(ended.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&ended.stderr).contains("needs files of this name"));
-}
-
-#[test]
 fn a_link_in_the_place_of_a_result_is_not_written_through() {
     let folder = folder();
     let run = || tauscope(folder.path()).args(["estimate", "log.csv", "--results", "r"]).output();
