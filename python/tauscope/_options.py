@@ -129,9 +129,6 @@ class EstimateOptions(ReadOptions, total=False):
     signals."""
     threads: int | None
     """Threads to use [default: all processors]."""
-    safe_csv: bool
-    """Make texts in CSV safe for spreadsheet programs: an apostrophe is put before what they would
-    take for a formula."""
 
 
 class SweepOptions(ReadOptions, total=False):
@@ -276,9 +273,6 @@ class ImproveOptions(ReadOptions, total=False):
     """Record models and decisions for the Rerun viewer."""
     threads: int | None
     """Threads to use [default: all processors]."""
-    safe_csv: bool
-    """Make texts in CSV safe for spreadsheet programs: an apostrophe is put before what they would
-    take for a formula."""
 
 
 class ReportOptions(ReadOptions, total=False):

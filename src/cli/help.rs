@@ -43,7 +43,7 @@ const QUESTIONS: [(&str, &str); 15] = [
     (
         "What is written",
         "output decisions delays table export preview embed no-recording interactive \
-         title author date detail safe-csv",
+         title author date detail",
     ),
     ("What is printed", "steps against-state format quiet"),
     ("Show it in a viewer while the command runs", "connect spawn serve"),

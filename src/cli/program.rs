@@ -13,7 +13,7 @@ use clap::{Arg, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use crate::cli::args::{DataArgs, read};
 use crate::cli::command::{
     add, columns, compare, completions, design, doctor, effects, estimate, explain, export,
-    importer, improve, man, merge, report, simulate, sweep,
+    importer, improve, merge, report, simulate, sweep,
 };
 use crate::cli::console::{Ended, Host, Hosting, message};
 use crate::cli::each_log::end_with_parent;
@@ -70,7 +70,6 @@ enum Command {
     Doctor(doctor::Args),
     Importer(importer::Args),
     Completions(completions::Args),
-    Man(man::Args),
 }
 
 /// Runs the command that the arguments name.
@@ -289,7 +288,6 @@ fn perform(command: Command) -> anyhow::Result<Completion> {
         Command::Doctor(args) => doctor::run(&args),
         Command::Importer(args) => importer::run(&args),
         Command::Completions(args) => completions::run(&args, program()),
-        Command::Man(args) => man::run(&args, program()),
     }
 }
 

@@ -89,7 +89,6 @@ pub use input_motion::{InputKind, InputMotion};
 pub use interval::FineDelay;
 pub(crate) use margin::Remedy;
 pub use margin::RunnerUp;
-pub(crate) use method::end_at_the_next_step;
 pub use neutral::{Neutral, Transition};
 pub use onset_model::{Obstacle, OnsetModel, ResponseOfKind, StepOnset};
 pub use profile::DelayProfile;

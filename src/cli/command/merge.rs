@@ -9,7 +9,6 @@ use crate::cli::args::Format;
 use crate::cli::console::Verbosity;
 use crate::cli::each_log::{Merged, Tables, kept_in, present, read_folders};
 use crate::cli::exit::Completion;
-use crate::cli::output::CsvText;
 
 /// Merge the results of many logs into tables of all logs
 ///
@@ -29,11 +28,6 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
 
-    /// Make texts in CSV safe for spreadsheet programs: an apostrophe is put before what they would
-    /// take for a formula
-    #[arg(long)]
-    safe_csv: bool,
-
     /// How results are printed
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -45,7 +39,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let (decisions, summary) = (args.decisions.as_deref(), args.summary.as_deref());
-    let tables = Tables { decisions, summary, text: CsvText::from(args.safe_csv) };
+    let tables = Tables { decisions, summary };
     tables.check(&kept_in(&args.folders)?)?;
     let Merged { command, results, failures, notes } = read_folders(&args.folders)?;
     let verbosity = Verbosity::from(args.quiet);

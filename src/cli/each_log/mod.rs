@@ -18,7 +18,7 @@ use clap::Args;
 use crate::cli::args::Format;
 use crate::cli::console::{Verbosity, warn};
 use crate::cli::exit::Completion;
-use crate::cli::output::{CsvText, OutputKind, Outputs, write_table};
+use crate::cli::output::{OutputKind, Outputs, write_table};
 
 pub(crate) use each::Each;
 use options::LogOptions;
@@ -40,11 +40,6 @@ pub(crate) struct FolderArgs {
     /// Write a row per log and joint, as CSV or Parquet
     #[arg(long, value_name = "FILE", requires = "results")]
     summary: Option<PathBuf>,
-
-    /// Make texts in CSV safe for spreadsheet programs: an apostrophe is put before what they would
-    /// take for a formula
-    #[arg(long)]
-    safe_csv: bool,
 }
 
 /// A part of the logs: every `of`-th, from the `number`-th on.
@@ -77,18 +72,12 @@ impl Shard {
 pub(crate) struct Tables<'a> {
     pub(crate) decisions: Option<&'a Path>,
     pub(crate) summary: Option<&'a Path>,
-    pub(crate) text: CsvText,
 }
 
 impl FolderArgs {
     /// Whether each log is an experiment of its own.
     pub(crate) fn is_asked_for(&self) -> bool {
         self.results.is_some()
-    }
-
-    /// How texts in CSV are written.
-    pub(crate) fn csv_text(&self) -> CsvText {
-        CsvText::from(self.safe_csv)
     }
 
     /// Runs the command for each log that has no result yet.
@@ -98,7 +87,7 @@ impl FolderArgs {
             bail!("{name}: it is for one log; leave it out, or leave out `--results`");
         }
         let (decisions, summary) = (each.decisions, self.summary.as_deref());
-        let tables = Tables { decisions, summary, text: self.csv_text() };
+        let tables = Tables { decisions, summary };
         if self.shard.is_some() && tables.files().next().is_some() {
             bail!(
                 "--shard: the tables need the results of all parts; leave out `--decisions` and \
@@ -169,10 +158,10 @@ pub(crate) fn present(
         verbosity.say("note", "`--summary FILE` writes a row per log and joint");
     }
     if let Some(path) = tables.decisions {
-        write_table(&report.decisions(), path, tables.text)?;
+        write_table(&report.decisions(), path)?;
     }
     if let Some(path) = tables.summary {
-        write_table(&report.summary(), path, tables.text)?;
+        write_table(&report.summary(), path)?;
     }
     format.print(|| report.text(), || folder_json(report, &failures))?;
     Ok(Completion::without(&failures))

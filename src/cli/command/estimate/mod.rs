@@ -30,7 +30,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let settings: Vec<_> = args.runs().into_iter().map(with_lines).collect();
     let csv_text = args.folder.csv_text();
     let inputs = args.inputs();
-    let files = Files::check(&args.output, &inputs, csv_text)?;
+    let files = Files::check(&args.output, &inputs)?;
     let review = args.review.read()?;
     let stream = args.output.stream.open(verbosity)?;
     let followed =
@@ -69,7 +69,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     session.warn(&failures, &notes);
     if args.follow.is_on {
         // The log may have come as a link to what is written.
-        Files::check(&args.output, &args.inputs(), csv_text)?;
+        Files::check(&args.output, &args.inputs())?;
     }
     files.write(&result, &session.stream, verbosity)?;
     let all_notes: Vec<_> = experiment.notes.iter().cloned().chain(notes).collect();
