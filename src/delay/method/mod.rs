@@ -13,7 +13,6 @@ use super::prepared::Prepared;
 use super::settings::Settings;
 use super::spec::Method;
 
-
 impl Method {
     /// The response after the dead times that the `trials` of a joint share, where the method looks
     /// for it.

@@ -39,4 +39,3 @@ pub(super) fn answer_the_next_step(decisions: &[Decision], beta: usize) -> bool 
     };
     late.len() >= FEWEST && explained(2) > explained(1) + MORE
 }
-

@@ -46,7 +46,7 @@ impl<'a> Files<'a> {
     /// Refuses what cannot be written, or would replace an input or another output.
     pub(crate) fn check(args: &'a OutputArgs, inputs: &[PathBuf]) -> anyhow::Result<Self> {
         let outputs = Outputs::default()
-            .with(OutputKind::Recording, &args.recording)
+            .with(OutputKind::Recording, &args.to.recording)
             .with(OutputKind::Table, args.decisions.iter().chain(&args.delays).chain(&args.table))
             .with(OutputKind::Csv, &args.review_sheet)
             .with(OutputKind::Other, &args.export);
@@ -98,7 +98,7 @@ impl<'a> Files<'a> {
         let recording = of_delays("estimate", result.experiment, delays);
         let detail = self.0.detail.of(result.joints);
         let recording = Recording { also: result.others, detail, ..recording };
-        if let Some(path) = &self.0.recording {
+        if let Some(path) = &self.0.to.recording {
             recording.record(path, verbosity)?;
         }
         stream.send(&recording, None)
