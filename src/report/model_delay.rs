@@ -9,8 +9,10 @@ use crate::wording::parameter_value;
 /// What is to be said of the delay of a model: its value beside the measured ones, where it is one
 /// number that a fit found, or that is fixed.
 pub(super) fn model_delay(of: &AssessedModel, measured: EstimatedJoint<'_>) -> Option<String> {
-    let is_law = of.model.components().iter().any(|part| part.effect().spec().stage == Stage::Transport);
-    let delay = of.parameters.iter().find(|parameter| parameter.name == "delay").filter(|_| !is_law)?;
+    let is_law =
+        of.model.components().iter().any(|part| part.effect().spec().stage == Stage::Transport);
+    let delay =
+        of.parameters.iter().find(|parameter| parameter.name == "delay").filter(|_| !is_law)?;
     let measured = match measured.estimate.dead_time.as_ref().map(|found| found.finding) {
         Some(Finding::Known(bounds) | Finding::LagOnly(bounds)) => {
             format!("the dead time of the record is {:.3} to {:.3} s", bounds.low_s, bounds.high_s)

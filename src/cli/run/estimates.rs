@@ -1,11 +1,9 @@
 //! Delays of joints: those that have one, and what is said of them.
 
 use crate::cli::failure::{read_failures, said};
-use crate::delay::{
-    Condition, Decision, EstimateError, Verdict, delay_beyond_holds,
-};
+use crate::delay::{Condition, Decision, EstimateError, Verdict, delay_beyond_holds};
 use crate::experiment::{Experiment, Joint, Trial, coarse_resolution, saturations, spike_count};
-use crate::numerics::{median, quantile, to_digits};
+use crate::numerics::{quantile, to_digits};
 use crate::report::EstimatedJoint;
 use crate::report::answer::input_note;
 use crate::study::JointEstimate;
@@ -66,7 +64,6 @@ fn notes_on(estimated: EstimatedJoint<'_>) -> Vec<String> {
         notes.extend(later_than_the_next_step(joint));
     }
     if estimate.dead_time.is_none() {
-        notes.extend(unresolved(joint, estimate));
         notes.extend(as_long_as_allowed(joint, estimate));
         notes.extend(notes_on_sensor(joint, estimate));
     }
@@ -82,22 +79,6 @@ fn notes_on(estimated: EstimatedJoint<'_>) -> Vec<String> {
 
 fn decisions(estimate: &JointEstimate) -> impl Iterator<Item = &Decision> {
     estimate.estimated().flat_map(|trial| &trial.decisions)
-}
-
-/// A line where most reactions begin within a sample of their step.
-fn unresolved(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
-    /// Delays of which most must be so short.
-    const FEWEST: usize = 5;
-    let delays: Vec<f64> = accepted(estimate).filter_map(Decision::delay).collect();
-    let short = delays.iter().filter(|samples| **samples < 1.0).count();
-    let longest = joint.trials.iter().map(|trial| trial.period().seconds()).fold(0.0, f64::max);
-    (delays.len() >= FEWEST && 2 * short > delays.len()).then(|| {
-        format!(
-            "{short} of {} delays are shorter than the sample period of {longest} s, so their \
-             values are not resolved; sample faster to resolve them",
-            delays.len()
-        )
-    })
 }
 
 /// A line where the delay is longer than most holds.
