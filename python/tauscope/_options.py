@@ -120,7 +120,7 @@ class EstimateOptions(ReadOptions, total=False):
     and level, as CSV or Parquet."""
     export: File | None
     """Write the delay table as source code that a controller looks delays up in: C99, MATLAB or
-    Octave, Python, or JSON, by the name's ending."""
+    Octave, or Python, by the name's ending."""
     steps: bool
     """Show every step: its delay with the interval, and how near the verdict was."""
     against_state: bool

@@ -289,7 +289,6 @@ pub(crate) fn compare_json(joints: &[ComparedJoint<'_>], failures: &[String]) ->
 /// The first model of a joint beside another one.
 fn against(models: &ComparedModels<'_>) -> Value {
     let ComparedModels { joint, model, other, difference } = models;
-    let places = |pairs: &[RegionPair]| pairs.iter().map(place).collect::<Value>();
     json!({
         "joint": joint.name,
         "model": model,
@@ -302,20 +301,7 @@ fn against(models: &ComparedModels<'_>) -> Value {
         "statistic": difference.test.map(|test| test.statistic),
         "p_value": difference.test.map(|test| test.p_value),
         "significant": difference.is_significant(),
-        "better_where": places(&difference.better_where),
-        "worse_where": places(&difference.worse_where),
-    })
-}
-
-/// A part of the record, with the error of both.
-fn place(RegionPair { region, other_rmse }: &RegionPair) -> Value {
-    json!({
-        "feature": region.feature,
-        "label": region.label,
-        "from": region.from,
-        "to": region.to,
-        "share_of_time": region.share_of_time,
-        "rmse": region.rmse,
-        "other_rmse": other_rmse,
+        "better_where": difference.better_where,
+        "worse_where": difference.worse_where,
     })
 }

@@ -124,49 +124,46 @@ impl FolderReport {
     /// A table of the joints across all logs.
     pub(crate) fn text(&self) -> String {
         let joints = self.across();
-        let text = |joint: &Value, place: &str| {
-            let value = joint.pointer(place).unwrap_or(&Value::Null);
-            value.as_str().map_or_else(|| value.to_string(), str::to_owned)
-        };
-        let number = |joint: &Value, place: &str| {
-            let value = joint.pointer(place).and_then(Value::as_f64);
-            value.map_or_else(|| "-".to_owned(), |value| format!("{value:.3}"))
-        };
-        let table = if self.command == "improve" {
-            let effects = |joint: &Value| {
-                let counts = joint.get("effects").and_then(Value::as_object);
-                let counts = counts.into_iter().flatten();
-                counts.map(|(id, count)| format!("{id} ({count})")).collect::<Vec<_>>().join(", ")
-            };
-            let row = |joint: &Value| {
-                let [name, logs, adequate] =
-                    ["/joint", "/logs", "/adequate"].map(|place| text(joint, place));
-                let [min, median, max] = ["min", "median", "max"]
-                    .map(|end| number(joint, &format!("/validation_rmse/{end}")));
-                [name, logs, adequate, min, median, max, effects(joint)]
-            };
-            let header = [
-                "joint",
-                "logs",
-                "adequate",
-                "validation rmse min",
-                "median",
-                "max",
-                "effects (logs)",
-            ];
-            TextTable::of(header, &[1, 2, 3, 4, 5], joints.iter().map(row))
-        } else {
-            let row = |joint: &Value| {
-                let [name, logs, steps, accepted] =
-                    ["/joint", "/logs", "/steps", "/accepted"].map(|place| text(joint, place));
-                let [min, median, max] =
-                    ["min", "median", "max"].map(|end| number(joint, &format!("/delay_s/{end}")));
-                [name, logs, steps, accepted, min, median, max]
-            };
-            let header = ["joint", "logs", "steps", "accepted", "delay min [s]", "median", "max"];
-            TextTable::of(header, &[1, 2, 3, 4, 5, 6], joints.iter().map(row))
-        };
+        let columns = if self.command == "improve" { IMPROVED_TEXT } else { ESTIMATED_TEXT };
+        let row = |joint: &Value| columns.map(|(_, place)| cell(joint.pointer(place)));
+        let header = columns.map(|(name, _)| name);
+        let table = TextTable::of(header, &[1, 2, 3, 4, 5, 6], joints.iter().map(row));
         format!("{table}\n{}, each by itself\n", counted(self.logs.len(), "log"))
+    }
+}
+
+/// The columns of [`FolderReport::text`], and where each stands in what a joint has in all its logs.
+const ESTIMATED_TEXT: [(&str, &str); 7] = [
+    ("joint", "/joint"),
+    ("logs", "/logs"),
+    ("steps", "/steps"),
+    ("accepted", "/accepted"),
+    ("delay min [s]", "/delay_s/min"),
+    ("median", "/delay_s/median"),
+    ("max", "/delay_s/max"),
+];
+
+const IMPROVED_TEXT: [(&str, &str); 7] = [
+    ("joint", "/joint"),
+    ("logs", "/logs"),
+    ("adequate", "/adequate"),
+    ("validation rmse min", "/validation_rmse/min"),
+    ("median", "/validation_rmse/median"),
+    ("max", "/validation_rmse/max"),
+    ("effects (logs)", "/effects"),
+];
+
+/// A text, a count, a number to three decimals, or how many logs have each effect.
+fn cell(value: Option<&Value>) -> String {
+    match value {
+        Some(Value::String(text)) => text.clone(),
+        Some(Value::Object(counts)) => {
+            let counts = counts.iter().map(|(id, count)| format!("{id} ({count})"));
+            counts.collect::<Vec<_>>().join(", ")
+        }
+        Some(Value::Number(number)) if !number.is_f64() => number.to_string(),
+        Some(Value::Number(number)) => format!("{:.3}", number.as_f64().unwrap_or(f64::NAN)),
+        _ => "-".to_owned(),
     }
 }
 

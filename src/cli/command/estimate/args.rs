@@ -91,8 +91,8 @@ pub(crate) struct OutputArgs {
     pub(crate) table: Option<PathBuf>,
 
     /// Write the delay table as source code that a controller looks delays up in: C99, MATLAB
-    /// or Octave, Python, or JSON, by the name's ending
-    #[arg(long, value_name = "FILE.c|.m|.py|.json")]
+    /// or Octave, or Python, by the name's ending
+    #[arg(long, value_name = "FILE.c|.m|.py")]
     pub(crate) export: Option<PathBuf>,
 
     /// Show every step: its delay with the interval, and how near the verdict was

@@ -115,8 +115,8 @@ fn named_lookup(path: &Path) -> anyhow::Result<(Language, &str)> {
     let shown = path.display();
     let Some(language) = Language::of(path) else {
         bail!(
-            "{shown}: a lookup is written as C, MATLAB, Python or JSON; give the file a name \
-               that ends in .c, .m, .py or .json"
+            "{shown}: a lookup is written as C, MATLAB or Python; give the file a name that ends in \
+             .c, .m or .py"
         );
     };
     let name = path.file_stem().and_then(|name| name.to_str()).unwrap_or_default();
