@@ -76,7 +76,7 @@ def runs(args, folder):
     for log in ("manipulator", "worked_example", "hidden_effect"):
         path = str(ROOT / "data" / f"{log}.csv")
         yield from ((f"{log}: {n}", a) for n, a in estimates(path, [], []))
-        yield f"{log}: settings", ["estimate", path, "--alpha", "auto", "--passband", "none",
+        yield f"{log}: settings", ["estimate", path, "--alpha", "8", "--passband", "none",
                                    "--output-limits", "-20,60", "--interpolate", "linear",
                                    "--format", "json", "--decisions", "d.csv"]
         yield f"{log}: sweep", ["sweep", path, "--alpha", "5,10", "--beta", "2,5", "--format", "json"]
@@ -92,7 +92,7 @@ def runs(args, folder):
         yield f"{log}: improve text", ["improve", path, "-w", "m.toml"]
         yield f"{log}: design", ["design", path, "--duration", "60", "--format", "json", "-o", "in.csv"]
     for command in ("estimate", "compare", "explain", "improve", "add", "sweep", "report",
-                    "design", "simulate", "effects", "doctor", "merge", "export", "columns"):
+                    "design", "simulate", "effects", "doctor", "export", "columns"):
         yield f"{command} --help", [command, "--help"]
     yield "effects", ["effects"]
     yield "effects json", ["effects", "--format", "json"]
@@ -147,8 +147,6 @@ def of_results(args, folder):
         yield f"export .{language}", ["export", str(model), "--joint", "boom", f"exported.{language}"]
     for language in ("c", "m", "py", "json"):
         yield f"lookup .{language}", ["estimate", log, "--export", f"lookup.{language}"]
-    yield "merge", ["merge", str(parts), "--decisions", "d.csv", "--summary", "s.csv"]
-    yield "merge json", ["merge", str(parts), "--format", "json"]
     hinge = ["estimate", log, "--method", "hinge", "--against", str(earlier)]
     yield "estimate --against", hinge
     yield "estimate --against json", [*hinge, "--format", "json"]

@@ -3,7 +3,7 @@
     pip install -r requirements.txt
     python estimate_folder.py LOGS --results FOLDER --decisions all.csv [--workers N] [-- OPTIONS]
 
-Each worker takes a part of the logs (`--shard`); `tauscope merge` then makes the table, which
+Each worker takes a part of the logs (`--shard`); the command without it then makes the table, which
 is that of one process, byte for byte. Without --scheduler a cluster is started on this
 machine. Options after `--` go to `tauscope estimate`. The folders must be reachable by the
 same paths from every worker.
@@ -58,8 +58,9 @@ def main():
             worst = max(worst, status)
     if worst > 1:
         return worst
-    merge = [args.tauscope, "merge", args.results, "--decisions", args.decisions]
-    return max(worst, subprocess.run(merge).returncode)
+    whole = [args.tauscope, "estimate", args.logs, "--results", args.results, *args.options,
+             "--decisions", args.decisions]
+    return max(worst, subprocess.run(whole).returncode)
 
 
 if __name__ == "__main__":

@@ -51,13 +51,12 @@ class EstimateOptions(ReadOptions, total=False):
     )
     """How a delay is found. May be a list: the first one is the answer, the others are reported
     beside it [default: auto; two-line with `paper=True` and `--follow`]."""
-    alpha: float | str | Literal["auto"] | None
+    alpha: float | str | None
     """How far a segment extends before its input step and after the next one, in samples or in
-    seconds as in `0.1s`; `auto` chooses this and the next two from the record of each joint
-    [default: 10]."""
-    beta: float | str | Literal["auto"] | None
+    seconds as in `0.1s` [default: 10]."""
+    beta: float | str | None
     """Samples, or seconds, between two candidate breakpoints [default: 5]."""
-    passband: float | Literal["none", "auto"] | None
+    passband: float | Literal["none"] | None
     """Zero-phase low-pass on the output that Algorithm 1's lines are fitted to: its cutoff, or
     `none` [default: 5]."""
     confidence: float | Literal["none"] | None
@@ -106,7 +105,7 @@ class EstimateOptions(ReadOptions, total=False):
     --format json`, its table of `decisions=`, or another log of the experiment, which is estimated
     with the same settings. May be a list."""
     output: File | None
-    """Record every decision for the Rerun viewer."""
+    """Record the results for the Rerun viewer."""
     detail: Literal["auto", "full", "lean"] | None
     """Candidates in the recording: all, or fewer of accepted segments that are not doubtful
     [default: auto]."""
@@ -121,7 +120,7 @@ class EstimateOptions(ReadOptions, total=False):
     and level, as CSV or Parquet."""
     export: File | None
     """Write the delay table as source code that a controller looks delays up in: C99, MATLAB or
-    Octave, Python, or JSON, by the name's ending."""
+    Octave, or Python, by the name's ending."""
     steps: bool
     """Show every step: its delay with the interval, and how near the verdict was."""
     against_state: bool
@@ -129,9 +128,6 @@ class EstimateOptions(ReadOptions, total=False):
     signals."""
     threads: int | None
     """Threads to use [default: all processors]."""
-    safe_csv: bool
-    """Make texts in CSV safe for spreadsheet programs: an apostrophe is put before what they would
-    take for a formula."""
 
 
 class SweepOptions(ReadOptions, total=False):
@@ -186,7 +182,7 @@ class SweepOptions(ReadOptions, total=False):
     """Take the input as steps, each of which has a delay, or as moving all the time, with one dead
     time over the record; `auto` decides it for each joint from the record [default: auto]."""
     output: File | None
-    """Record how every delay depends on the settings, for the Rerun viewer."""
+    """Record the results for the Rerun viewer."""
     steps: bool
     """Show all steps that depend on a setting, not only those that do most."""
     threads: int | None
@@ -211,7 +207,7 @@ class CompareOptions(ReadOptions, total=False):
     """Share of each trial's time that is for training; `blocks`: every third block of four runs is
     for validation; or `trials`: every third trial is [default: trials from six on, else blocks]."""
     output: File | None
-    """Record models and decisions for the Rerun viewer."""
+    """Record the results for the Rerun viewer."""
     threads: int | None
     """Threads to use [default: all processors]."""
 
@@ -231,7 +227,7 @@ class ExplainOptions(ReadOptions, total=False):
     """Share of each trial's time that is for training; `blocks`: every third block of four runs is
     for validation; or `trials`: every third trial is [default: trials from six on, else blocks]."""
     output: File | None
-    """Record models and decisions for the Rerun viewer."""
+    """Record the results for the Rerun viewer."""
     threads: int | None
     """Threads to use [default: all processors]."""
 
@@ -248,7 +244,7 @@ class AddOptions(ReadOptions, total=False):
     """Share of each trial's time that is for training; `blocks`: every third block of four runs is
     for validation; or `trials`: every third trial is [default: trials from six on, else blocks]."""
     output: File | None
-    """Record models and decisions for the Rerun viewer."""
+    """Record the results for the Rerun viewer."""
     threads: int | None
     """Threads to use [default: all processors]."""
 
@@ -273,12 +269,9 @@ class ImproveOptions(ReadOptions, total=False):
     """Share of each trial's time that is for training; `blocks`: every third block of four runs is
     for validation; or `trials`: every third trial is [default: trials from six on, else blocks]."""
     output: File | None
-    """Record models and decisions for the Rerun viewer."""
+    """Record the results for the Rerun viewer."""
     threads: int | None
     """Threads to use [default: all processors]."""
-    safe_csv: bool
-    """Make texts in CSV safe for spreadsheet programs: an apostrophe is put before what they would
-    take for a formula."""
 
 
 class ReportOptions(ReadOptions, total=False):
@@ -291,13 +284,12 @@ class ReportOptions(ReadOptions, total=False):
     )
     """How a delay is found. May be a list: the first one is the answer, the others are reported
     beside it [default: auto; two-line with `paper=True` and `--follow`]."""
-    alpha: float | str | Literal["auto"] | None
+    alpha: float | str | None
     """How far a segment extends before its input step and after the next one, in samples or in
-    seconds as in `0.1s`; `auto` chooses this and the next two from the record of each joint
-    [default: 10]."""
-    beta: float | str | Literal["auto"] | None
+    seconds as in `0.1s` [default: 10]."""
+    beta: float | str | None
     """Samples, or seconds, between two candidate breakpoints [default: 5]."""
-    passband: float | Literal["none", "auto"] | None
+    passband: float | Literal["none"] | None
     """Zero-phase low-pass on the output that Algorithm 1's lines are fitted to: its cutoff, or
     `none` [default: 5]."""
     confidence: float | Literal["none"] | None
@@ -361,8 +353,6 @@ class ReportOptions(ReadOptions, total=False):
     split: float | Literal["blocks", "trials"] | None
     """Share of each trial's time that is for training; `blocks`: every third block of four runs is
     for validation; or `trials`: every third trial is [default: trials from six on, else blocks]."""
-    embed: bool
-    """Put the recording into the page, if it has no more than 8 MiB."""
     no_recording: bool
     """Write no recording."""
     interactive: bool
@@ -370,10 +360,6 @@ class ReportOptions(ReadOptions, total=False):
     decisions, the most doubtful first, and saves a review."""
     title: str | None
     """The title of the report, instead of the log's name."""
-    author: str | None
-    """Whose report it is, written below the title."""
-    date: str | None
-    """The date, written below the title as it is given."""
     threads: int | None
     """Threads to use [default: all processors]."""
 

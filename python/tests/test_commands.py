@@ -307,7 +307,7 @@ def test_simulate_design_sweep_and_report(tmp_path: Path) -> None:
     assert len(swept.decisions) > 10
     compared = tauscope.compare(made.log)
     assert set(compared.parameters["parameter"]) == {"gain", "delay"}
-    page = tauscope.report(made.log, tmp_path / "page.md", no_recording=True)
-    assert page.path.read_text().startswith("#")
+    page = tauscope.report(made.log, tmp_path / "page.html", no_recording=True)
+    assert page.path.read_text().startswith("<!DOCTYPE html>")
     planned = tauscope.design(largest=2, hold=(0.5, 2), duration=20, seed=1)
     assert len(planned.input) > 100

@@ -60,7 +60,6 @@ def test_what_is_no_keyword_argument_stays(said: str) -> None:
         (lambda: tauscope.design(separate="dead_band"), "`separate=`: expected two"),
         (lambda: tauscope.design(output_range=(-1, 1)), "give `model=` or a log"),
         (lambda: tauscope.simulate(strength="weak"), "`strength=`: is for"),
-        (lambda: tauscope.report(LOG, "x.md", embed=True), "`embed=True` needs a page"),
     ],
 )
 def test_errors_name_the_keyword_argument(call, named: str) -> None:

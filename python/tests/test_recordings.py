@@ -108,5 +108,5 @@ def test_a_stream_of_a_users_own_gets_it(tmp_path: Path) -> None:
 
 
 def test_a_report_has_a_recording_beside_it(tmp_path: Path) -> None:
-    tauscope.report(LOG, tmp_path / "page.md", joint="boom")
+    tauscope.report(LOG, tmp_path / "page.html", joint="boom")
     assert (tmp_path / "page.rrd").stat().st_size > 10_000

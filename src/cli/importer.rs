@@ -52,25 +52,21 @@ fn import(log: &Path) -> anyhow::Result<()> {
     let recording = folder.path().join("log.rrd");
     let arguments = ["estimate".into(), log.as_os_str().to_owned(), "-o".into()];
     let arguments: Vec<OsString> =
-        arguments.into_iter().chain([recording.clone().into_os_string()]).collect();
+        arguments.into_iter().chain([recording.into_os_string()]).collect();
     if let Err(refused) = program::run_within(&arguments, Arc::new(Silent)) {
         bail!("{}", refused.message);
     }
-    for part in parts(folder.path(), &recording)? {
+    for part in parts(folder.path())? {
         io::copy(&mut File::open(part)?, &mut io::stdout())?;
     }
     Ok(())
 }
 
-/// The recording; of many joints those of some joints each, without the one that names their files,
-/// which no viewer has.
-fn parts(folder: &Path, whole: &Path) -> anyhow::Result<Vec<PathBuf>> {
+/// The files of the recording: several of many joints.
+fn parts(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let files = fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
     let mut files: Vec<PathBuf> = files.collect::<io::Result<_>>()?;
     files.sort();
-    if files.len() > 1 {
-        files.retain(|file| file != whole);
-    }
     Ok(files)
 }
 

@@ -20,7 +20,6 @@ mod console;
 mod each_log;
 mod exit;
 mod failure;
-mod help;
 mod importer;
 mod output;
 mod program;

@@ -13,13 +13,11 @@ use clap::{Arg, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use crate::cli::args::{DataArgs, read};
 use crate::cli::command::{
     add, columns, compare, completions, design, doctor, effects, estimate, explain, export,
-    importer, improve, man, merge, report, simulate, sweep,
+    importer, improve, report, simulate, sweep,
 };
 use crate::cli::console::{Ended, Host, Hosting, message};
-use crate::cli::each_log::end_with_parent;
 use crate::cli::exit::Completion;
 use crate::cli::failure::said;
-use crate::cli::help::{arranged, with_negative_numbers};
 use crate::cli::output::meet_file_limits;
 use crate::cli::unknown::{neither_log_nor_command, with_tip};
 use crate::experiment::{Experiment, ReadError, is_named_like_a_log};
@@ -49,7 +47,6 @@ enum Command {
     Explain(Box<explain::Args>),
     Add(Box<add::Args>),
     Improve(Box<improve::Args>),
-    Merge(merge::Args),
     Columns(columns::Args),
     Report(Box<report::Args>),
     /// Say what was measured, the delays, what a model lacks, and what to do next
@@ -70,14 +67,12 @@ enum Command {
     Doctor(doctor::Args),
     Importer(importer::Args),
     Completions(completions::Args),
-    Man(man::Args),
 }
 
 /// Runs the command that the arguments name.
 ///
 /// Exit status: 0 all done; 1 some joints or files failed; 2 nothing usable.
 pub(super) fn run() -> ExitCode {
-    end_with_parent();
     meet_file_limits();
     let outcome =
         with_command(std::env::args_os().collect()).and_then(|words| match parsed(words) {
@@ -101,17 +96,24 @@ pub(super) fn run() -> ExitCode {
     }
 }
 
-/// The program with the options of its commands in the order of their help.
+/// The program as it is typed.
 fn program() -> clap::Command {
-    Cli::command().mut_subcommands(arranged)
+    Cli::command().mut_subcommands(with_negative_numbers)
+}
+
+/// `command` with options that take `-1` for their value, so that whoever typed it learns what is expected.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    command.mut_args(|arg| {
+        let is_option = arg.get_long().is_some() && arg.get_action().takes_values();
+        arg.allow_negative_numbers(is_option)
+    })
 }
 
 /// What the words of a command line ask for.
 fn parsed(words: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
-    let words: Vec<OsString> = words.into_iter().collect();
     let program = program();
-    let tip = |fault| with_tip(fault, &program, words.get(1).map(OsString::as_os_str));
-    Cli::from_arg_matches(&program.clone().try_get_matches_from(&words).map_err(tip)?)
+    let tip = |fault| with_tip(fault, &program);
+    Cli::from_arg_matches(&program.clone().try_get_matches_from(words).map_err(tip)?)
 }
 
 /// The output of a first look: beside the log where it has no name, and nowhere unless it is asked
@@ -278,7 +280,6 @@ fn perform(command: Command) -> anyhow::Result<Completion> {
         Command::Explain(args) => explain::run(&args),
         Command::Add(args) => add::run(&args),
         Command::Improve(args) => improve::run(&args),
-        Command::Merge(args) => merge::run(&args),
         Command::Columns(args) => columns::run(&args),
         Command::Report(args) => report::run(&args),
         Command::FirstLook(mut args) => report::first_look(&mut args),
@@ -289,7 +290,6 @@ fn perform(command: Command) -> anyhow::Result<Completion> {
         Command::Doctor(args) => doctor::run(&args),
         Command::Importer(args) => importer::run(&args),
         Command::Completions(args) => completions::run(&args, program()),
-        Command::Man(args) => man::run(&args, program()),
     }
 }
 

@@ -33,7 +33,6 @@
 //! Sample numbers are the paper's: counted from 1 within the trial.
 
 mod against;
-mod auto;
 mod beyond_holds;
 mod coming_to_rest;
 mod condition;
@@ -70,7 +69,6 @@ mod typical;
 
 pub use crate::numerics::Line;
 pub use against::{AgainstOfKind, AgainstState, Correlation, Direction, StepState};
-pub use auto::{Automatic, Chosen, RecordStatistics, choose};
 pub(crate) use beyond_holds::delay_beyond_holds;
 pub use condition::{Check, Condition, Outcome};
 pub use dead_time::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown, Window, dead_time};
@@ -89,7 +87,6 @@ pub use input_motion::{InputKind, InputMotion};
 pub use interval::FineDelay;
 pub(crate) use margin::Remedy;
 pub use margin::RunnerUp;
-pub(crate) use method::end_at_the_next_step;
 pub use neutral::{Neutral, Transition};
 pub use onset_model::{Obstacle, OnsetModel, ResponseOfKind, StepOnset};
 pub use profile::DelayProfile;

@@ -1,5 +1,7 @@
 //! Two models of one record: which of them is better, where, and whether that is more than chance.
 
+use serde::Serialize;
+
 use super::compare::Comparison;
 use super::failure::Region;
 use super::step_error::StepError;
@@ -45,9 +47,10 @@ impl DifferenceTest {
 }
 
 /// A part of the record as both models have it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct RegionPair {
     /// With the error of this model.
+    #[serde(flatten)]
     pub region: Region,
     /// Root mean square of the other model's residual there, output units.
     pub other_rmse: f64,

@@ -23,8 +23,7 @@ pub(super) enum Growth {
 
 /// A joint of a recording, and what adds all of it below the joint's root.
 pub(super) struct Tab<'c> {
-    /// None where it belongs to no joint.
-    pub(super) joint: Option<&'c str>,
+    pub(super) joint: &'c str,
     pub(super) add: Box<Add<'c>>,
 }
 
@@ -68,8 +67,7 @@ pub(super) fn for_each_chunk(
     let taken = tabs.len() as u64 + 1;
     for (namespace, tab) in (part.used + 3..).zip(tabs).filter(|(_, tab)| part.has(tab.joint)) {
         chunks.into_chunks().iter().try_for_each(&mut *take)?;
-        let root = tab.joint.map_or_else(EntityPath::root, joint_root);
-        chunks = part.ids.chunks(namespace).rooted(root);
+        chunks = part.ids.chunks(namespace).rooted(joint_root(tab.joint));
         (tab.add)(&mut chunks)?;
     }
     chunks.into_chunks().iter().try_for_each(take)?;
@@ -116,8 +114,8 @@ impl Part<'_> {
         Self { ids, growth: Growth::Finished, used: 0, joint: None }
     }
 
-    fn has(self, joint: Option<&str>) -> bool {
-        self.joint.is_none_or(|name| joint == Some(name))
+    fn has(self, joint: &str) -> bool {
+        self.joint.is_none_or(|name| joint == name)
     }
 }
 

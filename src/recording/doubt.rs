@@ -35,6 +35,6 @@ fn line(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let not = if segment.doubt.is_doubtful() { "" } else { " (not doubtful)" };
     // A line is cut where its list ends: the delay is in the verdict, the whole reason on the page.
     let mark = if segment.is_accepted() { '✓' } else { '✗' };
-    let (step, why) = (trial.step(segment), trial.reason_in_short(segment));
+    let (step, why) = (trial.step(segment), trial.reason(segment));
     format!("{doubt:>5} {mark} {step}: {why}{not}")
 }

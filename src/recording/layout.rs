@@ -23,7 +23,7 @@ use crate::experiment::{Joint, Trial};
 use crate::report::page::timeline::Timeline;
 use crate::report::{Detail, Doubted, EstimatedJoint};
 use crate::units::signed;
-use crate::wording::{doubt_in_short, doubt_sentence, number};
+use crate::wording::{doubt_sentence, number};
 
 /// Candidates that [`Detail::Lean`] keeps of an accepted segment.
 const LEAN_CANDIDATES: usize = 25;
@@ -423,12 +423,6 @@ impl<'a> TrialLayout<'a> {
     pub(super) fn reason(&self, segment: &SegmentLayout<'_>) -> String {
         let (decision, period) = (segment.decision, self.trial.period());
         doubt_sentence(&segment.doubt, decision.program_verdict(), period.seconds())
-    }
-
-    /// The first of it in a few words.
-    pub(super) fn reason_in_short(&self, segment: &SegmentLayout<'_>) -> String {
-        let (decision, period) = (segment.decision, self.trial.period());
-        doubt_in_short(&segment.doubt, decision.program_verdict(), period.seconds())
     }
 
     /// The opening tick, at the input step.

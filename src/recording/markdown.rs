@@ -20,12 +20,6 @@ pub(super) fn plain(name: &str) -> String {
     text
 }
 
-/// The name of a file, which leads to it: relative to where the viewer runs, since a recording has
-/// the same bytes in any folder.
-pub(super) fn link(file: &str) -> String {
-    format!("[{}](<{}>)", plain(file), file.replace('<', "%3C").replace('>', "%3E"))
-}
-
 /// Sentences of ours, with names from a log, in which backticks hold what is typed.
 pub(super) fn prose(sentences: &str) -> String {
     let part = |(part, is_typed): (&str, bool)| {
@@ -43,12 +37,6 @@ mod tests {
         assert_eq!(plain("a|b *c* _d_"), "a\\|b \\*c\\* \\_d\\_");
         assert_eq!(plain("boom"), "boom");
         assert_eq!(plain("input_saturation"), "input_saturation");
-    }
-
-    #[test]
-    fn a_file_is_linked_by_its_name() {
-        assert_eq!(link("log 2_1.rrd"), "[log 2_1.rrd](<log 2_1.rrd>)");
-        assert_eq!(link("a>b.rrd"), "[a\\>b.rrd](<a%3Eb.rrd>)");
     }
 
     #[test]

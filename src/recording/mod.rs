@@ -10,7 +10,7 @@
 //! - `paths` says where everything lies, `layout` where samples, trials and decisions lie on
 //!   the timelines; `chunk` makes columns of rows with reproducible ids, `layers` and `panels`
 //!   drawings of them on a `canvas`.
-//! - `recorded`, `sweep` and `index` are three kinds of recording. One part of the content
+//! - `recorded` and `sweep` are two kinds of recording. One part of the content
 //!   each are `signals`, `decisions`, `verdict`, `segment_view`, `beside`, `place`, `doubt`, `difference`, `overview`,
 //!   `delay_state`, `model`, `revision` and `about`, which `assembly` puts together.
 //! - `views` says which view shows what: a tree that `blueprint` writes. What lies below the root of
@@ -34,7 +34,6 @@ mod end;
 mod error;
 mod error_share;
 mod headline;
-mod index;
 mod layers;
 mod layout;
 mod live;
@@ -58,9 +57,7 @@ mod write;
 
 pub use crate::report::{Detail, Recording, SweepRecording};
 pub use error::RecordError;
-pub(crate) use index::{IndexRecording, Volume};
 pub(crate) use live::Live;
 pub use write::log_recording;
-pub(crate) use write::write_index;
 pub use write::write_recording;
 pub use write::write_sweep;

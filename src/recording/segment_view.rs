@@ -39,21 +39,13 @@ pub(super) fn add(
     let mut layers = Layers::rows(chunks, paths::DRAWING, layout.openings());
     let mut plots = Vec::new();
     let rows = drawings.iter().map(|drawing| {
-        let placed = drawing.placed(Some((method, others)));
+        let placed = drawing.placed(method, others);
         let [output, _, errors, close] = &placed;
         plots.push([output, errors, close].map(|placed| placed.plot));
         placed.into()
     });
     panels::add(&mut layers, rows)?;
     add_candidates(chunks, &drawings, &plots)
-}
-
-/// What belongs to each segment, without its candidates.
-pub(super) fn add_drawings<'l, 'a: 'l>(
-    layers: &mut Layers<'_>,
-    steps: impl Iterator<Item = Step<'l, 'a>>,
-) -> Result<(), RecordError> {
-    panels::add(layers, steps.map(|step| Drawing::new(step).placed(None).into()))
 }
 
 /// One segment on its sheet: the output above, what both lines leave of it, the error curve
@@ -74,12 +66,12 @@ impl<'l, 'a> Drawing<'l, 'a> {
     }
 
     /// All panels; where there are other results, with what they say.
-    fn placed(&self, beside: Option<(Method, &[Other<'_>])>) -> [Placed; 4] {
+    fn placed(&self, method: Method, others: &[Other<'_>]) -> [Placed; 4] {
         let (trial, segment) = self.step;
         let mut output = self.figure.output();
         let mut close = self.figure.close_up(sensor_noise(&trial.estimated.joint.trials));
         close.y.name = self.figure.delay_text(trial.trial.period().seconds());
-        if let Some((method, others)) = beside.filter(|(_, others)| !others.is_empty()) {
+        if !others.is_empty() {
             let here = StepResult::of(trial.trial, segment.decision);
             let own = in_short(&here, method.id());
             let own = Mark::lines(self.figure.verdict(), 1.0, Vec::new()).named(own);

@@ -102,11 +102,6 @@ fn log_line(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     format!("{step}  {verdict}   ({at}{found}; doubt {doubt})")
 }
 
-/// A step and its verdict.
-pub(super) fn in_short(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
-    format!("{} {}", trial.step(segment), verdict(trial, segment.decision))
-}
-
 fn verdict(trial: &TrialLayout<'_>, decision: &Decision) -> String {
     let period = trial.trial.period().seconds();
     let delay = |delay: Option<f64>| {
@@ -151,12 +146,6 @@ fn add_lanes(
     let starts = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
     let labels = layout.trials.iter().map(|trial| trial.trial.label());
     chunks.states(paths::TRIAL, starts.collect(), labels)
-}
-
-/// The page on a decision, without other results.
-pub(super) fn page(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
-    let typical = typical_delay(trial.estimated);
-    Facts { trial, segment, typical: typical.as_deref() }.page("")
 }
 
 /// The accepted delays of a joint: what one of them is held against.

@@ -13,7 +13,6 @@ use super::content::{
 };
 use super::end::EndHeld;
 use super::error::RecordError;
-use super::index::IndexRecording;
 use crate::report::{Recording, SweepRecording};
 
 /// Writes `recording` to `out` as a whole `.rrd` file, footer included.
@@ -33,14 +32,6 @@ pub fn write_recording(recording: &Recording<'_>, out: impl Write) -> Result<(),
 /// As [`write_recording`].
 pub fn write_sweep(sweep: &SweepRecording<'_>, out: impl Write) -> Result<(), RecordError> {
     write(sweep, out)
-}
-
-/// Writes the recording that stands before those of many joints to `out` as a whole `.rrd` file.
-///
-/// # Errors
-/// As [`write_recording`].
-pub(crate) fn write_index(index: &IndexRecording<'_>, out: impl Write) -> Result<(), RecordError> {
-    write(index, out)
 }
 
 fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {

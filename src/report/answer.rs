@@ -60,12 +60,7 @@ fn delay_sentence(summary: &JointSummary, kinds: &[String]) -> String {
 /// That the input of a joint moves all the time, and what follows from it.
 pub(crate) fn input_note(joint: &EstimatedJoint<'_>) -> Option<String> {
     joint.estimate.dead_time.as_ref()?;
-    let name = &joint.joint.name;
-    let changes = percent(joint.estimate.motion.changes);
-    Some(format!(
-        "joint `{name}`: the input moves all the time (it changes at {changes} of its samples), \
-         so one dead time is estimated for the record instead of one per step"
-    ))
+    Some(format!("joint `{}`: {}", joint.joint.name, moves(&joint.estimate.motion)))
 }
 
 /// What is said of the dead time of a joint: that its input moves, its dead time and lag, what

@@ -74,18 +74,8 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     format!("{table}\n{}\n\n{models}\n{sections}", errors_note(&horizon))
 }
 
-/// The errors of models of one joint: of one or two a column each, since beside a page of pictures there
-/// is no room for a row; of more a row each with those that matter most.
+/// The errors of models of one joint, a column each.
 pub(crate) fn model_table(models: &[ComparedJoint<'_>]) -> TextTable {
-    if models.len() > 2 {
-        let row = |of: &ComparedJoint<'_>| {
-            let [training, validation, _, _, fit, ..] =
-                figures(of.joint, &errors_of(of.comparison));
-            [of.model.to_owned(), training, validation, fit]
-        };
-        let header = ["model", "training", "validation", "fit"];
-        return TextTable::of(header, &[], models.iter().map(row));
-    }
     let header = ["model", "training", "validation", "raw", "free run", "fit", "lack of fit"];
     let row = |of: &ComparedJoint<'_>| {
         let [training, validation, raw, free, fit, _, lack] =
@@ -168,8 +158,7 @@ fn model_differences<'a>(joints: &[ComparedJoint<'a>]) -> Vec<ComparedModels<'a>
     found
 }
 
-/// Where the simulations of `joints` were restarted: `restarted every 2 s`, or, where they differ,
-/// `free run (motor); restarted every 2 s (boom, arm)`.
+/// Where the simulations of `joints` were restarted: `restarted every 2 s`, each way once.
 pub(crate) fn horizons<'a>(joints: impl IntoIterator<Item = ComparedJoint<'a>>) -> String {
     horizons_of(joints, |comparison| comparison.fit.evaluation.horizon)
 }
@@ -178,21 +167,13 @@ fn horizons_of<'a>(
     joints: impl IntoIterator<Item = ComparedJoint<'a>>,
     which: fn(&Comparison) -> Horizon,
 ) -> String {
-    let mut of_joints: Vec<(String, Vec<&str>)> = Vec::new();
-    for ComparedJoint { joint, comparison, .. } in joints {
-        let horizon = which(comparison).to_string();
-        match of_joints.iter_mut().find(|(known, _)| *known == horizon) {
-            Some((_, names)) if names.contains(&joint.name.as_str()) => {}
-            Some((_, names)) => names.push(&joint.name),
-            None => of_joints.push((horizon, vec![&joint.name])),
+    let mut horizons: Vec<String> = Vec::new();
+    for horizon in joints.into_iter().map(|joint| which(joint.comparison).to_string()) {
+        if !horizons.contains(&horizon) {
+            horizons.push(horizon);
         }
     }
-    if let [(horizon, _)] = of_joints.as_slice() {
-        return horizon.clone();
-    }
-    let named =
-        of_joints.iter().map(|(horizon, names)| format!("{horizon} ({})", names.join(", ")));
-    named.collect::<Vec<_>>().join("; ")
+    horizons.join(" or ")
 }
 
 /// How the residual of a joint is correlated, in a line.
@@ -308,7 +289,6 @@ pub(crate) fn compare_json(joints: &[ComparedJoint<'_>], failures: &[String]) ->
 /// The first model of a joint beside another one.
 fn against(models: &ComparedModels<'_>) -> Value {
     let ComparedModels { joint, model, other, difference } = models;
-    let places = |pairs: &[RegionPair]| pairs.iter().map(place).collect::<Value>();
     json!({
         "joint": joint.name,
         "model": model,
@@ -321,20 +301,7 @@ fn against(models: &ComparedModels<'_>) -> Value {
         "statistic": difference.test.map(|test| test.statistic),
         "p_value": difference.test.map(|test| test.p_value),
         "significant": difference.is_significant(),
-        "better_where": places(&difference.better_where),
-        "worse_where": places(&difference.worse_where),
-    })
-}
-
-/// A part of the record, with the error of both.
-fn place(RegionPair { region, other_rmse }: &RegionPair) -> Value {
-    json!({
-        "feature": region.feature,
-        "label": region.label,
-        "from": region.from,
-        "to": region.to,
-        "share_of_time": region.share_of_time,
-        "rmse": region.rmse,
-        "other_rmse": other_rmse,
+        "better_where": difference.better_where,
+        "worse_where": difference.worse_where,
     })
 }

@@ -1,13 +1,12 @@
 //! The next experiment in words.
 
 use super::TextTable;
-use super::design::{Basis, DesignedJoint, Discrimination, Held, holds, kept_until_s, order};
+use super::design::{Basis, DesignedJoint, Discrimination, kept_until_s, order};
 use super::ranking::levels_text;
 use crate::design::{
     Expected, FreeRunError, OpenThreshold, Prediction, Rehearsal, Schedule, transitions,
 };
-use crate::fit::makes_first_order;
-use crate::wording::{listed, measure, range_text, rounded, wrapped};
+use crate::wording::{effects_named, measure, range_text, rounded, wrapped};
 
 /// What is to be played on each joint, and what is expected of it.
 pub(crate) fn design_text(joints: &[DesignedJoint]) -> String {
@@ -24,7 +23,6 @@ fn joint_text(joint: &DesignedJoint) -> String {
     } else if !sentences.is_empty() {
         parts.push(wrapped(&sentences.join(" ")));
     }
-    parts.push(wrapped(&level_by_level(joint)));
     parts.join("\n\n")
 }
 
@@ -220,14 +218,7 @@ fn margin_text(
 ) -> String {
     let unit = joint.rig.output_unit.as_deref();
     let is_bounded = free_run.as_ref().is_some_and(FreeRunError::is_bounded);
-    let effects = effects.iter().filter(|id| !is_bounded || !makes_first_order(id));
-    let effects: Vec<String> = effects.map(|id| (*id).to_owned()).collect();
-    let kind = if is_bounded { "a first order with dead time" } else { "an integrator" };
-    let model = match effects.as_slice() {
-        [] => kind.to_owned(),
-        effects if is_bounded => format!("{kind}, {}", listed(effects, "and")),
-        effects => format!("{kind} with {}", listed(effects, "and")),
-    };
+    let model = effects_named(effects);
     let margin = measure(prediction.largest_margin(), unit);
     let Some(free_run) = free_run else {
         return format!(
@@ -289,24 +280,4 @@ pub(crate) fn trials_note(trials: usize) -> String {
 /// That nothing was said of where the joint may go.
 pub(crate) fn no_range_note() -> String {
     "No range is kept: --output-range LO,HI says where the joint may go.".to_owned()
-}
-
-/// `0 V for 0.55 s, 1 V for 1 s, …`, as far as anybody reads it: of several trials the first.
-fn level_by_level(joint: &DesignedJoint) -> String {
-    const SHOWN: usize = 24;
-    let holds = holds(&joint.schedule);
-    let unit = joint.rig.input_unit.as_deref();
-    let first: Vec<&Held> = holds.iter().filter(|held| held.trial == 1).collect();
-    let shown = first.iter().take(SHOWN);
-    let shown =
-        shown.map(|held| format!("{} for {} s", measure(held.level, unit), rounded(held.hold_s)));
-    let shown = shown.collect::<Vec<_>>().join(", ");
-    let more = match first.len().saturating_sub(SHOWN) {
-        0 => String::new(),
-        more => format!(", and {more} more"),
-    };
-    match joint.schedule.trial_count() {
-        1 => format!("Input: {shown}{more}."),
-        _ => format!("Input, trial 1: {shown}{more}. The others are in the file (-o)."),
-    }
 }

@@ -4,9 +4,7 @@ use serde_json::{Value, json};
 
 use super::{EstimatedJoint, TextTable};
 use crate::study::{JointDifferences, JointResult, OtherResult, StepPair, StepResult, Verdicts};
-use crate::wording::{
-    difference_in_short, difference_sentences, missing_sentences, result_in_short, step_name,
-};
+use crate::wording::{difference_in_short, difference_sentences, result_in_short, step_name};
 
 /// Another result, and how it differs on each joint.
 #[derive(Debug)]
@@ -47,22 +45,6 @@ impl<'a> Against<'a> {
             _ => self.other.name.clone(),
         }
     }
-
-    /// Which steps have no counterpart, for whoever runs the command: a sentence per joint.
-    pub(crate) fn notes(&self) -> Vec<String> {
-        let name = &self.other.name;
-        let left_over = self.joints.iter().filter_map(|(joint, found)| {
-            let missing = missing_sentences(found).join("; ");
-            (!missing.is_empty()).then(|| format!("against {name}, {joint}: {missing}"))
-        });
-        left_over.collect()
-    }
-
-    /// Which joints of the other result are not here.
-    pub(crate) fn note_on_joints(&self) -> Option<String> {
-        let (name, joints) = (&self.other.name, self.only_there.join(", "));
-        (!joints.is_empty()).then(|| format!("against {name}: joints that are not here: {joints}"))
-    }
 }
 
 /// How the decisions differ from those of another result: the largest differences of each joint.
@@ -79,6 +61,9 @@ pub(crate) fn against_text(against: &Against<'_>) -> String {
     if !table.rows.is_empty() {
         text += &table.to_string();
         text += "\n";
+    }
+    if !against.only_there.is_empty() {
+        text += &format!("joints that are not here: {}\n", against.only_there.join(", "));
     }
     let all: usize = against.joints.iter().map(|(_, found)| found.differing().count()).sum();
     let left_out = all - table.rows.len();

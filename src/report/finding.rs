@@ -99,40 +99,13 @@ pub(crate) struct Consequence<'a> {
     pub(crate) sensor_noise: Option<f64>,
 }
 
-/// Times the noise that say nothing to a person any more.
-pub(crate) const MANY_TIMES_NOISE: f64 = 20.0;
-
-/// `5.6 times the noise`, `as large as the noise`.
-pub(crate) fn times_noise(times: f64) -> String {
-    /// A difference of the two that nobody asks about.
-    const ALIKE: f64 = 0.05;
-    if (times - 1.0).abs() < ALIKE {
-        "as large as the noise".to_owned()
-    } else {
-        format!("{} times the noise", rounded(times))
-    }
-}
-
-/// `5.6 times the noise`; far above it, or where it is not known, `a fit of 88 %`.
-pub(super) fn in_proportion(error: ErrorFigures, noise: Option<f64>) -> String {
-    match noise.map(|noise| error.rmse / noise) {
-        Some(times) if times < MANY_TIMES_NOISE => times_noise(times),
-        _ => match error.fit_percent / 100.0 {
-            fit if fit > 0.0 => format!("a fit of {} to the output", percent(fit)),
-            // A model that runs away, or an output that hardly moves.
-            _ => "no better than the mean of the output".to_owned(),
-        },
-    }
-}
-
-/// `3.2 times as large`, where that many times can be said.
-pub(super) fn times_as_large(times: f64) -> String {
-    /// Beyond it the error that is compared with is all but 0.
-    const SAID: f64 = 1e6;
-    if times < SAID {
-        format!("{} times as large", rounded(times))
-    } else {
-        "far larger".to_owned()
+/// `5.6 times the noise`; where that is not known, `a fit of 88 % to the output`.
+pub(crate) fn in_proportion(error: ErrorFigures, noise: Option<f64>) -> String {
+    match (noise, error.fit_percent / 100.0) {
+        (Some(noise), _) => format!("{} times the noise", rounded(error.rmse / noise)),
+        (None, fit) if fit > 0.0 => format!("a fit of {} to the output", percent(fit)),
+        // A model that runs away, or an output that hardly moves.
+        (None, _) => "no better than the mean of the output".to_owned(),
     }
 }
 
@@ -151,8 +124,7 @@ impl Consequence<'_> {
         Some(self.after?.rmse / self.sensor_noise?)
     }
 
-    /// `0.28 deg remain, 5.6 times the noise`; far above it, with the fit:
-    /// `0.88 deg remain, a fit of 88 %`.
+    /// `0.28 deg remain, 5.6 times the noise`.
     pub(super) fn remains(&self) -> String {
         let Some(after) = self.after else { return "an error remains".to_owned() };
         let error = measure(after.rmse, self.joint.output_unit.as_deref());

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::decisions::decision_columns;
 use super::json::document;
 use super::{DataTable, DelayRange, Kind, TextTable};
-use crate::wording::{counted, percent};
+use crate::wording::counted;
 
 /// The result of one log: the document that the command prints as JSON.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,14 +123,47 @@ impl FolderReport {
 
     /// A table of the joints across all logs.
     pub(crate) fn text(&self) -> String {
-        let columns = if self.command == "improve" { &IMPROVED_TEXT[..] } else { &ESTIMATED_TEXT };
-        let row = |joint: &Value| columns.iter().map(|(_, place)| cell(joint, place)).collect();
-        let table = TextTable {
-            header: columns.iter().map(|(heading, _)| (*heading).to_owned()).collect(),
-            rows: self.across().iter().map(row).collect(),
-            numbers: (1..columns.len() - 1).collect(),
-        };
+        let joints = self.across();
+        let columns = if self.command == "improve" { IMPROVED_TEXT } else { ESTIMATED_TEXT };
+        let row = |joint: &Value| columns.map(|(_, place)| cell(joint.pointer(place)));
+        let header = columns.map(|(name, _)| name);
+        let table = TextTable::of(header, &[1, 2, 3, 4, 5, 6], joints.iter().map(row));
         format!("{table}\n{}, each by itself\n", counted(self.logs.len(), "log"))
+    }
+}
+
+/// The columns of [`FolderReport::text`], and where each stands in what a joint has in all its logs.
+const ESTIMATED_TEXT: [(&str, &str); 7] = [
+    ("joint", "/joint"),
+    ("logs", "/logs"),
+    ("steps", "/steps"),
+    ("accepted", "/accepted"),
+    ("delay min [s]", "/delay_s/min"),
+    ("median", "/delay_s/median"),
+    ("max", "/delay_s/max"),
+];
+
+const IMPROVED_TEXT: [(&str, &str); 7] = [
+    ("joint", "/joint"),
+    ("logs", "/logs"),
+    ("adequate", "/adequate"),
+    ("validation rmse min", "/validation_rmse/min"),
+    ("median", "/validation_rmse/median"),
+    ("max", "/validation_rmse/max"),
+    ("effects (logs)", "/effects"),
+];
+
+/// A text, a count, a number to three decimals, or how many logs have each effect.
+fn cell(value: Option<&Value>) -> String {
+    match value {
+        Some(Value::String(text)) => text.clone(),
+        Some(Value::Object(counts)) => {
+            let counts = counts.iter().map(|(id, count)| format!("{id} ({count})"));
+            counts.collect::<Vec<_>>().join(", ")
+        }
+        Some(Value::Number(number)) if !number.is_f64() => number.to_string(),
+        Some(Value::Number(number)) => format!("{:.3}", number.as_f64().unwrap_or(f64::NAN)),
+        _ => "-".to_owned(),
     }
 }
 
@@ -156,30 +189,6 @@ const IMPROVED: [SummaryColumn; 8] = [
     ("train_rmse", Kind::Real, "/error/train/rmse"),
     ("validation_rmse", Kind::Real, "/error/validation/rmse"),
     ("noise_floor", Kind::Real, "/error/noise_floor"),
-];
-
-/// Heading of a column for people, and where in the JSON of a joint across its logs its value stands.
-type TextColumn = (&'static str, &'static str);
-
-const ESTIMATED_TEXT: [TextColumn; 8] = [
-    ("joint", "/joint"),
-    ("logs", "/logs"),
-    ("steps", "/steps"),
-    ("accepted", "/accepted"),
-    ("delay min", "/delay_s/min"),
-    ("median", "/delay_s/median"),
-    ("max", "/delay_s/max"),
-    ("medians of the logs", "/median_delay_s_of_logs"),
-];
-
-const IMPROVED_TEXT: [TextColumn; 7] = [
-    ("joint", "/joint"),
-    ("logs", "/logs"),
-    ("adequate", "/adequate"),
-    ("validation rmse min", "/validation_rmse/min"),
-    ("median", "/validation_rmse/median"),
-    ("max", "/validation_rmse/max"),
-    ("effects (logs)", "/effects"),
 ];
 
 /// The runs of a log, one for each method.
@@ -225,31 +234,7 @@ fn across(name: &str, logs: &[&Value]) -> Value {
     })
 }
 
-/// What stands at a `place` of a joint: a number to the thousandth, delays in seconds; the ends of a range;
-/// names with their counts. Nothing where there is none.
-fn cell(joint: &Value, place: &str) -> String {
-    let unit = if place.contains("delay") { " s" } else { "" };
-    let number = |value: &Value| value.as_f64().unwrap_or_default();
-    match joint.pointer(place) {
-        Some(Value::String(text)) => text.clone(),
-        Some(count) if place == "/accepted" => {
-            let steps = joint.get("steps").map_or(1.0, number).max(1.0);
-            format!("{count} ({})", percent(number(count) / steps))
-        }
-        Some(Value::Number(count)) if count.is_u64() => count.to_string(),
-        Some(value @ Value::Number(_)) => format!("{:.3}{unit}", number(value)),
-        Some(Value::Object(fields)) => {
-            if let (Some(min), Some(max)) = (fields.get("min"), fields.get("max")) {
-                return format!("{:.3} … {:.3}{unit}", number(min), number(max));
-            }
-            let counts = fields.iter().map(|(name, count)| format!("{name} ({count})"));
-            counts.collect::<Vec<_>>().join(", ")
-        }
-        _ => String::new(),
-    }
-}
-
-/// The document of `--results … --format json` and `merge`; `failures` are messages on logs that
+/// The document of `--results … --format json`; `failures` are messages on logs that
 /// failed.
 pub(crate) fn folder_json(report: &FolderReport, failures: &[String]) -> Value {
     let facts = json!({

@@ -9,13 +9,10 @@ use super::explain::finding_json;
 use super::json::{document, joined};
 use super::ladder::{LadderRow, change_in_words, errors_of, figures, ladder_table};
 use super::parameters::{model_text, parameters_json};
-use super::{Before, ComparedJoint, Finding, History};
-use crate::diagnosis::Comparison;
-use crate::effect::by_id;
+use super::{Before, Finding, History};
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
-use crate::model::Component;
-use crate::wording::{effect_ids, measure};
+use crate::wording::effect_ids;
 
 /// A joint whose model was improved.
 #[derive(Clone, Copy, Debug)]
@@ -51,13 +48,6 @@ impl<'a> ImprovedJoint<'a> {
         Self { finding: Finding { before, ..self.finding }, ..self }
     }
 
-    /// That somebody stopped it, which then has ended it, and no limit.
-    #[must_use]
-    pub(crate) fn stopped(self) -> Self {
-        let interrupted = self.finding.verdict != Verdict::Adequate;
-        Self { interrupted, reached_limit: false, ..self }
-    }
-
     /// The revisions with their numbers.
     pub fn numbered(&self) -> impl Iterator<Item = (u32, &'a Revision)> {
         (self.first_revision..).zip(self.revisions)
@@ -65,14 +55,8 @@ impl<'a> ImprovedJoint<'a> {
 
     /// The candidate of the revision at `index` that the next one took, or would take.
     pub fn proposed(&self, index: usize) -> Option<&'a Candidate> {
-        self.ranking_behind(index).first()
-    }
-
-    /// The ranking at `index` from that candidate on.
-    fn ranking_behind(&self, index: usize) -> &'a [Candidate] {
-        let ranking = self.revisions.get(index).map_or(&[][..], |revision| &revision.ranking);
-        let first = ranking.iter().position(|candidate| self.is_taken(index, candidate));
-        first.and_then(|first| ranking.get(first..)).unwrap_or_default()
+        let ranking = &self.revisions.get(index)?.ranking;
+        ranking.iter().find(|candidate| self.is_taken(index, candidate))
     }
 
     fn is_taken(&self, index: usize, candidate: &Candidate) -> bool {
@@ -101,68 +85,6 @@ impl<'a> ImprovedJoint<'a> {
         conclusion
     }
 
-    /// What is to be said of the revision at `index`.
-    pub(crate) fn conclusion_at(&self, index: usize) -> Conclusion {
-        let next = self.revisions.get(index + 1).map(|next| next.change);
-        let known = self.numbered().nth(index).zip(next);
-        let Some(((revision, step), next)) = known else { return self.conclusion() };
-        let verdict = Verdict::MissingEffect;
-        let compared =
-            ComparedJoint { revision, comparison: &step.comparison, ..self.finding.compared };
-        let ranking = self.ranking_behind(index);
-        let (before, attribution) = (None, None);
-        let finding = Finding { compared, verdict, ranking, before, attribution, ..self.finding };
-        let made_useless = |why: String| Conclusion {
-            headline: format!("{}: {why}", compared.joint.name),
-            passages: Vec::from_iter(Passage::of(
-                Topic::NEXT,
-                ["The effects added after it explain the same part of the error, so its \
-                  parameters are no longer justified."
-                    .to_owned()],
-            )),
-            commands: Vec::new(),
-        };
-        match next {
-            Change::Removed(id) => made_useless(format!("{id} is superfluous now")),
-            Change::Replaced { old, new } if ranking.is_empty() && !is_finer(new, old) => {
-                made_useless(format!("{new} replaces {old}"))
-            }
-            Change::Added(id) | Change::Replaced { new: id, .. } if ranking.is_empty() => {
-                self.added_unranked(index, id, &finding)
-            }
-            Change::Added(_) | Change::Replaced { .. } | Change::Start => finding.conclusion(),
-        }
-    }
-
-    /// What is to be said of the revision of `finding` at `index`, to which the effect `id` was
-    /// added without others beside it.
-    fn added_unranked(&self, index: usize, id: &str, finding: &Finding<'_>) -> Conclusion {
-        let joint = finding.compared.joint;
-        let next = self.revisions.get(index + 1).map(|next| &next.comparison);
-        let components = next.map(|next| next.fit.model.components()).unwrap_or_default();
-        let added = components.iter().find(|component| component.effect().spec().id == id);
-        let summary = added.map(Component::summary).unwrap_or_default();
-        let error = |comparison: Option<&Comparison>| {
-            let error = comparison.and_then(Comparison::judged).map(|error| error.rmse);
-            error.map_or_else(|| "-".to_owned(), |e| measure(e, joint.output_unit.as_deref()))
-        };
-        let (now, then) = (error(Some(finding.compared.comparison)), error(next));
-        let pair = |index: usize| self.proposed(index).is_some_and(|pair| pair.effects.len() > 1);
-        let why = if index.checked_sub(1).is_some_and(pair) {
-            "It is the second of a pair that was found together."
-        } else {
-            "It is one of the usual effects of a valve and its joint: these are added first, in a \
-             fixed order, and are removed at the end if they explain nothing."
-        };
-        let mut passages = finding.fails();
-        passages.extend(Passage::of(Topic::NEXT, [format!("{id} ({summary}). {why}")]));
-        Conclusion {
-            headline: format!("{}: {id} is added next: {now} → {then}", joint.name),
-            passages,
-            commands: Vec::new(),
-        }
-    }
-
     /// The ladder of errors: the revisions of the model's history, and those made now.
     pub(super) fn ladder(&self) -> Vec<LadderRow> {
         self.history.rows(self.first_revision, self.revisions)
@@ -179,21 +101,15 @@ impl<'a> ImprovedJoint<'a> {
     }
 }
 
-/// Whether `new` is a finer form of `old`.
-fn is_finer(new: &str, old: &str) -> bool {
-    by_id(new).is_some_and(|effect| effect.spec().refines == Some(old))
-}
-
-/// One line on a revision, for somebody who waits: `boom: revision 1, + dead_band:
-/// validation error 0.06 deg`.
-pub(crate) fn revision_line(joint: &Joint, number: u32, revision: &Revision) -> String {
+/// One line on a revision, for somebody who waits: `boom: + dead_band: validation error 0.06 deg`.
+pub(crate) fn revision_line(joint: &Joint, revision: &Revision) -> String {
     let [training, validation, ..] = figures(joint, &errors_of(&revision.comparison));
     let change = change_in_words(revision);
     let error = match revision.comparison.validation {
         Some(_) => format!("validation error {validation}"),
         None => format!("training error {training}"),
     };
-    format!("{}: revision {number}, {change}: {error}", joint.name)
+    format!("{}: {change}: {error}", joint.name)
 }
 
 /// For each joint the ladder of errors and what is to be said of the last revision.

@@ -1,5 +1,5 @@
 //! The delay table as source code that a controller looks its delays up in: C99, MATLAB or GNU Octave,
-//! Python 3, each without dependencies, and JSON.
+//! Python 3, each without dependencies.
 //!
 //! ```text
 //! side(u) = 1 above the neutral band, −1 below it, 0 within it
@@ -18,14 +18,12 @@ use std::cmp::Ordering;
 use std::path::Path;
 
 use minijinja::context;
-use serde_json::{Value, json};
 
 use super::EstimatedJoint;
 use super::answer::dead_time_sentences;
 use super::settings::settings_line;
 use crate::delay::{
-    Automatic, CurvePoint, DelayCurve, DelayTable, Finding, Neutral, Settings, Transition,
-    TypicalDelay,
+    CurvePoint, DelayCurve, DelayTable, Finding, Neutral, Settings, Transition, TypicalDelay,
 };
 use crate::experiment::{Source, is_control};
 use crate::export::{ExportError, filled};
@@ -37,7 +35,6 @@ pub(crate) enum Language {
     C,
     Matlab,
     Python,
-    Json,
 }
 
 impl Language {
@@ -47,7 +44,6 @@ impl Language {
             "c" => Some(Self::C),
             "m" => Some(Self::Matlab),
             "py" => Some(Self::Python),
-            "json" => Some(Self::Json),
             _ => None,
         }
     }
@@ -62,7 +58,6 @@ impl Language {
             Self::C => (include_str!("lookup/lookup.c"), "INFINITY"),
             Self::Matlab => (include_str!("lookup/lookup.m"), "Inf"),
             Self::Python => (include_str!("lookup/lookup.py"), "math.inf"),
-            Self::Json => return Ok(format!("{:#}\n", lookup.json())),
         };
         let joint = |joint: &JointLookup<'_>| {
             let [low, high] = match joint.neutral {
@@ -87,7 +82,7 @@ impl Language {
             // A trigraph may stand for the backslash before the mark that ends the text.
             Self::C => quoted.replace('?', "\\?"),
             Self::Matlab => text.replace('\'', "''"),
-            Self::Python | Self::Json => quoted,
+            Self::Python => quoted,
         }
     }
 }
@@ -123,15 +118,9 @@ pub(crate) struct Lookup<'a> {
 #[derive(Clone, Debug)]
 struct JointLookup<'a> {
     name: &'a str,
-    input_unit: Option<&'a str>,
     neutral: Option<Neutral>,
     curves: Vec<DelayCurve>,
 }
-
-const RULE: &str = "side(u) is 1 above the neutral band, -1 below, 0 within; equal sides: change; \
-                    from 0: start; to 0: stop; else reversal. Take the curve of this transition, \
-                    of the side of level_to (of a stop: level_from) and of the direction; \
-                    interpolate delay_s linearly over that level, clamped to its ends";
 
 impl<'a> Lookup<'a> {
     /// The delays of `joints`, which were estimated with `settings` from `sources`.
@@ -140,13 +129,11 @@ impl<'a> Lookup<'a> {
         joints: &[EstimatedJoint<'a>],
         settings: &Settings,
     ) -> Self {
-        let automatic = joints.iter().find_map(|joint| joint.estimate.chosen);
-        let automatic = automatic.map_or_else(Automatic::default, |chosen| chosen.automatic);
         let source =
             |source: &Source| format!("log: {} (SHA-256 {})", source.path.display(), source.sha256);
         let tables: Vec<_> = joints.iter().map(|joint| (joint.joint, delays_of(joint))).collect();
         let lines = [format!("made by tauscope {} estimate", env!("CARGO_PKG_VERSION"))];
-        let method = format!("method: {}", settings_line(settings, automatic));
+        let method = format!("method: {}", settings_line(settings));
         let lines = lines.into_iter().chain(sources.iter().map(source)).chain([method]);
         let counted = tables.iter().map(|(joint, table)| joint_line(&joint.name, table));
         let dead_times = joints.iter().flat_map(|joint| {
@@ -157,7 +144,6 @@ impl<'a> Lookup<'a> {
         let origin = lines.chain(counted).map(|line| line.replace(is_control, " ")).collect();
         let joints = tables.into_iter().map(|(joint, table)| JointLookup {
             name: &joint.name,
-            input_unit: joint.input_unit.as_deref(),
             neutral: table.neutral,
             curves: table.curves,
         });
@@ -168,38 +154,6 @@ impl<'a> Lookup<'a> {
     pub(crate) fn is_empty(&self) -> bool {
         self.joints.iter().all(|joint| joint.curves.is_empty())
     }
-
-    /// Schema `tauscope/delay_lookup/1`; `neutral` is `null` where it is not known, and every side is 0.
-    fn json(&self) -> Value {
-        let joint = |joint: &JointLookup<'_>| {
-            json!({
-                "joint": joint.name,
-                "input_unit": joint.input_unit,
-                "neutral": joint.neutral.map(|neutral| (neutral.low, neutral.high)),
-                "curves": joint.curves.iter().map(curve_json).collect::<Value>(),
-            })
-        };
-        json!({
-            "schema": "tauscope/delay_lookup/1",
-            "origin": self.origin,
-            "rule": RULE,
-            "joints": self.joints.iter().map(joint).collect::<Value>(),
-        })
-    }
-}
-
-fn curve_json(curve: &DelayCurve) -> Value {
-    let list = |value: fn(&CurvePoint) -> Value| curve.points.iter().map(value).collect::<Value>();
-    json!({
-        "transition": curve.transition,
-        "side": side(curve.side),
-        "rises": curve.rises,
-        "level": list(|point| point.level.into()),
-        "accepted": list(|point| point.accepted.into()),
-        "delay_s": list(|point| point.delay.median_s.into()),
-        "delay_low_s": list(|point| point.delay.interval_s.map(|(low, _)| low).into()),
-        "delay_high_s": list(|point| point.delay.interval_s.map(|(_, high)| high).into()),
-    })
 }
 
 /// The delay table of a joint; where its input moves all the time, every change has the one dead

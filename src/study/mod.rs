@@ -1,7 +1,6 @@
 //! All joints of an experiment: what is done with each, by any [`Workers`](crate::explain::Workers).
 //!
-//! - [`estimate_joints`]: the delays of every joint, with settings that may be chosen from its
-//!   record
+//! - [`estimate_joints`]: the delays of every joint
 //! - [`sweep_joints`]: the delays with every setting of a grid
 //! - [`Review`]: what persons say of decisions
 //! - [`JointDifferences`]: decisions beside those of [`OtherResult`], read or estimated

@@ -79,7 +79,7 @@ pub(crate) fn difference_sentences(found: &JointDifferences) -> Vec<String> {
 }
 
 /// Which steps only one of both results has.
-pub(crate) fn missing_sentences(found: &JointDifferences) -> Vec<String> {
+fn missing_sentences(found: &JointDifferences) -> Vec<String> {
     let left_over = [(&found.only_here, "there"), (&found.only_there, "here")];
     let left_over = left_over.into_iter().filter(|(steps, _)| !steps.is_empty());
     left_over.map(|(steps, place)| missing(steps, place)).collect()

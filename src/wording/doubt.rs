@@ -1,8 +1,8 @@
 //! The doubt of a decision in words, and what would have accepted its step.
 
+use super::to_place;
 #[cfg(feature = "rrd")]
 use super::{counted, number};
-use super::{percent, to_place};
 use crate::delay::{Condition, Doubt, Flag, Remedy, Verdict};
 
 /// Margin of a condition that failed up to which it failed by little.
@@ -22,12 +22,12 @@ pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
         );
     }
     let flags = doubt.flags.iter().map(|flag: &Flag| flag.meaning().to_owned());
-    let sentences = flags.chain(least(doubt, period_s).map(|[reason, _]| reason));
+    let sentences = flags.chain(least(doubt, period_s));
     sentences.collect::<Vec<_>>().join("; ")
 }
 
-/// What brings an accepted decision nearest to its limit, in a clause and in a few words.
-fn least(doubt: &Doubt, period_s: f64) -> Option<[String; 2]> {
+/// What brings an accepted decision nearest to its limit, in a clause.
+fn least(doubt: &Doubt, period_s: f64) -> Option<String> {
     let seconds = |samples: f64| format!("{} s", to_place(samples * period_s, 3));
     let [explained, placed, meeting] = doubt.margins();
     let left = to_place(100.0 * (1.0 - explained), 0);
@@ -35,53 +35,14 @@ fn least(doubt: &Doubt, period_s: f64) -> Option<[String; 2]> {
         if doubt.settles { ("reaction", "no reaction") } else { ("break", "one line") };
     let (spread, crossing) = (seconds(doubt.spread), seconds(doubt.crossing));
     let reasons = [
-        (
-            explained,
-            [
-                format!("with a {what} the squared error is still {left} % of that with {of}"),
-                format!("error left {}", percent(1.0 - explained)),
-            ],
-        ),
-        (
-            placed,
-            [
-                format!("breakpoints {spread} apart fit about as well"),
-                format!("breaks {spread} apart fit alike"),
-            ],
-        ),
-        (
-            meeting,
-            [
-                format!("the lines cross {crossing} from the breakpoint"),
-                format!("lines cross {crossing} off"),
-            ],
-        ),
+        (explained, format!("with a {what} the squared error is still {left} % of that with {of}")),
+        (placed, format!("breakpoints {spread} apart fit about as well")),
+        (meeting, format!("the lines cross {crossing} from the breakpoint")),
     ];
     let near = doubt.nearest.filter(|(_, margin)| *margin < 1.0);
-    let near = near.map(|(condition, margin)| {
-        (margin, [by_little(condition), format!("near {}", condition.id())])
-    });
+    let near = near.map(|(condition, margin)| (margin, by_little(condition)));
     let all = reasons.into_iter().chain(near);
     all.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, said)| said)
-}
-
-/// What speaks most against a decision, as short as it can be said.
-#[cfg(feature = "rrd")]
-pub(crate) fn doubt_in_short(doubt: &Doubt, verdict: Verdict, period_s: f64) -> String {
-    let near = doubt.nearest.filter(|(_, margin)| *margin < 1.0);
-    if let Verdict::Rejected(_) = verdict {
-        return near.map_or_else(
-            || "no number near its limit".to_owned(),
-            |(condition, _)| format!("near the limit of {}", condition.id()),
-        );
-    }
-    match doubt.flags.first() {
-        Some(Flag::Edge) => return "edge of its segment".to_owned(),
-        Some(Flag::Jump) => return "lines jump apart".to_owned(),
-        Some(Flag::Stop) => return "output at its end".to_owned(),
-        None => {}
-    }
-    least(doubt, period_s).map_or_else(String::new, |[_, reason]| reason)
 }
 
 /// A condition that holds by little.

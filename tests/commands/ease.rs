@@ -1,5 +1,4 @@
-//! What makes the program easy to use: completions, manual pages, `doctor`, colours, names
-//! that were mistyped.
+//! What makes the program easy to use: completions, `doctor`, colours, names that were mistyped.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -78,43 +77,6 @@ fn bash_completes_commands_options_and_values() {
     assert_eq!(values, ["lag-aware"]);
 }
 
-#[test]
-fn every_command_has_a_manual_page_with_all_its_options() {
-    let folder = tempfile::tempdir().unwrap();
-    let place = folder.path().to_str().unwrap();
-    printed(&tauscope(&["man", "-o", place]).output().unwrap());
-    let mut pages: Vec<_> = std::fs::read_dir(folder.path())
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    pages.sort();
-    let mut expected: Vec<_> = commands().iter().map(|c| format!("tauscope-{c}.1")).collect();
-    expected.push("tauscope.1".to_owned());
-    expected.sort();
-    assert_eq!(pages, expected);
-    for command in commands() {
-        let page = std::fs::read_to_string(folder.path().join(format!("tauscope-{command}.1")));
-        let page = page.unwrap();
-        let shown = printed(&tauscope(&["man", &command]).output().unwrap());
-        assert_eq!(page, shown);
-        let help = printed(&tauscope(&[&command, "--help"]).output().unwrap());
-        let options = help.split_whitespace().filter(|word| word.starts_with("--"));
-        for option in
-            options.filter(|option| option.chars().skip(2).all(|c| c.is_ascii_lowercase()))
-        {
-            assert!(page.replace('\\', "").contains(option), "{command}: {option}");
-        }
-    }
-}
-
-#[test]
-fn a_page_of_no_command_is_refused_with_the_nearest() {
-    let output = tauscope(&["man", "explian"]).output().unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    let stderr = String::from_utf8(output.stderr).unwrap();
-    assert!(stderr.contains("did you mean `explain`?"), "{stderr}");
-}
-
 /// `doctor` where `PATH` is `path`: its JSON.
 fn doctor(path: &std::path::Path) -> Value {
     let output = tauscope(&["doctor", "--format", "json"]).env("PATH", path).output().unwrap();
@@ -172,22 +134,14 @@ fn doctor_asks_the_viewer_for_its_version() {
 fn colours_are_there_only_where_they_are_wanted() {
     let desk = Desk::with(vec![joint("boom")]);
     let log = desk.folder.path().join("log.csv");
-    let run = |variables: &[(&str, &str)]| {
+    let is_colored = |variables: &[(&str, &str)]| {
         let mut command = tauscope(&["estimate", log.to_str().unwrap(), "--joint", "boom,"]);
         let refused = command.envs(variables.iter().copied()).output().unwrap();
-        let mut command = tauscope(&["estimate", log.to_str().unwrap()]);
-        let done = command.envs(variables.iter().copied()).output().unwrap();
-        let is_colored = |bytes: &[u8]| bytes.contains(&0x1b);
-        (is_colored(&refused.stderr), is_colored(&done.stdout), done.stdout)
+        refused.stderr.contains(&0x1b)
     };
-    let (message, table, plain) = run(&[]);
-    assert!(!message && !table, "a pipe is no terminal");
-    let (message, table, colored) = run(&[("CLICOLOR_FORCE", "1")]);
-    assert!(message && table, "colours were forced");
-    let words = |bytes: &[u8]| anstream::adapter::strip_bytes(bytes).into_vec();
-    assert_eq!(words(&colored), plain, "colours change no letter");
-    let (message, table, _) = run(&[("NO_COLOR", "1"), ("CLICOLOR_FORCE", "1")]);
-    assert!(!message && !table, "who wants no colours gets none");
+    assert!(!is_colored(&[]), "a pipe is no terminal");
+    assert!(is_colored(&[("CLICOLOR_FORCE", "1")]), "colours were forced");
+    assert!(!is_colored(&[("NO_COLOR", "1"), ("CLICOLOR_FORCE", "1")]), "who wants none gets none");
     let forced = tauscope(&["estimate", log.to_str().unwrap(), "--format", "json"])
         .env("CLICOLOR_FORCE", "1")
         .output()
@@ -206,7 +160,6 @@ fn names_that_were_mistyped_are_answered_with_the_nearest() {
     let refused = [
         ("estimte log.csv", "`estimate`"),
         ("estimate log.csv --methd hinge", "'--method'"),
-        ("estimate log.csv --low-pass 5", "named in the help of `--passband`"),
         ("explain log.csv --method hinge", "option of `estimate`, `sweep`, `report`"),
         ("log.csv --decisions d.csv", "option of `estimate`"),
         ("estimate log.csv --method hing", "'hinge'"),
@@ -251,7 +204,7 @@ fn progress_has_rate_and_time_left_on_a_terminal_and_none_where_it_is_not_wanted
     };
     let bar = |shown: &str| shown.contains(" fits, ") && shown.contains("/s, ");
     assert!(bar(&shown) && shown.contains(" left"), "{shown}");
-    assert!(shown.contains("revision 1"), "messages stand beside the bar: {shown}");
+    assert!(shown.contains("improving"), "messages stand beside the bar: {shown}");
     let quiet = on_a_terminal(&desk, &format!("{improve} --quiet")).unwrap();
     assert!(!bar(&quiet), "{quiet}");
     let piped = desk.run(improve);

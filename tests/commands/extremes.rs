@@ -186,16 +186,3 @@ fn a_clock_that_slows_down_without_end_is_read_in_no_time() {
     let output = tauscope(folder.path(), &["estimate", "log.csv"]);
     assert!(output.status.code().is_some_and(|code| code != 101));
 }
-
-#[test]
-fn a_log_in_the_folder_of_the_drawings_is_not_replaced() {
-    let folder = TempDir::new().unwrap();
-    let drawings = folder.path().join("page_files");
-    fs::create_dir(&drawings).unwrap();
-    let log = drawings.join("joint-1-boom-record.svg");
-    fs::copy(LOG, &log).unwrap();
-    let name = log.to_str().unwrap();
-    let said = refused(folder.path(), &["report", name, "-o", "page.md", "--no-recording"]);
-    assert!(said.contains("lies in the folder of the drawings"), "{said}");
-    assert_eq!(fs::read(LOG).unwrap(), fs::read(log).unwrap());
-}

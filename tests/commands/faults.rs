@@ -10,7 +10,7 @@ use std::fs::{self, File};
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 use crate::desk::{Desk, banded, joint};
 use rand::{RngExt as _, SeedableRng as _};
@@ -140,13 +140,10 @@ impl Job {
         }
     }
 
-    /// Whether the next run makes everything as it should be, also what was left by those
-    /// before.
+    /// Whether the next run makes everything as it should be.
     fn check_next(&self) {
         for name in self.files().keys().filter(|name| is_part(name)) {
-            let old = SystemTime::now() - Duration::from_hours(1);
-            let part = File::options().write(true).open(self.desk.folder.path().join(name));
-            part.unwrap().set_modified(old).unwrap();
+            fs::remove_file(self.desk.folder.path().join(name)).unwrap();
         }
         // A folder of results is written to only where one is missing.
         for name in self.made().filter(|name| name.starts_with("kept")) {

@@ -123,10 +123,9 @@ fn what_is_done_and_unchanged_is_not_done_again() {
     workspace.write_log("logs/run_01.csv", 40);
     let changed = workspace.run("estimate logs --results kept");
     changed.is_whole().says("2 of 3 logs are done already");
-    changed.says("1 result is replaced, since logs/run_01.csv or a file given with it has changed");
     let other = workspace.run("estimate logs --results kept --beta 2");
     let other = &other.is_whole().error;
-    assert!(!other.contains("already") && !other.contains("replaced"), "{other}");
+    assert!(!other.contains("already"), "{other}");
     fs::write(workspace.path("map.toml"), "time = \"time_s\"").unwrap();
     let map = "estimate logs --results kept --columns map.toml";
     workspace.run(map).is_whole();
@@ -136,18 +135,19 @@ fn what_is_done_and_unchanged_is_not_done_again() {
 }
 
 #[test]
-fn parts_merge_to_the_bytes_of_one_run() {
+fn parts_have_the_bytes_of_one_run() {
     let workspace = Workspace::with_logs(5);
     let ending = if cfg!(feature = "parquet") { "parquet" } else { "summary.csv" };
     let tables = |name: &str| format!("--decisions {name}.csv --summary {name}.{ending}");
     let one = workspace.run(&format!("estimate logs --results one --threads 1 {}", tables("one")));
     one.is_whole();
     for part in [3, 1, 2] {
-        let command = format!("estimate logs --results parts_{part} --shard {part}/3 --threads 2");
+        let command = format!("estimate logs --results parts --shard {part}/3 --threads 2");
         workspace.run(&command).is_whole().says(&format!("part {part} of 3"));
     }
-    let merged = workspace.run(&format!("merge parts_2 parts_1 parts_3 {}", tables("merged")));
-    assert_eq!(merged.is_whole().out, one.out);
+    let all = workspace.run(&format!("estimate logs --results parts {}", tables("merged")));
+    all.says("5 of 5 logs are done already");
+    assert_eq!(all.is_whole().out, one.out);
     let mut compared = 0;
     for entry in fs::read_dir(workspace.folder.path()).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
@@ -164,16 +164,6 @@ fn parts_merge_to_the_bytes_of_one_run() {
 }
 
 #[test]
-fn a_part_that_is_missing_is_told() {
-    let workspace = Workspace::with_logs(4);
-    workspace.run("estimate logs --results parts --shard 1/2").is_whole();
-    let merged = workspace.run("merge parts --summary all.csv");
-    assert_eq!(merged.status, Some(1));
-    merged.says("2 of 4 logs have no result yet");
-    assert_eq!(workspace.read("all.csv").lines().count(), 1 + 2 * 2);
-}
-
-#[test]
 fn a_log_that_fails_is_named_and_tried_again() {
     let workspace = Workspace::with_logs(3);
     fs::write(workspace.path("logs/run_01.csv"), "time_s,boom.input\n0,1\n").unwrap();
@@ -187,20 +177,17 @@ fn a_log_that_fails_is_named_and_tried_again() {
     workspace.run("estimate logs --results kept").is_whole().says("2 of 3 logs are done already");
     fs::write(workspace.path("logs/run_01.csv"), "time_s,boom.input\n0,1\n").unwrap();
     assert_eq!(workspace.run("estimate logs --results kept").status, Some(1));
-    let merged = workspace.run("merge kept");
-    assert_eq!(merged.status, Some(1));
-    merged.says("1 of 3 logs have no result yet");
 }
 
 #[test]
-fn a_joint_that_fails_is_told_by_the_run_and_by_the_merge() {
+fn a_joint_that_fails_is_told_by_each_run() {
     let workspace = Workspace::with_logs(2);
     let log = workspace.read("logs/run_01.csv");
     let broken = log.replacen("arm.output", "arm.outptu", 1);
     fs::write(workspace.path("logs/run_01.csv"), broken).unwrap();
-    for command in ["estimate logs --results kept", "estimate logs --results kept", "merge kept"] {
-        let found = workspace.run(command);
-        assert_eq!(found.status, Some(1), "{command}");
+    for _ in 0..2 {
+        let found = workspace.run("estimate logs --results kept");
+        assert_eq!(found.status, Some(1));
         found.says("joint `arm` is left out: logs/run_01.csv");
     }
 }
@@ -241,7 +228,6 @@ fn improve_keeps_a_model_of_each_log() {
     assert!(fs::read_to_string(&models[0]).unwrap().contains("[joint.boom]"));
     assert!(!workspace.path("model.toml").exists());
     workspace.run("estimate logs --results kept").is_refused_with("kept: has results of `improve`");
-    workspace.run("merge kept --decisions all.csv").is_refused_with("makes no decisions");
 }
 
 #[test]
@@ -252,26 +238,9 @@ fn what_makes_no_sense_is_refused_with_the_remedy() {
     workspace.run("estimate logs --results r --delays d.csv").is_refused_with("it is for one log");
     workspace
         .run("estimate logs --results r --shard 1/2 --summary s.csv")
-        .is_refused_with("give them to `tauscope merge`");
+        .is_refused_with("without `--shard`, when all parts are done");
     workspace.run("estimate nowhere --results r").says("nowhere");
-    fs::create_dir(workspace.path("empty")).unwrap();
-    workspace.run("merge empty").is_refused_with("name the folders that were given to `--results`");
-    workspace.run("merge absent").is_refused_with("cannot be read as a folder of results");
     workspace.run("estimate logs --results one").is_whole();
-    workspace.run("estimate logs --results two --beta 2").is_whole();
-    workspace.run("merge one two").is_refused_with("merge results of one kind only");
-    let result = fs::read_dir(workspace.path("one")).unwrap().next().unwrap().unwrap().path();
-    let copy = workspace.path("one/copy.json");
-    fs::copy(result, &copy).unwrap();
-    // What is no result of these logs costs the others nothing.
-    let left_out = |why: &str| {
-        let merged = workspace.run("merge one --summary merged.csv");
-        assert_eq!(merged.status, Some(1));
-        merged.says(why);
-        assert_eq!(workspace.read("merged.csv").lines().count(), 1 + 2 * 2);
-    };
-    left_out("copy.json: a copy of the result of logs/run_0");
-    fs::remove_file(copy).unwrap();
     let result = fs::read_dir(workspace.path("one")).unwrap().next().unwrap().unwrap();
     let result = result.file_name().into_string().unwrap();
     for table in [result.replace(".json", ".toml"), result] {
@@ -280,10 +249,6 @@ fn what_makes_no_sense_is_refused_with_the_remedy() {
             .is_refused_with("call it FILE.csv or FILE.parquet");
     }
     workspace.run("estimate logs --results new --summary new/all.csv").is_whole();
-    fs::write(workspace.path("one/other.json"), "{\"cut\": ").unwrap();
-    left_out("other.json: not a result of tauscope; remove it");
-    fs::write(workspace.path("empty/other.json"), "{}").unwrap();
-    workspace.run("merge empty").is_refused_with("other.json: no result of tauscope");
 }
 
 #[test]
@@ -293,8 +258,6 @@ fn json_of_another_program_is_left_alone() {
     let foreign = "{\"schema\": \"of/another/1\", \"key\": 3}";
     fs::write(workspace.path("kept/other.json"), foreign).unwrap();
     workspace.run("estimate logs --results kept").is_whole();
-    let merged = workspace.run("merge kept");
-    merged.is_whole().says("note: kept/other.json: no result of tauscope, and left alone");
     // Under the name of a result it is not replaced: the other logs are done all the same.
     let result = fs::read_dir(workspace.path("kept")).unwrap().map(|entry| entry.unwrap().path());
     let result = result.filter(|path| !path.ends_with("other.json")).min().unwrap();
@@ -330,9 +293,6 @@ fn a_pipe_under_the_name_of_a_result_is_not_waited_for() {
     let again = workspace.run("estimate logs --results kept");
     assert_eq!(again.status, Some(1));
     again.says("a result must be a file of its own; remove it");
-    // It was no result, and is gone.
-    assert!(make());
-    workspace.run("merge kept").says("a result must be a file, and this is none; remove it");
 }
 
 #[test]

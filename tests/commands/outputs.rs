@@ -6,9 +6,8 @@ use crate::log_text::log_text;
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::os::unix::ffi::OsStrExt as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant, SystemTime};
 
 use tempfile::TempDir;
 
@@ -128,27 +127,9 @@ fn logs_whose_names_differ_in_bytes_that_are_no_text_have_a_result_each() {
     let ended = command.args(["--results", "r", "--summary", "s.csv", "--quiet"]).output().unwrap();
     assert_eq!(ended.status.code(), Some(0), "{}", String::from_utf8_lossy(&ended.stderr));
     assert_eq!(fs::read_dir(folder.path().join("r")).unwrap().count(), 2);
-    let merged = tauscope(folder.path()).args(["merge", "r", "--summary", "t.csv"]).output();
-    assert_eq!(merged.unwrap().status.code(), Some(0));
     let summary = |name| fs::read_to_string(folder.path().join(name)).unwrap();
     assert_eq!(summary("s.csv").lines().count(), 3);
-    assert!(summary("t.csv").contains(r"\xfe") && summary("t.csv").contains(r"\xff"));
-}
-
-#[test]
-fn merged_tables_replace_no_result_and_no_model() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("log.csv"), log_text()).unwrap();
-    let improve = ["improve", "log.csv", "--results", "r", "--quiet"];
-    assert_eq!(tauscope(folder.path()).args(improve).output().unwrap().status.code(), Some(0));
-    let kept = || fs::read_dir(folder.path().join("r")).unwrap().map(|entry| entry.unwrap().path());
-    assert!(kept().any(|file| file.extension().is_some_and(|ending| ending == "toml")));
-    for file in kept() {
-        let before = fs::read(&file).unwrap();
-        let merged = tauscope(folder.path()).args(["merge", "r", "--summary"]).arg(&file).output();
-        assert_eq!(merged.unwrap().status.code(), Some(2), "{}", file.display());
-        assert_eq!(fs::read(&file).unwrap(), before);
-    }
+    assert!(summary("s.csv").contains(r"\xfe") && summary("s.csv").contains(r"\xff"));
 }
 
 #[test]
@@ -206,16 +187,6 @@ fn a_pipe_is_written_to_and_neither_probed_nor_replaced() {
     if bash.is_ok_and(|bash| bash.status.success()) {
         assert_eq!(piped, fs::read_to_string(folder.path().join("sub.csv")).unwrap());
     }
-}
-
-#[test]
-#[cfg(feature = "rrd")]
-fn an_output_has_no_name_of_a_part_of_a_recording() {
-    let folder = folder();
-    let command = "estimate log.csv -o many.rrd --decisions many_3.rrd";
-    let ended = tauscope(folder.path()).args(command.split(' ')).output().unwrap();
-    assert_eq!(ended.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&ended.stderr).contains("needs files of this name"));
 }
 
 #[test]
@@ -330,72 +301,6 @@ fn a_log_is_replaced_neither_where_a_shell_has_it_open_nor_through_a_link_among_
     let mut shell = Command::new("sh");
     shell.args(["-c", line, env!("CARGO_BIN_EXE_tauscope")]).current_dir(folder.path());
     refused(&mut shell, "a file that is read");
-    let report = || {
-        let mut command = tauscope(folder.path());
-        command.args(["report", "log.csv", "--quiet", "--no-recording", "-o", "r.md"]);
-        command
-    };
-    assert!(report().status().unwrap().code().is_some_and(|status| status < 2));
-    let drawing = fs::read_dir(folder.path().join("r_files")).unwrap().next().unwrap().unwrap();
-    fs::remove_file(drawing.path()).unwrap();
-    std::os::unix::fs::symlink("../log.csv", drawing.path()).unwrap();
-    refused(&mut report(), "a link, and drawings are files of their own");
-}
-
-#[test]
-fn parts_that_nobody_writes_are_removed_and_others_stay() {
-    let folder = folder();
-    let part = |name: &str, age: u64| -> PathBuf {
-        let path = folder.path().join(format!(".tauscope-{name}.part"));
-        let time = SystemTime::now() - Duration::from_secs(age);
-        File::create(&path).unwrap().set_modified(time).unwrap();
-        path
-    };
-    let (left, young, held) = (part("left00", 3600), part("young0", 0), part("held00", 3600));
-    let own = part("notes", 3600);
-    // A pipe that nobody reads.
-    let pipe = folder.path().join(".tauscope-pipe00.part");
-    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-    let made = Command::new("touch").args(["-d", "1 hour ago"]).arg(&pipe).status();
-    assert!(made.unwrap().success());
-    let lock = File::options().write(true).open(&held).unwrap();
-    lock.lock().unwrap();
-    let ended =
-        tauscope(folder.path()).args(["estimate", "log.csv", "--decisions", "d.csv"]).output();
-    assert!(ended.unwrap().status.success());
-    assert_eq!((left.exists(), young.exists(), held.exists()), (false, true, true));
-    assert!(own.exists() && pipe.exists());
-}
-
-#[test]
-fn programs_of_a_folder_end_with_the_one_that_started_them() {
-    let program = env!("CARGO_BIN_EXE_tauscope");
-    // A log that is never whole: its reader waits, and only its parent's end can end it.
-    let folder = TempDir::new().unwrap();
-    let pipe = folder.path().join("log.csv");
-    if !Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success()) {
-        return;
-    }
-    let mut child = Command::new(program)
-        .args(["estimate", "log.csv"])
-        .env("TAUSCOPE_ENDS_WITH_STDIN", "1")
-        .current_dir(folder.path())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(Duration::from_millis(300));
-    assert!(child.try_wait().unwrap().is_none());
-    drop(child.stdin.take());
-    let start = Instant::now();
-    while child.try_wait().unwrap().is_none() {
-        if start.elapsed() > Duration::from_secs(10) {
-            child.kill().unwrap();
-            panic!("it goes on without its parent");
-        }
-        std::thread::sleep(Duration::from_millis(10));
-    }
 }
 
 #[test]
@@ -405,15 +310,13 @@ fn names_that_control_a_terminal_or_compute_are_shown() {
     let text = log_text().replacen("a.input,a.output", &format!("{name}.input,{name}.output"), 1);
     fs::write(folder.path().join("log.csv"), text).unwrap();
     let mut command = tauscope(folder.path());
-    command.args(["estimate", "log.csv", "--decisions", "d.csv", "--safe-csv"]);
+    command.args(["estimate", "log.csv", "--decisions", "d.csv"]);
     let ended = command.env("CLICOLOR_FORCE", "1").output().unwrap();
     assert!(ended.status.success());
     for stream in [&ended.stdout, &ended.stderr] {
         assert!(!String::from_utf8_lossy(stream).contains("\u{1b}]"));
     }
     assert!(String::from_utf8_lossy(&ended.stdout).contains(r"=a\u{1b}]0;mine\u{7}"));
-    let decisions = fs::read_to_string(folder.path().join("d.csv")).unwrap();
-    assert!(decisions.lines().skip(1).all(|line| line.contains("'=a")), "{decisions}");
 }
 
 #[test]

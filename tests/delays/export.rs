@@ -89,7 +89,7 @@ fn all_answers(folder: &Path, asked: &[Asked]) -> Vec<(&'static str, Vec<f64>)> 
 /// Runs `estimate` and writes the lookup in every language; the joints of its JSON.
 fn export(folder: &Path) -> Vec<Value> {
     let mut found = Value::Null;
-    for ending in ["c", "m", "py", "json"] {
+    for ending in ["c", "m", "py"] {
         let file = folder.join(format!("lookup.{ending}"));
         let output = Command::new(env!("CARGO_BIN_EXE_tauscope"))
             .args(["estimate", "data/manipulator.csv", "-q", "--format", "json", "--export"])
@@ -162,18 +162,12 @@ fn all_languages_agree_on_every_step_that_there_may_be() {
             assert!(same, "{language}: {asked:?}: {b}, not {a}");
         }
     }
-    let lookup: Value =
-        serde_json::from_slice(&fs::read(folder.path().join("lookup.json")).unwrap()).unwrap();
-    assert_eq!(lookup["schema"], "tauscope/delay_lookup/1");
-    assert_eq!(lookup["joints"].as_array().unwrap().len(), joints.len());
 }
 
 #[test]
 fn a_name_that_no_language_has_is_refused_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
-    for (file, why) in
-        [("lookup.txt", ".c, .m, .py or .json"), ("2nd try.m", "is not a valid name")]
-    {
+    for (file, why) in [("lookup.txt", ".c, .m or .py"), ("2nd try.m", "is not a valid name")] {
         let output = Command::new(env!("CARGO_BIN_EXE_tauscope"))
             .args(["estimate", "data/worked_example.csv", "-q", "--export"])
             .arg(folder.path().join(file))

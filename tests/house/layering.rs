@@ -278,7 +278,7 @@ fn a_tie_of_the_maker_of_test_data_is_seen() {
 }
 
 /// Libraries, and the places that may name them.
-const PLACES: [(&str, &[&str]); 23] = [
+const PLACES: [(&str, &[&str]); 22] = [
     ("tauscope_synthetic", &["src/synthetic.rs"]),
     ("rayon", &["src/batch.rs"]),
     ("rerun", &["src/recording"]),
@@ -288,7 +288,6 @@ const PLACES: [(&str, &[&str]); 23] = [
     ("toml_edit", &["src/model/file"]),
     ("ctrlc", &["src/cli/console/interrupt.rs"]),
     ("signal_hook", &["src/cli/output/limit.rs"]),
-    ("plotters", &["src/report/page/plot.rs"]),
     ("flate2", &["src/experiment/format"]),
     ("encoding_rs", &["src/experiment/format/text.rs"]),
     ("jiff", &["src/experiment/format/date.rs"]),

@@ -86,7 +86,7 @@ fn an_integrator_lacks_nothing_and_its_limits_are_said() {
     assert_eq!(boom["ranking"], json!([]));
     assert_eq!(boom["commands"], json!([]));
     let words = boom["in_words"].as_str().unwrap();
-    assert!(words.contains("No lack of fit is shown") && words.contains("as large as the noise"));
+    assert!(words.contains("No lack of fit is shown") && words.contains("times the noise"));
     assert!(words.contains("input -1.5 to 1.5 V"), "{words}");
     let text = String::from_utf8(desk.run("explain log.csv").stdout).unwrap();
     assert!(text.starts_with("boom: no missing effect found\n"), "{text}");

@@ -1,13 +1,11 @@
-//! `tauscope report` as a user sees it: a page, and Markdown with its drawings.
+//! `tauscope report` as a user sees it.
 
-use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::Command;
 
 use crate::desk::{Desk, assert_fields, banded, joint, number};
-use roxmltree::Document as Xml;
 use scraper::{ElementRef, Html, Selector};
 use serde_json::Value;
 
@@ -107,7 +105,7 @@ fn a_design_is_shown_on_a_page_with_what_is_expected() {
     assert_stands_alone(&page);
     let drawn: Vec<String> = page.select(&select("svg desc")).map(words).collect();
     let [drawn] = drawn.as_slice() else { panic!("{drawn:?}") };
-    for part in ["Plot 1 of 3: Input", "dead_band, flow_curve and range", "Difference [noise]"] {
+    for part in ["Plot 1 of 2: Input", "dead_band, flow_curve and range"] {
         assert!(drawn.contains(part), "no `{part}` in {drawn}");
     }
     let rows = page.select(&select("details tbody tr")).count();
@@ -178,27 +176,6 @@ fn a_model_that_improve_made_is_reported_from_its_file() {
 }
 
 #[test]
-fn markdown_shows_drawings_that_stand_beside_it() {
-    let desk = Desk::with(vec![joint("boom")]);
-    assert!(desk.run("report log.csv -o my.md").status.success());
-    let text = desk.read("my.md");
-    let behind = text.split("](my_files/").skip(1);
-    let links: BTreeSet<&str> = behind.filter_map(|rest| rest.split(')').next()).collect();
-    assert!(links.len() > 5, "{links:?}");
-    for link in &links {
-        let drawing = desk.read(&format!("my_files/{link}"));
-        let svg = Xml::parse(&drawing).unwrap();
-        assert_eq!(svg.root_element().tag_name().name(), "svg");
-        assert!(
-            svg.descendants()
-                .any(|node| node.has_tag_name(("http://www.w3.org/2000/svg", "title")))
-        );
-    }
-    let folder = desk.folder.path().join("my_files");
-    assert_eq!(std::fs::read_dir(folder).unwrap().count(), links.len());
-}
-
-#[test]
 fn names_are_text_and_never_markup() {
     let name = "<b>&\"boom\"</b>|*`";
     let desk = Desk::with(vec![joint("boom")]);
@@ -212,12 +189,6 @@ fn names_are_text_and_never_markup() {
     let page = parsed(&desk.read("odd.html"));
     assert_eq!(page.select(&select("h2")).map(words).next().unwrap(), name);
     assert_eq!(page.select(&select("b")).count(), 0);
-    assert!(desk.run("report odd.csv -o odd.md").status.success());
-    let folder = desk.folder.path().join("odd_files");
-    for entry in std::fs::read_dir(folder).unwrap() {
-        Xml::parse(&std::fs::read_to_string(entry.unwrap().path()).unwrap()).unwrap();
-    }
-    assert!(desk.read("odd.md").contains(r"\|\*\`"));
 }
 
 #[test]
@@ -254,18 +225,14 @@ fn a_long_record_makes_a_small_page() {
 #[test]
 fn what_cannot_be_done_is_refused() {
     let desk = Desk::with(vec![joint("boom")]);
-    desk.write("taken_files", "a file");
     for (arguments, part) in [
         ("report log.csv", "--output"),
-        ("report log.csv -o report.pdf", "FILE.html or FILE.md"),
-        ("report log.csv -o report.md --embed", "--embed needs a page"),
+        ("report log.csv -o report.pdf", "called FILE.html"),
         ("report log.csv -o missing/report.html", "missing/report.html: cannot be written"),
-        ("report log.csv -o taken.md", "need a folder of this name"),
         ("report none.csv -o report.html", "none.csv"),
         ("report log.csv -o report.html --model none.toml", "none.toml"),
         ("report log.csv -o report.html --improve --effects stictoin", "`stiction`"),
         ("report log.csv -o report.html --method hinge --method two-line", "only one method"),
-        ("report log.csv -o report.html --embed --no-recording", "cannot be used with"),
     ] {
         let refused = desk.refusal(arguments);
         assert!(refused.contains(part), "{arguments}: {refused}");
@@ -327,30 +294,10 @@ fn a_browser_has_nothing_to_complain_of() {
     assert!(complaints.contains("CONSOLE"), "{complaints}");
 }
 
-#[cfg(feature = "rrd")]
-#[test]
-fn the_recording_is_in_the_page_when_that_is_asked_for() {
-    use base64::Engine as _;
-    use base64::engine::general_purpose::STANDARD;
-
-    let desk = Desk::with(vec![joint("boom")]);
-    assert!(desk.run("report log.csv --embed -o report.html").status.success());
-    let page = parsed(&desk.read("report.html"));
-    assert_stands_alone(&page);
-    let link = page.select(&select("a[download]")).next().unwrap();
-    assert_eq!(link.value().attr("download"), Some("report.rrd"));
-    let data = link.value().attr("href").unwrap().split_once(',').unwrap().1;
-    let beside = std::fs::read(desk.folder.path().join("report.rrd")).unwrap();
-    assert_eq!(STANDARD.decode(data).unwrap(), beside);
-    assert!(words(page.root_element()).contains("rerun report.rrd"));
-}
-
 #[cfg(not(feature = "rrd"))]
 #[test]
-fn without_recordings_there_is_none_to_embed() {
+fn without_recordings_there_is_none_beside_the_page() {
     let desk = Desk::with(vec![joint("boom")]);
-    let refused = desk.refusal("report log.csv --embed -o report.html");
-    assert!(refused.contains("built without recordings"), "{refused}");
     assert!(desk.run("report log.csv -o report.html").status.success());
     assert!(!desk.has("report.rrd") && !desk.read("report.html").contains("rerun"));
 }

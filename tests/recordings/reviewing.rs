@@ -138,15 +138,18 @@ fn a_report_has_the_word_beside_what_the_program_says() {
     estimated(&desk, "--review-sheet sheet.csv");
     let (text, [first, _]) = review(&desk.read("sheet.csv"));
     desk.write("review.csv", &text);
-    let report =
-        "report log.csv -o r.md --no-recording --review review.csv --author Ann --date 1.2.";
+    let report = "report log.csv -o r.html --no-recording --review review.csv --title Wiggles";
     assert!(desk.run(report).status.success());
-    let page = desk.read("r.md");
-    let row = page.lines().find(|line| line.contains("a wiggle")).unwrap();
-    let cells: Vec<_> = row.split('|').map(str::trim).collect();
-    assert_eq!(&cells[1..5], ["1", first.as_str(), "rejected", "-"]);
-    assert_eq!(&cells[6..8], ["Ann", "accepted"]);
-    assert!(page.contains("Ann, 1.2.") && page.contains("Most doubtful decisions"), "{page}");
+    let page = desk.read("r.html");
+    let row = page.split("<tr>").find(|row| row.contains("a wiggle")).unwrap();
+    let cells = row.split("<td").skip(1).filter_map(|cell| cell.split(['>', '<']).nth(1));
+    let cells: Vec<_> = cells.collect();
+    assert_eq!(&cells[..4], ["1", first.as_str(), "rejected", "-"]);
+    assert_eq!(&cells[5..7], ["Ann", "accepted"]);
+    assert!(
+        page.contains("<h1>Wiggles</h1>") && page.contains("Most doubtful decisions"),
+        "{page}"
+    );
 }
 
 #[test]

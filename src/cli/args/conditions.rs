@@ -12,6 +12,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 /// The settings that are no part of how a breakpoint is searched.
 #[derive(Args, Debug)]
+#[command(next_help_heading = "Which steps are accepted")]
 pub(crate) struct ConditionArgs {
     #[arg(long, help = confidence_help(), value_name = "X|none", value_parser = confidence)]
     confidence: Option<OrNone>,

@@ -35,6 +35,7 @@ fn help() -> String {
 
 /// How logs are read.
 #[derive(Args, Debug)]
+#[command(next_help_heading = "How logs are read")]
 pub(crate) struct ReadingArgs {
     /// A joint to use, by name; or `NAME=INPUT_COLUMN:OUTPUT_COLUMN` where the columns have other
     /// names. May be repeated
@@ -140,11 +141,6 @@ impl DataArgs {
     /// How logs are read, also of the joints that are not asked for.
     pub(crate) fn options_with_others(&self) -> anyhow::Result<ReadOptions> {
         Ok(ReadOptions { others: true, ..self.options()? })
-    }
-
-    /// Whether no joint is named, so that all of the logs are used.
-    pub(crate) fn has_all_joints(&self) -> bool {
-        self.reading.joint.is_empty()
     }
 
     /// The files that are read, where they really are.

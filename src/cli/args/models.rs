@@ -18,6 +18,7 @@ const DEFAULT: &str = "model.toml";
 
 /// Where a model comes from and where its next revision goes.
 #[derive(Args, Debug)]
+#[command(next_help_heading = "Which model, and how it is fitted")]
 pub(crate) struct ModelFileArgs {
     /// The model file (TOML, schema `tauscope/model/1`). It is revised in place: values
     /// change, comments and whatever else was written by hand stay. If it does not exist, it is
@@ -198,6 +199,7 @@ pub(crate) fn check_known(
 
 /// Which effects are tried.
 #[derive(Args, Debug)]
+#[command(next_help_heading = "Which model, and how it is fitted")]
 pub(crate) struct EffectArgs {
     /// Effects that are tried, separated by commas [default: the catalogue and the
     /// candidates of the model file]

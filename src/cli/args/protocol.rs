@@ -10,6 +10,7 @@ use crate::study::{Mode, Protocol};
 
 /// By what rules models are judged.
 #[derive(Args, Debug)]
+#[command(next_help_heading = "Which model, and how it is fitted")]
 pub(crate) struct ProtocolArgs {
     /// How long a simulation runs before its angle is set to the measured one: `free`
     /// (never), `steps` (at every step of the input, in long holds every 2 s), seconds, or

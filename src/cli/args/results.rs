@@ -10,7 +10,7 @@ use super::number::threads;
 use crate::batch::with_prepared_threads;
 use crate::cli::console::{self, Host, Verbosity};
 use crate::cli::viewer::StreamArgs;
-use crate::delay::{CandidateLines, Settings};
+use crate::delay::CandidateLines;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
@@ -71,10 +71,10 @@ impl RunArgs {
     }
 }
 
-/// Where the results of a command that fits models go.
+/// Where the results of a command go.
 #[derive(Args, Debug)]
 pub(crate) struct ResultArgs {
-    /// Record models and decisions for the Rerun viewer
+    /// Record the results for the Rerun viewer
     #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
     pub(crate) recording: Option<PathBuf>,
 
@@ -91,10 +91,8 @@ impl ResultArgs {
         self.recording.is_some() || self.stream.is_asked()
     }
 
-    /// How the delays are estimated that a model is held against: with the lines of every candidate
-    /// only where somebody looks at them.
-    pub(crate) fn delay_settings(&self) -> Settings {
-        let lines = if self.is_recorded() { CandidateLines::All } else { CandidateLines::Best };
-        Settings { lines, ..Settings::default() }
+    /// The lines of every candidate only where somebody looks at them.
+    pub(crate) fn lines(&self) -> CandidateLines {
+        if self.is_recorded() { CandidateLines::All } else { CandidateLines::Best }
     }
 }

@@ -2,8 +2,6 @@
 
 use std::env;
 use std::fmt::Write as _;
-use std::net::{Ipv4Addr, SocketAddr};
-use std::path::Path;
 use std::process::{Command, Stdio};
 
 use clap::Args as ClapArgs;
@@ -11,9 +9,8 @@ use serde::Serialize;
 use serde_json::json;
 
 use crate::cli::args::Format;
-use crate::cli::console::{self, Tone};
 use crate::cli::exit::Completion;
-use crate::cli::viewer::{NEWEST, PORT, VERSION, installed, is_listening, on_path};
+use crate::cli::viewer::{NEWEST, VERSION, installed, on_path};
 use crate::report::json::document;
 
 /// Check what is needed to make and view recordings, and say what is missing
@@ -31,10 +28,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let checks = [
         ("program", program()),
         ("viewer", viewer()),
-        ("running", running()),
         ("importer", importer()),
         ("screen", screen()),
-        ("graphics", graphics()),
     ];
     let checks = checks.map(|(name, found)| Check { name, found });
     let complete = checks.iter().all(|check| check.found.state != State::Missing);
@@ -47,13 +42,8 @@ fn text(checks: &[Check]) -> String {
     let mut text = String::new();
     let width = checks.iter().map(|check| check.name.len()).max().unwrap_or(0);
     for Check { name, found: Finding { state, found, remedy } } in checks {
-        let (word, tone) = match state {
-            State::Ok => ("ok", Tone::Good),
-            State::Note => ("note", Tone::Notice),
-            State::Missing => ("missing", Tone::Bad),
-        };
-        let word = console::toned(tone, &format!("{word:<7}"));
-        writeln!(text, "{word}  {name:<width$}  {found}").unwrap_or_default();
+        let state = format!("{state:?}").to_lowercase();
+        writeln!(text, "{state:<7}  {name:<width$}  {found}").unwrap_or_default();
         if let Some(remedy) = remedy {
             writeln!(text, "{:9}{:width$}  → {remedy}", "", "").unwrap_or_default();
         }
@@ -119,43 +109,14 @@ fn screen() -> Finding {
     if !cfg!(target_os = "linux") {
         return ok("the system's own");
     }
-    for name in ["WAYLAND_DISPLAY", "DISPLAY"] {
-        if is_set(name) {
-            let value = env::var_os(name).unwrap_or_default();
-            return ok(format!("{name}={}", value.to_string_lossy()));
-        }
+    if let Some(name) = ["WAYLAND_DISPLAY", "DISPLAY"].into_iter().find(|name| is_set(name)) {
+        return ok(format!("{name} is set"));
     }
     missing(
         "neither WAYLAND_DISPLAY nor DISPLAY is set: the viewer has no screen here",
         "copy recordings to a machine with a screen, or run `rerun --web-viewer FILE.rrd` here \
          and open its address there",
     )
-}
-
-fn graphics() -> Finding {
-    if !cfg!(target_os = "linux") {
-        return ok("the system's own");
-    }
-    if let Some(device) = first_in("/dev/dri", "renderD") {
-        return ok(format!("/dev/dri/{device}"));
-    }
-    let drivers = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
-    if drivers.iter().any(|folder| first_in(folder, "").is_some()) {
-        let found = "no device; a Vulkan driver draws in software";
-        return note(found, "the viewer works, but slowly");
-    }
-    note(
-        "neither a device nor a Vulkan driver",
-        "the viewer in a browser (`rerun --web-viewer FILE.rrd`) needs none here; for its own \
-         window install a driver, as in `apt install mesa-vulkan-drivers`",
-    )
-}
-
-/// The first name in `folder` that starts like `prefix`.
-fn first_in(folder: &str, prefix: &str) -> Option<String> {
-    let entries = Path::new(folder).read_dir().ok()?.filter_map(Result::ok);
-    let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-    names.filter(|name| name.starts_with(prefix)).min()
 }
 
 /// What puts the right viewer on a machine.
@@ -183,17 +144,7 @@ fn viewer() -> Finding {
             Some(version) => judged(version, &format!("rerun {version}, {place}")),
         };
     }
-    let ask = "import importlib.metadata as m; print(m.version('rerun-sdk'))";
-    for python in ["python3", "python"] {
-        let answer = output(Command::new(python).args(["-c", ask]));
-        if let Some(version) = answer.as_deref().and_then(version_in) {
-            let found = format!("rerun-sdk {version} of {python}, not on PATH");
-            let check = judged(version, &found);
-            let remedy = format!("start it with: {python} -m rerun FILE.rrd");
-            return Finding { remedy: check.remedy.or(Some(remedy)), ..check };
-        }
-    }
-    missing("no `rerun` on PATH, no package `rerun-sdk` of python3", remedy())
+    missing("no `rerun` on PATH", remedy())
 }
 
 /// Whether `version` fits: an older minor version does not.
@@ -210,14 +161,6 @@ fn judged(version: &str, found: &str) -> Finding {
 fn minor(version: &str) -> Option<(u32, u32)> {
     let mut numbers = version.split('.').map(|number| number.parse().ok());
     numbers.next().flatten().zip(numbers.next().flatten())
-}
-
-fn running() -> Finding {
-    if is_listening(SocketAddr::from((Ipv4Addr::LOCALHOST, PORT))) {
-        return ok(format!("a program listens on port {PORT}, the port of the viewer"));
-    }
-    let found = format!("no viewer listens on port {PORT}");
-    note(found, "`--spawn` starts one; `--connect` needs one: start it with: rerun")
 }
 
 /// What a command prints, if it ends well.

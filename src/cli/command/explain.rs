@@ -3,12 +3,10 @@
 use std::path::PathBuf;
 
 use crate::batch::Threads;
-use crate::diagnosis::Comparison;
-use crate::experiment::{Joint, Other};
-use crate::explain::Explanation;
+use crate::experiment::Joint;
+use crate::report::ImprovedJoint;
 use crate::report::explain::{explain_json, explain_text};
-use crate::report::{ComparedJoint, ImprovedJoint};
-use crate::study::{Mode, OfJoints, compare_joints, explain_joints};
+use crate::study::{Mode, explain_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
@@ -53,12 +51,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let start = Start::of(&study, &file, args.model.as_deref(), args.add_arguments(joints))?;
     let starts = |joint: &Joint| start.model(joint);
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
-    let (explained, bests) = study.work("explaining", |bar, others| {
+    let explained = study.work("explaining", |bar, others| {
         let watched = protocol.watched(bar).beside(others);
-        let explained =
-            explain_joints(joints, &study.estimates, starts, watched, &options, &Threads);
-        let bests = output.is_recorded().then(|| args.bests(&study, others, &explained));
-        (explained, bests.unwrap_or_default())
+        explain_joints(joints, &study.estimates, starts, watched, &options, &Threads)
     })?;
     let explained = explained.into_iter().map(|found| Some(found?.map(as_it_is)));
     let explained: Vec<_> = explained.collect();
@@ -66,14 +61,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let (improved, failures) = outcomes(&study.experiment, &explained, improved)?;
     let improved: Vec<ImprovedJoint<'_>> = improved.into_iter().flatten().collect();
     let findings: Vec<_> = improved.iter().map(|joint| joint.finding).collect();
-    if output.is_recorded() {
-        let bests = joints.iter().zip(&bests).filter_map(|(joint, best)| {
-            let (model, comparison) = best.as_ref()?;
-            Some(ComparedJoint { joint, model, revision: 0, comparison })
-        });
-        let models: Vec<_> = findings.iter().map(|f| f.compared).chain(bests).collect();
-        study.record(output.recording.as_deref(), &models, &improved)?;
-    }
+    let models: Vec<_> = findings.iter().map(|finding| finding.compared).collect();
+    study.record(output.recording.as_deref(), &models, &improved)?;
     let text = || explain_text(&findings);
     study.end(&failures, text, || explain_json(&findings, &failures))
 }
@@ -83,27 +72,5 @@ impl Args {
     fn add_arguments(&self, joints: &[Joint]) -> Vec<String> {
         let given = self.model.as_ref().map(|model| model.display().to_string());
         add_arguments(&self.data, &given.unwrap_or_else(fresh_name), joints)
-    }
-
-    /// The best candidate of each joint beside the measurement, and its name.
-    fn bests(
-        &self,
-        study: &Study<'_>,
-        others: &[Other<'_>],
-        explained: &OfJoints<Explanation>,
-    ) -> Vec<Option<(String, Comparison)>> {
-        let joints = study.joints();
-        let best = |joint: &Joint| {
-            let index = joints.iter().position(|other| other.name == joint.name)?;
-            explained.get(index)?.as_ref()?.as_ref().ok()?.proposed()
-        };
-        let model = |joint: &Joint| Some(best(joint)?.fit.model.clone());
-        let protocol = self.protocol.with(Mode::AsItIs);
-        let watched = protocol.watched(&()).beside(others);
-        let compared = compare_joints(joints, &study.estimates, model, watched, &Threads);
-        let named = |(joint, compared): (&Joint, Option<Result<Comparison, _>>)| {
-            Some((format!("with {}", best(joint)?.name()), compared?.ok()?))
-        };
-        joints.iter().zip(compared).map(named).collect()
     }
 }

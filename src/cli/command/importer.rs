@@ -14,8 +14,8 @@ use crate::cli::viewer::{IMPORTER, installed, on_path};
 /// Let the Rerun viewer open logs: `rerun LOG.csv` shows the whole recording
 ///
 /// To open a file, the viewer calls every program on PATH whose name begins with `rerun-importer-`.
-/// `--install` makes a link of that kind, `rerun-importer-tauscope`, to this program; without
-/// `--install` the command says where the link is. To undo it, delete the link.
+/// `--install` makes a link of that kind, `rerun-importer-tauscope`, to this program. To undo it,
+/// delete the link.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
     /// Make the link
@@ -28,25 +28,19 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
-    if args.install {
-        let link = install(args.folder.as_deref())?;
-        let is_found = installed().is_some_and(|found| is_same(&found, &link));
-        let folder = link.parent().unwrap_or(Path::new(".")).display();
-        let said = if is_found {
-            "`rerun LOG.csv` opens the recording of a log".to_owned()
-        } else {
-            format!("put {folder} on PATH, where viewers look, and `rerun LOG.csv` opens a log")
-        };
-        console::print(&format!("{}: {said}\n", link.display()))?;
-        return Ok(Completion::Whole);
+    if !args.install {
+        bail!("`tauscope importer --install` makes the link; `tauscope doctor` says where one is");
     }
-    if let Some(place) = installed() {
-        console::print(&format!("{}\n", place.display()))?;
-        return Ok(Completion::Whole);
-    }
-    let remedy = "`tauscope importer --install` makes it";
-    console::print(&format!("no {IMPORTER} on PATH; {remedy}\n"))?;
-    Ok(Completion::Partial)
+    let link = install(args.folder.as_deref())?;
+    let is_found = installed().is_some_and(|found| is_same(&found, &link));
+    let folder = link.parent().unwrap_or(Path::new(".")).display();
+    let said = if is_found {
+        "`rerun LOG.csv` opens the recording of a log".to_owned()
+    } else {
+        format!("put {folder} on PATH, where viewers look, and `rerun LOG.csv` opens a log")
+    };
+    console::print(&format!("{}: {said}\n", link.display()))?;
+    Ok(Completion::Whole)
 }
 
 /// Makes the link, in the place of an older one; where it is.

@@ -18,7 +18,7 @@ use crate::cli::console::{Interrupt, STOPPING, message};
 use crate::cli::each_log::{Each, FolderArgs};
 use crate::cli::exit::Completion;
 use crate::cli::failure::outcomes;
-use crate::cli::run::{Progress, Shown, Start, Study};
+use crate::cli::run::{Shown, Start, Study, ended};
 
 /// Add to a model what it lacks, effect by effect
 ///
@@ -89,21 +89,22 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let arguments = add_arguments(data, &target.display().to_string(), joints);
     let start = Start::of(&study, &file, Some(target), arguments)?;
     args.model.check_target(&file, joints)?;
-    let progress = Progress::new(&start, Some(interrupt));
     let stage = Stage::new(&study, &start);
     let starts = |joint: &Joint| start.model(joint);
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
     let done = |index, revision: &Step| {
         stage.show(index, revision);
-        progress.done(index, revision)
+        start.say(index, revision);
+        !interrupt.was_pressed()
     };
     let results = study.work("improving", |bar, others| {
         let watched = protocol.watched(bar).beside(others);
         improve_joints(joints, &study.estimates, starts, watched, &options, done, &Threads)
     })?;
-    let improved = |index, joint, found| progress.improved(index, joint, found);
+    let improved = |index, joint, found| start.improved(index, joint, found);
     let (improved, failures) = outcomes(&study.experiment, &results, improved)?;
-    let improved: Vec<_> = improved.into_iter().flatten().collect();
+    let improved = improved.into_iter().flatten();
+    let improved: Vec<_> = improved.map(|joint| ended(joint, interrupt)).collect();
     study.record_revisions(output.recording.as_deref(), &improved)?;
     let revised = start.revised(&improved, |joint| Some(joint.finding.verdict))?;
     args.model.write(&file, &revised, study.verbosity())?;

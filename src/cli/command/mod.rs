@@ -12,8 +12,6 @@ pub(crate) mod explain;
 pub(crate) mod export;
 pub(crate) mod importer;
 pub(crate) mod improve;
-pub(crate) mod man;
-pub(crate) mod merge;
 pub(crate) mod report;
 pub(crate) mod simulate;
 pub(crate) mod sweep;

@@ -9,4 +9,4 @@ pub use host::Hosting;
 pub(crate) use host::{Ended, Host};
 pub(crate) use interrupt::{Interrupt, STOPPING};
 pub(crate) use progress::Bar;
-pub(crate) use terminal::{Tone, Verbosity, message, print, print_json, print_with, toned, warn};
+pub(crate) use terminal::{Verbosity, message, print, print_json, print_with, warn};

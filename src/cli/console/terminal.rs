@@ -1,13 +1,11 @@
 //! What people see on a terminal: colours where there is one, none elsewhere.
 //!
-//! `NO_COLOR`, `CLICOLOR` and `CLICOLOR_FORCE` are heeded. What is written to a file or a
-//! pipe is the text alone.
+//! Only messages have any. `NO_COLOR`, `CLICOLOR` and `CLICOLOR_FORCE` are heeded.
 
 use std::io::{self, BufWriter, StdoutLock, Write};
 use std::sync::LazyLock;
 
-use anstream::AutoStream;
-use anstyle::{AnsiColor, Style};
+use anstyle::AnsiColor;
 use anyhow::Context as _;
 use indicatif::MultiProgress;
 use serde::Serialize;
@@ -29,71 +27,17 @@ pub(super) fn shown(text: &str) -> String {
     text.chars().map(letter).collect()
 }
 
-/// `text` with its control characters shown, but for the colours of [`toned`] words.
-fn shown_in_tones(text: &str) -> String {
-    let tones = [Tone::Good, Tone::Notice, Tone::Bad].map(Tone::style);
-    let mut codes: Vec<String> = tones.iter().map(ToString::to_string).collect();
-    codes.push(format!("{:#}", Tone::Good.style()));
-    let (mut all, mut rest) = (String::new(), text);
-    while let Some(at) = rest.find(ESCAPE) {
-        let (before, escaped) = rest.split_at(at);
-        // A code may be made of several escapes, so that it is taken whole.
-        let code = codes.iter().find(|code| escaped.starts_with(code.as_str()));
-        let (code, letter) = code.map_or((0, ESCAPE.len_utf8()), |code| (code.len(), 0));
-        let (code, after) = escaped.split_at(code);
-        let (letter, after) = after.split_at(letter);
-        all += &shown(before);
-        all += code;
-        all += &shown(letter);
-        rest = after;
-    }
-    all + &shown(rest)
-}
-
-/// What colours and all else that a terminal does begin with.
-const ESCAPE: char = '\u{1b}';
-
-/// What a word is coloured for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Tone {
-    Good,
-    Notice,
-    Bad,
-}
-
-impl Tone {
-    fn style(self) -> Style {
-        let color = match self {
-            Self::Good => AnsiColor::Green,
-            Self::Notice => AnsiColor::Yellow,
-            Self::Bad => AnsiColor::Red,
-        };
-        color.on_default().bold()
-    }
-}
-
-/// `text` in a tone. It must be printed by this module.
-pub(crate) fn toned(tone: Tone, text: &str) -> String {
-    let style = tone.style();
-    format!("{style}{text}{style:#}")
-}
-
-/// Whether results are shown with colours.
-fn has_colors() -> bool {
-    AutoStream::choice(&io::stdout()) != anstream::ColorChoice::Never
-}
-
 /// Prints one line on stderr. That stderr is closed is no reason to stop.
 pub(crate) fn message(kind: &str, text: &str) {
     if let Some(host) = Host::current() {
         return host.say(kind, &anstream::adapter::strip_str(text).to_string());
     }
     let style = match kind {
-        "error" => Tone::Bad.style(),
-        "warning" | "stopping" => Tone::Notice.style(),
+        "error" => AnsiColor::Red.on_default().bold(),
+        "warning" | "stopping" => AnsiColor::Yellow.on_default().bold(),
         _ => AnsiColor::Cyan.on_default(),
     };
-    let text = shown_in_tones(text);
+    let text = shown(text);
     BARS.suspend(|| {
         writeln!(anstream::stderr().lock(), "{style}{kind}:{style:#} {text}").unwrap_or_default();
     });
@@ -135,17 +79,13 @@ pub(crate) fn warn(failures: &[String]) {
 /// What is wrong where a program that runs commands cannot take their results.
 const NOT_KEPT: &str = "the results cannot be kept";
 
-/// Prints results on stdout, tables with their frames dimmed.
+/// Prints results on stdout.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     if let Some(mut host) = Host::current() {
         let text = anstream::adapter::strip_str(text).to_string();
         return host.write_all(text.as_bytes()).context(NOT_KEPT);
     }
-    let mut out = anstream::stdout().lock();
-    let text = shown_in_tones(text);
-    let painted = if has_colors() { painted(&text) } else { text };
-    let written = out.write_all(painted.as_bytes()).and_then(|()| out.flush());
-    written.context("standard output cannot be written")
+    print_with(|out| out.write_all(shown(text).as_bytes()))
 }
 
 /// Prints results on stdout as one line of JSON.
@@ -179,58 +119,15 @@ pub(crate) fn print_with(
     written.context("standard output cannot be written")
 }
 
-/// Frames of tables dimmed, their header lines bold; all else as it is.
-fn painted(text: &str) -> String {
-    let mut is_header = false;
-    let line = |line: &str| {
-        // The header of a table is between its upper frame and the next rule.
-        is_header = match line.chars().next() {
-            Some('┌') => true,
-            Some('│') => is_header,
-            _ => false,
-        };
-        let (line, end) = line.strip_suffix('\n').map_or((line, ""), |line| (line, "\n"));
-        painted_line(line, if is_header { Style::new().bold() } else { Style::new() }) + end
-    };
-    text.split_inclusive('\n').map(line).collect()
-}
-
-/// A line of a table, its cells in `style`; other lines as they are.
-fn painted_line(line: &str, style: Style) -> String {
-    let dimmed = Style::new().dimmed();
-    if line.starts_with(['┌', '╞', '└', '├']) {
-        return format!("{dimmed}{line}{dimmed:#}");
-    }
-    let bar = format!("{dimmed}│{dimmed:#}");
-    match line.strip_prefix('│').and_then(|line| line.strip_suffix('│')) {
-        Some(cells) => format!("{bar}{style}{cells}{style:#}{bar}"),
-        None => line.to_owned(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn control_characters_are_shown_and_own_colours_sent() {
-        let name = "a\u{1b}]0;mine\u{7}\u{9b}2J\u{202e}b\u{1b}[8m";
-        let said = format!("{}\n{}\tend", toned(Tone::Good, name), toned(Tone::Bad, "lost"));
-        let found = shown_in_tones(&said);
-        let hidden = "a\\u{1b}]0;mine\\u{7}\\u{9b}2J\\u{202e}b\\u{1b}[8m";
-        assert_eq!(
-            found,
-            format!("{}\n{}\tend", toned(Tone::Good, hidden), toned(Tone::Bad, "lost"))
-        );
+    fn control_characters_are_shown() {
+        let name = "a\u{1b}]0;mine\u{7}\u{9b}2J\u{202e}b\u{1b}[8m\n\tend";
+        let hidden = "a\\u{1b}]0;mine\\u{7}\\u{9b}2J\\u{202e}b\\u{1b}[8m\n\tend";
+        assert_eq!(shown(name), hidden);
         assert_eq!(shown("plain °, 日本"), "plain °, 日本");
-    }
-
-    #[test]
-    fn paint_adds_nothing_but_colours() {
-        let table = "┌───┐\n│ a │\n╞═══╡\n│ 1 │\n└───┘\nbelow │ it\nno end";
-        let painted = painted(table);
-        assert_ne!(painted, table);
-        assert_eq!(anstream::adapter::strip_str(&painted).to_string(), table);
-        assert_eq!(painted.matches(&Style::new().bold().to_string()).count(), 1);
     }
 }

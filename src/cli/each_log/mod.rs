@@ -6,7 +6,6 @@
 mod each;
 mod options;
 mod store;
-mod with_parent;
 mod work;
 
 use std::path::{Path, PathBuf};
@@ -15,36 +14,31 @@ use crate::report::folder::{FolderReport, folder_json};
 use anyhow::{Context as _, bail};
 use clap::Args;
 
-use crate::cli::args::Format;
-use crate::cli::console::{Verbosity, warn};
+use crate::cli::args::{Format, RunArgs};
+use crate::cli::console::warn;
 use crate::cli::exit::Completion;
-use crate::cli::output::{CsvText, OutputKind, Outputs, write_table};
+use crate::cli::output::{OutputKind, Outputs, write_table};
 
 pub(crate) use each::Each;
 use options::LogOptions;
-pub(crate) use store::{Merged, kept_in, read_folders};
-pub(crate) use with_parent::end_with_parent;
 
 /// Many logs, each by itself.
 #[derive(Args, Debug)]
+#[command(next_help_heading = "Many logs")]
 pub(crate) struct FolderArgs {
     /// Process each log as an experiment of its own, and keep its result in this folder. A log
     /// whose result is there already, from the same bytes, settings and version, is skipped
     #[arg(long, value_name = "FOLDER")]
     results: Option<PathBuf>,
 
-    /// Work on the K-th of N parts of the logs only; `tauscope merge` makes the tables
+    /// Work on the K-th of N parts of the logs only; when all parts are done, the command without this
+    /// makes the tables
     #[arg(long, value_name = "K/N", requires = "results")]
     shard: Option<Shard>,
 
     /// Write a row per log and joint, as CSV or Parquet
     #[arg(long, value_name = "FILE", requires = "results")]
     summary: Option<PathBuf>,
-
-    /// Make texts in CSV safe for spreadsheet programs: an apostrophe is put before what they would
-    /// take for a formula
-    #[arg(long)]
-    safe_csv: bool,
 }
 
 /// A part of the logs: every `of`-th, from the `number`-th on.
@@ -72,23 +66,10 @@ impl Shard {
     }
 }
 
-/// Where the tables of all logs go.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Tables<'a> {
-    pub(crate) decisions: Option<&'a Path>,
-    pub(crate) summary: Option<&'a Path>,
-    pub(crate) text: CsvText,
-}
-
 impl FolderArgs {
     /// Whether each log is an experiment of its own.
     pub(crate) fn is_asked_for(&self) -> bool {
         self.results.is_some()
-    }
-
-    /// How texts in CSV are written.
-    pub(crate) fn csv_text(&self) -> CsvText {
-        CsvText::from(self.safe_csv)
     }
 
     /// Runs the command for each log that has no result yet.
@@ -97,12 +78,11 @@ impl FolderArgs {
         if let Some((name, _)) = each.refused.iter().find(|(_, given)| *given) {
             bail!("{name}: it is for one log; leave it out, or leave out `--results`");
         }
-        let (decisions, summary) = (each.decisions, self.summary.as_deref());
-        let tables = Tables { decisions, summary, text: self.csv_text() };
-        if self.shard.is_some() && tables.files().next().is_some() {
+        let tables = [each.decisions, self.summary.as_deref()];
+        if self.shard.is_some() && tables.iter().any(Option::is_some) {
             bail!(
                 "--shard: the tables need the results of all parts; leave out `--decisions` and \
-                 `--summary`, and give them to `tauscope merge` when all parts are done"
+                 `--summary`, and run the command with them, without `--shard`, when all parts are done"
             );
         }
         let options = LogOptions::of(&each.data.typed);
@@ -113,68 +93,50 @@ impl FolderArgs {
         for note in each.data.left_out() {
             each.run.verbosity().say("note", note);
         }
-        tables.check(&[each.data.files(), options.files.clone()].concat())?;
+        // No result of a log has the name of a table.
+        let outputs = Outputs::default().with(OutputKind::Table, tables.into_iter().flatten());
+        outputs.check(&[each.data.files(), options.files.clone()].concat())?;
         if all.is_empty() {
             bail!(failures.into_iter().next().unwrap_or_else(|| "no log is given".to_owned()));
         }
         let part =
             |(index, _): &(usize, &PathBuf)| self.shard.is_none_or(|shard| shard.has(*index));
         let logs: Vec<&PathBuf> = all.iter().enumerate().filter(part).map(|(_, log)| log).collect();
-        let work = work::Work { each, results, options: &options, of: all.len() };
-        let done = work.run(&logs)?;
+        let done = work::Work { each, results, options: &options }.run(&logs)?;
         failures.extend(done.failures);
         if let Some(Shard { number, of }) = self.shard {
-            return Ok(finish_part(&failures, &format!("part {number} of {of}"), results, each));
+            warn(&failures);
+            let done =
+                format!("part {number} of {of}; without `--shard` the command makes the tables");
+            each.run.verbosity().say("done", done);
+            return Ok(Completion::without(&failures));
         }
-        let report = FolderReport::new(each.command, done.results);
-        present(&report, &failures, tables, each.run.format, each.run.verbosity())
+        present(&FolderReport::new(each.command, done.results), failures, tables, each.run)
     }
 }
 
-/// Ends the work on a part of the logs.
-fn finish_part(failures: &[String], part: &str, results: &Path, each: &Each<'_>) -> Completion {
-    warn(failures);
-    let folder = results.display();
-    let done = format!("{part}; `tauscope merge {folder}` makes the tables of all");
-    each.run.verbosity().say("done", done);
-    Completion::without(failures)
-}
-
-impl Tables<'_> {
-    fn files(&self) -> impl Iterator<Item = &Path> {
-        [self.decisions, self.summary].into_iter().flatten()
-    }
-
-    /// Refuses what cannot be written, or would replace an input or another table. No result of a log has the
-    /// name of a table.
-    pub(crate) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
-        Outputs::default().with(OutputKind::Table, self.files()).check(inputs)
-    }
-}
-
-/// Writes the tables of all logs and prints what they have in common.
-pub(crate) fn present(
+/// Writes the tables of decisions and of all logs, and prints what the logs have in common.
+fn present(
     report: &FolderReport,
-    failures: &[String],
-    tables: Tables<'_>,
-    format: Format,
-    verbosity: Verbosity,
+    mut failures: Vec<String>,
+    [decisions, summary]: [Option<&Path>; 2],
+    run: &RunArgs,
 ) -> anyhow::Result<Completion> {
-    let failures: Vec<String> = failures.iter().cloned().chain(report.failures()).collect();
+    failures.extend(report.failures());
     warn(&failures);
     if report.is_empty() {
         bail!("no log has a result");
     }
-    if tables.files().next().is_none() && format == Format::Text {
-        verbosity.say("note", "`--summary FILE` writes a row per log and joint");
+    if decisions.or(summary).is_none() && run.format == Format::Text {
+        run.verbosity().say("note", "`--summary FILE` writes a row per log and joint");
     }
-    if let Some(path) = tables.decisions {
-        write_table(&report.decisions(), path, tables.text)?;
+    if let Some(path) = decisions {
+        write_table(&report.decisions(), path)?;
     }
-    if let Some(path) = tables.summary {
-        write_table(&report.summary(), path, tables.text)?;
+    if let Some(path) = summary {
+        write_table(&report.summary(), path)?;
     }
-    format.print(|| report.text(), || folder_json(report, &failures))?;
+    run.format.print(|| report.text(), || folder_json(report, &failures))?;
     Ok(Completion::without(&failures))
 }
 

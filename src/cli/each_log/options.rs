@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use crate::cli::typed::Typed;
 
 /// Options that do not change the result of a log, and the logs.
-const WITHOUT_EFFECT: [&str; 9] =
-    ["data", "results", "shard", "summary", "safe-csv", "decisions", "format", "threads", "quiet"];
+const WITHOUT_EFFECT: [&str; 8] =
+    ["data", "results", "shard", "summary", "decisions", "format", "threads", "quiet"];
 
 /// Options that name a file, whose content counts.
 const FILES: [&str; 2] = ["columns", "model"];

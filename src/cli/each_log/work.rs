@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use std::fs::File;
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -16,7 +16,6 @@ use sha2::{Digest as _, Sha256};
 use super::each::Each;
 use super::options::LogOptions;
 use super::store::{Kept, check_own_file, is_foreign, name_of, text_of};
-use super::with_parent;
 use crate::cli::console::{Bar, Verbosity};
 
 /// What is to be done, and where results are kept.
@@ -24,8 +23,6 @@ pub(crate) struct Work<'a> {
     pub(crate) each: &'a Each<'a>,
     pub(crate) results: &'a Path,
     pub(crate) options: &'a LogOptions,
-    /// Logs in all, those of other parts included.
-    pub(crate) of: usize,
 }
 
 /// What came of it, in the order of the logs.
@@ -58,7 +55,6 @@ impl Work<'_> {
         if done > 0 {
             self.verbosity().say("note", format!("{done} of {all} logs are done already"));
         }
-        self.note_replaced(&open);
         let bar = Bar::new(self.verbosity(), "working", "logs", open.len() as u64);
         // They are sorted, as the logs are.
         let failures: Mutex<BTreeMap<&Path, String>> = Mutex::default();
@@ -91,28 +87,6 @@ impl Work<'_> {
         let results = kept.map(|known| Ok(Kept::read(&self.place(known.log))?.result()));
         let results = results.collect::<anyhow::Result<_>>()?;
         Ok(Done { results, failures: failures.into_values().collect() })
-    }
-
-    /// Says that results of the same options are replaced, since the bytes under the name of their log or of
-    /// a file in the options are others now.
-    fn note_replaced(&self, open: &[&Known<'_>]) {
-        let settings = self.settings();
-        let is_replaced = |known: &&&Known<'_>| {
-            let Known { key: Ok(key), earlier: Some(earlier), .. } = known else { return false };
-            earlier.key != *key && earlier.has(&settings)
-        };
-        let mut replaced = open.iter().filter(is_replaced);
-        let Some(first) = replaced.next() else { return };
-        let (first, count) = (first.log.display(), 1 + replaced.count());
-        let results = if count == 1 { "result is" } else { "results are" };
-        self.verbosity().say(
-            "note",
-            format!(
-                "{count} {results} replaced, since {first} or a file given with it has changed. A \
-                 result is identified by the path of its log as typed: for logs of one name in \
-                 two folders, type the folders, too"
-            ),
-        );
     }
 
     fn verbosity(&self) -> Verbosity {
@@ -203,7 +177,7 @@ impl Work<'_> {
             write.push(model);
             command.arg(write);
         }
-        let output = with_parent::output(command.arg("--").arg(log));
+        let output = command.arg("--").arg(log).stdin(Stdio::null()).output();
         let output = output.context("this program cannot be run")?;
         let said = String::from_utf8_lossy(&output.stderr);
         if !matches!(output.status.code(), Some(0 | 1)) {
@@ -217,8 +191,7 @@ impl Work<'_> {
         let document = serde_json::from_slice(&output.stdout)
             .with_context(|| format!("{}: its result is not JSON", log.display()))?;
         let (command, key) = (self.each.command.to_owned(), key.clone());
-        let (of, settings) = (self.of, self.settings());
-        let kept = Kept { command, of, settings, key, ..Kept::of(log, document) };
+        let kept = Kept { command, settings: self.settings(), key, ..Kept::of(log, document) };
         kept.write(&self.place(log))
     }
 }

@@ -1,12 +1,8 @@
 //! Files that bear their final name only when they are whole.
 
-use std::collections::BTreeSet;
-use std::ffi::OsStr;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::time::Duration;
 
 use anyhow::{Context as _, bail};
 use tempfile::NamedTempFile;
@@ -117,9 +113,8 @@ impl OutputFile {
             let device = OpenOptions::new().write(true).open(path)?;
             return Ok(Target::Direct(BufWriter::new(device)));
         }
-        remove_left_parts(folder_of(path));
         let mut builder = tempfile::Builder::new();
-        builder.prefix(PART.0).suffix(PART.1);
+        builder.prefix(".tauscope-").suffix(".part");
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt as _;
@@ -128,8 +123,6 @@ impl OutputFile {
         }
         // The name of the part says nothing to who named the output.
         let file = builder.tempfile_in(folder_of(path)).map_err(|error| error.kind())?;
-        // Who holds the lock still writes. Where there are no locks, parts stay.
-        file.as_file().lock().unwrap_or_default();
         if let Ok(existing) = path.metadata() {
             file.as_file().set_permissions(existing.permissions())?;
         }
@@ -151,38 +144,6 @@ impl OutputFile {
             }
         };
         finish(self.target).with_context(|| format!("{}: cannot be written", self.path.display()))
-    }
-}
-
-/// How the name of a file begins and ends that is not whole yet.
-const PART: (&str, &str) = (".tauscope-", ".part");
-
-/// Whether it is the name of a part: between beginning and end there are six letters or digits.
-fn is_part(name: &OsStr) -> bool {
-    let random = name.to_str().and_then(|name| name.strip_prefix(PART.0)?.strip_suffix(PART.1));
-    random.is_some_and(|all| all.len() == 6 && all.bytes().all(|byte| byte.is_ascii_alphanumeric()))
-}
-
-/// Removes parts that were left in a folder by a program that was killed: nobody has a lock on
-/// them. Looked for once in each folder.
-fn remove_left_parts(folder: &Path) {
-    /// Time that another program has for taking the lock on its part.
-    const YOUNG: Duration = Duration::from_mins(1);
-    static SEEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-    let is_new = SEEN.lock().is_ok_and(|mut seen| seen.insert(folder.to_owned()));
-    for entry in folder.read_dir().into_iter().filter(|_| is_new).flatten().flatten() {
-        let name = entry.file_name();
-        // Not that of a link: to open a pipe would wait for who reads it.
-        let found = entry.metadata().ok().filter(|found| found.is_file() && is_part(&name));
-        let modified = found.and_then(|found| found.modified().ok());
-        let is_old = modified.and_then(|time| time.elapsed().ok()).is_some_and(|age| age > YOUNG);
-        if !is_old {
-            continue;
-        }
-        let is_left = OpenOptions::new().write(true).open(entry.path());
-        if is_left.is_ok_and(|file| file.try_lock().is_ok()) {
-            std::fs::remove_file(entry.path()).unwrap_or_default();
-        }
     }
 }
 

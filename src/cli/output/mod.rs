@@ -12,4 +12,4 @@ pub(crate) use outputs::{OutputKind, Outputs};
 #[cfg(not(feature = "rrd"))]
 pub(crate) use recording::left_out;
 pub(crate) use recording::{Detail, Recorded, of_delays};
-pub(crate) use table::{CsvText, FileKind, write_csv, write_parquet, write_table};
+pub(crate) use table::{FileKind, write_parquet, write_table};

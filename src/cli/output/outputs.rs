@@ -80,8 +80,7 @@ impl<'a> Outputs<'a> {
     }
 
     /// Refuses what cannot be written, or would replace one of the `inputs`, one another, or a log;
-    /// names that say another kind of file; a recording whose parts would replace another output; and
-    /// tables that this build cannot write.
+    /// names that say another kind of file; and tables that this build cannot write.
     pub(crate) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
         let Self(outputs) = self;
         check_places(outputs.iter().map(|(_, path)| *path), inputs)?;
@@ -93,9 +92,6 @@ impl<'a> Outputs<'a> {
                 );
             }
             kind.check_name(path)?;
-            if *kind == OutputKind::Recording {
-                check_beside_parts(path, outputs)?;
-            }
             let is_parquet = *kind == OutputKind::Table && FileKind::of(path) == FileKind::Parquet;
             if is_parquet && !cfg!(feature = "parquet") {
                 bail!(
@@ -136,25 +132,4 @@ fn is_log(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let survey = || Survey::of(path, MemoryLimit::default());
     is_named_like_a_log(&name) && path.is_file() && survey().is_ok_and(|log| log.open.is_empty())
-}
-
-/// Refuses other outputs that have the name of one of the files to which a recording of many joints at
-/// `path` goes.
-fn check_beside_parts(path: &Path, outputs: &[(OutputKind, &Path)]) -> anyhow::Result<()> {
-    let (stem, ending) = (path.file_stem(), path.extension());
-    let is_part = |(_, other): &&(OutputKind, &Path)| {
-        let number = other.file_stem().and_then(|name| {
-            name.to_str()?.strip_prefix(stem?.to_str()?)?.strip_prefix('_')?.parse::<usize>().ok()
-        });
-        number.is_some() && other.extension() == ending && other.parent() == path.parent()
-    };
-    if let Some((_, other)) = outputs.iter().find(is_part) {
-        bail!(
-            "{}: a recording of many joints needs files of this name beside {}; give this output \
-             another name",
-            other.display(),
-            path.display()
-        );
-    }
-    Ok(())
 }

@@ -1,16 +1,10 @@
 //! Recordings of any command.
 
-use std::path::Path;
-#[cfg(feature = "rrd")]
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-#[cfg(feature = "rrd")]
 use anyhow::bail;
 
-#[cfg(feature = "rrd")]
-use super::file::filled_file;
-use super::file::{OutputFile, is_file, write_file};
-#[cfg(feature = "rrd")]
+use super::file::{OutputFile, filled_file, is_file, write_file};
 use super::outputs::{OutputKind, Outputs};
 use crate::cli::console::{Bar, Verbosity};
 use crate::delay::Settings;
@@ -33,7 +27,6 @@ pub(crate) enum Detail {
 const TOGETHER: usize = 20;
 
 /// Joints of a file, where there are more.
-#[cfg(feature = "rrd")]
 const OF_A_FILE: usize = 8;
 
 /// Candidates up to which all are recorded. Each takes 230 bytes: above it they are more than half
@@ -66,84 +59,59 @@ pub(crate) fn of_delays<'a>(
 }
 
 impl Recording<'_> {
-    /// Writes the recording to `path` and says how to look at it. Of many joints it writes a
-    /// recording of some of them each to `path_1`, `path_2` and so on, and to `path` one that leads
-    /// to them.
+    /// Writes the recording to `path` and says how to look at it. Of many joints the first are in
+    /// `path`, and others in files beside it: none has its name before all are whole.
     pub(crate) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
         if self.joints.len() <= TOGETHER || !is_file(path) {
             return Recorded::Decisions(self).record(path, verbosity);
         }
-        let parts = {
-            let _bar = Bar::spinner(verbosity, "recording");
-            self.write_parts(path)?
-        };
-        let path = path.display();
-        let ends = parts.first().zip(parts.last());
-        let said = ends.map(|(first, last)| format!("{first} … {last}")).unwrap_or_default();
-        verbosity.say("recording", format!("{path}; open it with: rerun {path}; joints: {said}"));
-        Ok(())
-    }
-
-    /// Writes the files of some joints each, and what leads to them; their names. None has its
-    /// name before all are whole.
-    #[cfg(feature = "rrd")]
-    fn write_parts(&self, path: &Path) -> anyhow::Result<Vec<String>> {
-        use crate::recording::{IndexRecording, Volume, write_index};
-
-        let groups: Vec<_> = self.joints.chunks(OF_A_FILE).collect();
+        let bar = Bar::spinner(verbosity, "recording");
+        let groups = self.joints.chunks(OF_A_FILE);
         let paths: Vec<PathBuf> = (1..=groups.len()).map(|number| part(path, number)).collect();
-        let inputs: Vec<PathBuf> = self.sources.iter().map(|source| source.path.clone()).collect();
-        let outputs: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
-        Outputs::default().with(OutputKind::Recording, &paths).check(&inputs)?;
-        check_own(path, &outputs)?;
+        self.check_parts(&paths)?;
         let mut files = Vec::new();
-        for (joints, path) in groups.iter().zip(&paths) {
+        for (joints, path) in groups.zip(&paths) {
             // A viewer lists recordings by name.
-            let (first, last) = (joints.first(), joints.last());
-            let ends = first.into_iter().chain(last).map(|joint| joint.joint.name.as_str());
-            let ends: Vec<&str> = ends.collect();
+            let ends = joints.first().into_iter().chain(joints.last());
+            let ends: Vec<&str> = ends.map(|joint| joint.joint.name.as_str()).collect();
             let command = format!("{} of {}", self.command, ends.join(" … "));
             let some = Recording { joints, command: &command, ..*self };
             files.push(filled_file(path, |file| Recorded::Decisions(&some).write(file))?);
         }
-        let volume = |(path, joints): (&PathBuf, &&[EstimatedJoint<'_>])| Volume {
-            file: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            joints: joints.len(),
-        };
-        let volumes: Vec<Volume> = paths.iter().zip(&groups).map(volume).collect();
-        let index = |file: &mut OutputFile| {
-            write_index(&IndexRecording { all: self, volumes: &volumes }, file)
-        };
-        files.push(filled_file(path, |file| Ok(index(file)?))?);
         files.into_iter().try_for_each(OutputFile::commit)?;
-        Ok(volumes.into_iter().map(|volume| volume.file).collect())
+        drop(bar);
+        let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+        let (all, names) = (self.joints.len(), names.join(" "));
+        verbosity.say(
+            "recording",
+            format!("{all} joints, {OF_A_FILE} in a file; open some of: rerun {names}"),
+        );
+        Ok(())
     }
 
-    #[cfg(not(feature = "rrd"))]
-    #[expect(clippy::unused_self, reason = "with recordings it is used")]
-    fn write_parts(&self, _: &Path) -> anyhow::Result<Vec<String>> {
-        Err(left_out())
+    /// Refuses to replace an input; or, where no recording is at the first of `paths`, what can be no
+    /// part of an earlier one.
+    fn check_parts(&self, paths: &[PathBuf]) -> anyhow::Result<()> {
+        let inputs: Vec<PathBuf> = self.sources.iter().map(|source| source.path.clone()).collect();
+        Outputs::default().with(OutputKind::Recording, paths).check(&inputs)?;
+        let Some((first, others)) = paths.split_first() else { return Ok(()) };
+        if let Some(other) = others.iter().find(|other| other.exists() && !first.exists()) {
+            bail!(
+                "{}: exists already, and a recording of many joints needs files of this name beside \
+                 {}; give the recording another name",
+                other.display(),
+                first.display()
+            );
+        }
+        Ok(())
     }
 }
 
-/// Refuses to replace a file that lies where a part of the recording at `path` goes, and cannot be
-/// of an earlier one: no recording is at `path`.
-#[cfg(feature = "rrd")]
-fn check_own(path: &Path, parts: &[&Path]) -> anyhow::Result<()> {
-    match parts.iter().find(|part| part.exists()) {
-        Some(part) if !path.exists() => bail!(
-            "{}: exists already, and a recording of many joints needs files of this name beside \
-             {}; give the recording another name",
-            part.display(),
-            path.display()
-        ),
-        _ => Ok(()),
-    }
-}
-
-/// The name of the file `number` beside `path`: `x_1.rrd` beside `x.rrd`.
-#[cfg(feature = "rrd")]
+/// The name of a file of a recording at `path`: `x.rrd`, `x_2.rrd` and so on.
 fn part(path: &Path, number: usize) -> PathBuf {
+    if number == 1 {
+        return path.to_owned();
+    }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let ending = path.extension().map(|ending| format!(".{}", ending.to_string_lossy()));
     path.with_file_name(format!("{stem}_{number}{}", ending.unwrap_or_default()))

@@ -1,11 +1,9 @@
 //! Delays of joints: those that have one, and what is said of them.
 
 use crate::cli::failure::{read_failures, said};
-use crate::delay::{
-    Condition, Decision, EstimateError, Method, Verdict, delay_beyond_holds, end_at_the_next_step,
-};
+use crate::delay::{Condition, Decision, EstimateError, Verdict, delay_beyond_holds};
 use crate::experiment::{Experiment, Joint, Trial, coarse_resolution, saturations, spike_count};
-use crate::numerics::{median, quantile, to_digits};
+use crate::numerics::{quantile, to_digits};
 use crate::report::EstimatedJoint;
 use crate::report::answer::input_note;
 use crate::study::JointEstimate;
@@ -53,7 +51,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         let notes = notes_on(*estimated).into_iter().map(|note| format!("joint `{name}`: {note}"));
         notes.chain(input_note(estimated)).collect::<Vec<_>>()
     };
-    joints.iter().flat_map(of_joint).chain(coarse_grid(joints)).collect()
+    joints.iter().flat_map(of_joint).collect()
 }
 
 /// What a person should know of one joint.
@@ -63,12 +61,9 @@ fn notes_on(estimated: EstimatedJoint<'_>) -> Vec<String> {
     // What is said of two lines is not said of an onset.
     if estimate.dead_time.is_none() && !estimate.settings.method.spec().has_intervals {
         notes.extend(unsmoothed(joint, estimate));
-        notes.extend(cut_at_the_next_step(estimate));
-        notes.extend(smeared(joint, estimate));
         notes.extend(later_than_the_next_step(joint));
     }
     if estimate.dead_time.is_none() {
-        notes.extend(unresolved(joint, estimate));
         notes.extend(as_long_as_allowed(joint, estimate));
         notes.extend(notes_on_sensor(joint, estimate));
     }
@@ -84,77 +79,6 @@ fn notes_on(estimated: EstimatedJoint<'_>) -> Vec<String> {
 
 fn decisions(estimate: &JointEstimate) -> impl Iterator<Item = &Decision> {
     estimate.estimated().flat_map(|trial| &trial.decisions)
-}
-
-/// A line where most reactions begin within a sample of their step.
-fn unresolved(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
-    /// Delays of which most must be so short.
-    const FEWEST: usize = 5;
-    let delays: Vec<f64> = accepted(estimate).filter_map(Decision::delay).collect();
-    let short = delays.iter().filter(|samples| **samples < 1.0).count();
-    let longest = joint.trials.iter().map(|trial| trial.period().seconds()).fold(0.0, f64::max);
-    (delays.len() >= FEWEST && 2 * short > delays.len()).then(|| {
-        format!(
-            "{short} of {} delays are shorter than the sample period of {longest} s, so their \
-             values are not resolved; sample faster to resolve them",
-            delays.len()
-        )
-    })
-}
-
-/// A line on all joints the delays of which come in steps that are large beside them.
-fn coarse_grid(joints: &[EstimatedJoint<'_>]) -> Option<String> {
-    /// Names that are listed.
-    const NAMED: usize = 3;
-    let coarse: Vec<_> =
-        joints.iter().filter(|joint| is_on_a_coarse_grid(joint.estimate)).collect();
-    let beta = coarse.first()?.estimate.settings.beta;
-    let finer = Method::all().find(|method| method.spec().has_intervals)?;
-    let named = coarse.iter().take(NAMED).map(|one| format!("`{}`", one.joint.name));
-    let named = named.collect::<Vec<_>>().join(", ");
-    let joints = match coarse.len() {
-        1 => format!("joint {named}"),
-        count if count > NAMED => format!("joints {named} and {} more", count - NAMED),
-        _ => format!("joints {named}"),
-    };
-    Some(format!(
-        "{joints}: delays are multiples of β = {beta} samples, which is coarse for delays this \
-         short; `--method {finer}` finds them between samples, with intervals"
-    ))
-}
-
-/// Whether delays come in steps that are large beside their median.
-fn is_on_a_coarse_grid(estimate: &JointEstimate) -> bool {
-    /// Fewest delays, and the spacing as a part of their median.
-    const FEWEST: usize = 3;
-    const COARSE: f64 = 0.4;
-    let settings = &estimate.settings;
-    if settings.method.spec().has_intervals || settings.paper || settings.beta < 2 {
-        return false;
-    }
-    let delays = accepted(estimate).filter(|decision| decision.fine.is_none());
-    let delays: Vec<f64> = delays.filter_map(Decision::delay).collect();
-    let beta = settings.beta as f64;
-    let is_coarse = |usual: f64| usual >= 1.0 && beta >= COARSE * usual;
-    delays.len() >= FEWEST && median(&delays).is_some_and(is_coarse)
-}
-
-/// A line where the low-pass smears one reaction into the next.
-fn smeared(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
-    let settings = &estimate.settings;
-    let first = joint.trials.first()?.period();
-    let cutoff_hz = settings.low_pass_at(first).filter(|_| !settings.low_pass_required)?.cutoff_hz;
-    let holds: Vec<f64> = decisions(estimate).map(|decision| decision.hold as f64).collect();
-    let hold_s = median(&holds)? * first.seconds();
-    let unsmoothed = Method::AUTO;
-    (hold_s * cutoff_hz < 1.0).then(|| {
-        format!(
-            "the input is held for {} s (median), less than one period of the {cutoff_hz} Hz \
-             low-pass, which smears neighbouring reactions together: use `--method {unsmoothed}`, \
-             which needs no low-pass",
-            number(hold_s),
-        )
-    })
 }
 
 /// A line where the delay is longer than most holds.
@@ -190,18 +114,6 @@ fn as_long_as_allowed(joint: &Joint, estimate: &JointEstimate) -> Option<String>
 
 fn accepted(estimate: &JointEstimate) -> impl Iterator<Item = &Decision> {
     decisions(estimate).filter(|decision| decision.verdict() == Verdict::Accepted)
-}
-
-/// A line where segments end at the next step, since they held the reaction to it.
-fn cut_at_the_next_step(estimate: &JointEstimate) -> Option<String> {
-    let settings = &estimate.settings;
-    estimate.estimated().any(|trial| end_at_the_next_step(&trial.decisions)).then(|| {
-        format!(
-            "the joint reacts within α = {} samples, so segments that end α samples after the \
-             next step would contain the reaction to that step, too: they are ended at that step",
-            settings.alpha
-        )
-    })
 }
 
 /// A line on the trials that are sampled too slowly for the low-pass.

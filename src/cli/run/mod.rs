@@ -6,8 +6,8 @@ mod revisions;
 mod session;
 mod study;
 
-pub(crate) use against::{compared, left_over, others};
+pub(crate) use against::{compared, others};
 pub(crate) use estimates::{Estimates, estimated, failures, notes};
-pub(crate) use revisions::{Progress, Start, as_it_is, log_hashes};
+pub(crate) use revisions::{Start, as_it_is, ended, log_hashes};
 pub(crate) use session::Session;
 pub(crate) use study::{Shown, Study};

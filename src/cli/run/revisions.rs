@@ -1,7 +1,6 @@
 //! The revisions of models: as they come, in recordings, and in the model file.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use super::study::Study;
 use crate::cli::args::{check_models, name_of};
@@ -15,55 +14,6 @@ use crate::report::improve::revision_line;
 use crate::report::ladder::errors_of;
 use crate::report::{Before, ComparedJoint, Finding, History, ImprovedJoint};
 use crate::wording::parameter_units;
-
-/// Which revisions there are so far, reported as they come.
-pub(crate) struct Progress<'a> {
-    start: &'a Start<'a>,
-    /// Per joint, the number of its next revision, and whether it was stopped.
-    next: Vec<(AtomicU32, AtomicBool)>,
-    /// Who may stop it.
-    interrupt: Option<Interrupt>,
-}
-
-impl<'a> Progress<'a> {
-    pub(crate) fn new(start: &'a Start<'a>, interrupt: Option<Interrupt>) -> Self {
-        let joints = start.study.joints().iter();
-        let next = joints.map(|joint| (start.revision(joint).into(), false.into())).collect();
-        Self { start, next, interrupt }
-    }
-
-    /// Reports a revision; whether to go on.
-    pub(crate) fn done(&self, index: usize, revision: &Step) -> bool {
-        let study = self.start.study;
-        let of_joint = study.joints().get(index).zip(self.next.get(index));
-        let Some((joint, (next, stopped))) = of_joint else { return true };
-        // Another start of the search begins with the first revision again.
-        if revision.change == Change::Start {
-            next.store(self.start.revision(joint), Ordering::Relaxed);
-        }
-        let number = next.fetch_add(1, Ordering::Relaxed);
-        study.verbosity().say("improving", revision_line(joint, number, revision));
-        let stops = self.interrupt.is_some_and(Interrupt::was_pressed);
-        stopped.store(stops, Ordering::Relaxed);
-        !stops
-    }
-
-    /// What is to be said of the joint at `index`, which somebody may have stopped.
-    pub(crate) fn improved(
-        &self,
-        index: usize,
-        joint: &'a Joint,
-        improvement: &'a Improvement,
-    ) -> Option<ImprovedJoint<'a>> {
-        let improved = self.start.improved(index, joint, improvement)?;
-        let next = self.next.get(index);
-        let is_stopped = next.is_some_and(|(_, stopped)| stopped.load(Ordering::Relaxed));
-        // Where more is missing at the end, nothing but the limit has ended it, or whoever stopped it.
-        let reached_limit = improvement.verdict == Verdict::MissingEffect;
-        let improved = ImprovedJoint { reached_limit, ..improved };
-        Some(if is_stopped { improved.stopped() } else { improved })
-    }
-}
 
 /// What the models of a study begin with, and what they are called.
 pub(crate) struct Start<'a> {
@@ -95,6 +45,13 @@ impl<'a> Start<'a> {
     /// The number of its revision.
     pub(crate) fn revision(&self, joint: &Joint) -> u32 {
         self.file.revision(&joint.name).unwrap_or(0)
+    }
+
+    /// Says what a revision of the joint at `index` changed.
+    pub(crate) fn say(&self, index: usize, revision: &Step) {
+        if let Some(joint) = self.study.joints().get(index) {
+            self.study.verbosity().say("improving", revision_line(joint, revision));
+        }
     }
 
     /// What is to be said of the joint at `index`, which was improved.
@@ -144,6 +101,16 @@ impl<'a> Start<'a> {
             new.map(|joint| revised_for(file.emptied(), joint)).collect::<anyhow::Result<_>>()?;
         Ok(file.joined(&new)?)
     }
+}
+
+/// `improved` after a search that only the limit has ended, or who pressed `interrupt`, where more is
+/// missing.
+pub(crate) fn ended<'a>(improved: ImprovedJoint<'a>, interrupt: Interrupt) -> ImprovedJoint<'a> {
+    let verdict = improved.finding.verdict;
+    let is_stopped = interrupt.was_pressed();
+    let interrupted = is_stopped && verdict != Verdict::Adequate;
+    let reached_limit = !is_stopped && verdict == Verdict::MissingEffect;
+    ImprovedJoint { interrupted, reached_limit, ..improved }
 }
 
 /// A model and what it lacks, as the only revision.

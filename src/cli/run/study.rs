@@ -11,7 +11,7 @@ use crate::cli::args::{DataArgs, ResultArgs};
 use crate::cli::console::Bar;
 use crate::cli::exit::Completion;
 use crate::cli::output::{OutputKind, Outputs, of_delays};
-use crate::delay::{Automatic, Settings};
+use crate::delay::Settings;
 use crate::experiment::{Joint, Other};
 use crate::explain::Revision as Step;
 use crate::fit::Mended;
@@ -62,7 +62,11 @@ impl<'a> Study<'a> {
         }
         let options = data.options_with_others()?;
         let session = Session::begin(command, data, &options, (&args.run, stream))?;
-        Self::of(session, &args.delay_settings())
+        let study = Self::of(session, &Settings { lines: args.lines(), ..Settings::default() })?;
+        for note in study.joints().iter().filter_map(note_on_spikes) {
+            study.verbosity().say("note", note);
+        }
+        Ok(study)
     }
 
     /// Estimates the delays by `settings`, and shows them.
@@ -71,11 +75,8 @@ impl<'a> Study<'a> {
         let asked = std::slice::from_ref(&settings);
         let [estimates, of_others] = session.in_threads(|| {
             let others = &session.experiment.others;
-            [
-                session.estimates(asked, Automatic::default()),
-                session.estimates_of(others, asked, Automatic::default()),
-            ]
-            .map(|mut all| all.pop().unwrap_or_default())
+            [session.estimates(asked), session.estimates_of(others, asked)]
+                .map(|mut all| all.pop().unwrap_or_default())
         })?;
         let study = Self { session, estimates, of_others, settings };
         study.show(&[], &[], None)?;
@@ -155,11 +156,7 @@ impl<'a> Study<'a> {
         text: impl FnOnce() -> String,
         json: impl FnOnce() -> J,
     ) -> anyhow::Result<Completion> {
-        // A report has named spikes with the delays.
-        let has_said = self.session.command == "report" && !self.settings.paper;
-        let spikes = self.joints().iter().filter(|_| !has_said).filter_map(note_on_spikes);
-        let inputs = self.joints().iter().filter_map(note_on_noisy_input);
-        let notes: Vec<String> = spikes.chain(inputs).collect();
+        let notes: Vec<String> = self.joints().iter().filter_map(note_on_noisy_input).collect();
         self.session.warn(failures, &notes);
         self.session.end(Completion::without(failures), text, json)
     }

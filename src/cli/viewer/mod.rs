@@ -7,5 +7,5 @@ mod start;
 mod stream;
 
 pub(crate) use importer::{DECLINED, IMPORTER, asked_about, installed};
-pub(crate) use program::{NEWEST, PORT, VERSION, is_listening, on_path};
+pub(crate) use program::{NEWEST, VERSION, on_path};
 pub(crate) use stream::{Stream, StreamArgs};

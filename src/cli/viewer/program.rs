@@ -1,9 +1,7 @@
 //! The program `rerun`: its version, where it is found, and whether one listens.
 
 use std::ffi::OsStr;
-use std::net::{SocketAddr, TcpStream};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 /// The version of the viewer that recordings are made for: an older one does not read them for
 /// certain.
@@ -14,11 +12,6 @@ pub(crate) const NEWEST: &str = "0.41.0";
 
 /// Where the viewer listens unless another port is given.
 pub(crate) const PORT: u16 = 9876;
-
-/// Whether `address` takes connections.
-pub(crate) fn is_listening(address: SocketAddr) -> bool {
-    TcpStream::connect_timeout(&address, Duration::from_secs(2)).is_ok()
-}
 
 /// The program `name` in the folders of `path`.
 pub(crate) fn on_path(name: &str, path: Option<&OsStr>) -> Option<PathBuf> {

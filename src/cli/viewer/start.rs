@@ -1,12 +1,12 @@
 //! Starting a viewer.
 
-use std::net::{Ipv4Addr, SocketAddr};
+use std::net::{Ipv4Addr, SocketAddr, TcpStream};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, bail};
 
-use super::program::{PORT, is_listening, on_path};
+use super::program::{PORT, on_path};
 use crate::cli::console::{Bar, Verbosity};
 
 /// Longest time that a viewer may take to start.
@@ -57,4 +57,9 @@ fn start() -> anyhow::Result<Child> {
         command.process_group(0);
     }
     command.spawn().with_context(|| format!("{}: cannot be started", path.display()))
+}
+
+/// Whether `address` takes connections.
+fn is_listening(address: SocketAddr) -> bool {
+    TcpStream::connect_timeout(&address, Duration::from_secs(2)).is_ok()
 }

@@ -15,6 +15,7 @@ use crate::report::{Recording, SweepRecording};
 
 /// Which viewer shows the recording while it is made.
 #[derive(Args, Debug)]
+#[command(next_help_heading = "Show it in a viewer while the command runs")]
 pub(crate) struct StreamArgs {
     /// Show the recording while it is made, in a viewer that runs [default: 127.0.0.1:9876]
     #[arg(

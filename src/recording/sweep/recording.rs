@@ -40,7 +40,7 @@ impl Content for SweepRecording<'_> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
         let tab = |joint| {
             let swept = Swept::of(self.grid, joint, &starts);
-            Tab { joint: Some(&joint.joint.name), add: Box::new(move |chunks| add(chunks, &swept)) }
+            Tab { joint: &joint.joint.name, add: Box::new(move |chunks| add(chunks, &swept)) }
         };
         self.joints.iter().copied().map(tab).collect()
     }

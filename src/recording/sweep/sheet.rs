@@ -17,17 +17,13 @@ use crate::recording::layers::Layers;
 use crate::recording::palette::{self, Rgb, role};
 use crate::recording::panels::{self, Placed};
 use crate::recording::paths;
-use crate::report::sweep::text::{settings_in_words, sweep_sentences};
+use crate::report::sweep::text::sweep_sentences;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1130.0);
 
 /// Left and right ends of the plots: names stand on the left, counts on the right.
 const SIDES: (f32, f32) = (250.0, SHEET.0 - 70.0);
-
-/// Points times combinations up to which the pointer names settings in words, which takes
-/// time; with more it counts them.
-const NAMED: usize = 20_000_000;
 
 /// Draws the page below `root`.
 pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
@@ -131,15 +127,10 @@ impl<'s> Page<'s> {
             Group::all(self.swept, step).into_iter().map(move |group| (x, step, group))
         });
         let groups: Vec<(f64, &SweptStep, Group)> = groups.collect();
-        let is_named = groups.len().saturating_mul(self.swept.grid.combinations().len()) <= NAMED;
         let of_opinion = |(part, name, opinion): (&'static str, &str, Opinion)| {
             let own = groups.iter().filter(|(.., group)| group.opinion == opinion);
             let dots = own.map(|(x, step, group)| {
-                let mut name = group.name(step);
-                if is_named {
-                    name = format!("{name}: {}", group.in_words(self.swept));
-                }
-                ((*x, group.delay * step.period_s), group.radius(step), name)
+                ((*x, group.delay * step.period_s), group.radius(step), group.name(step))
             });
             Mark::new(role(opinion.rgb()), Shape::Named(dots.collect())).named(name).part(part)
         };
@@ -269,7 +260,6 @@ fn rectangle((left, low): Place, (right, high): Place) -> Vec<Place> {
 struct Group {
     delay: f64,
     opinion: Opinion,
-    runs: Vec<usize>,
     votes: usize,
 }
 
@@ -279,9 +269,8 @@ impl Group {
         for run in 0..step.delays.len() {
             let Some(delay) = Swept::delay(step, run) else { continue };
             let opinion = Swept::cell(step, run).opinion;
-            let empty = Self { delay, opinion, runs: Vec::new(), votes: 0 };
+            let empty = Self { delay, opinion, votes: 0 };
             let group = groups.entry((delay.to_bits(), opinion)).or_insert(empty);
-            group.runs.push(run);
             group.votes += swept.votes.get(run).copied().unwrap_or(0);
         }
         groups.into_values().collect()
@@ -298,15 +287,6 @@ impl Group {
     fn name(&self, step: &SweptStep) -> String {
         let (seconds, votes) = (self.delay * step.period_s, self.votes);
         format!("step {}: {seconds:.3} s with {votes} of {} settings", step.number, step.tried)
-    }
-
-    /// Its settings.
-    fn in_words(&self, swept: &Swept<'_>) -> String {
-        let mut chosen = vec![false; swept.names.len()];
-        for run in &self.runs {
-            chosen.get_mut(*run).into_iter().for_each(|chosen| *chosen = true);
-        }
-        settings_in_words(swept.grid, &chosen)
     }
 }
 

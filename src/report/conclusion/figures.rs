@@ -4,7 +4,7 @@ use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
 use crate::fit::{AssessedModel, follows_input, time_constant_s};
 use crate::report::Finding;
-use crate::wording::{effects_text, measure, percent, rounded};
+use crate::wording::{effects_text, listed, measure, percent, rounded};
 
 /// Times the noise above which an error is said to be more than noise.
 pub(super) const ABOVE_NOISE: f64 = 1.15;
@@ -38,27 +38,16 @@ impl Finding<'_> {
         let mut gained = before.gained(&self.comparison().fit.model);
         let doubtful = self.attribution.map_or(&[][..], |known| &known.doubtful);
         gained.retain(|id| doubtful.iter().all(|one| one.effect != *id));
-        let names = self.gained_in_words(gained)?;
-        let explain = if names.contains(' ') { "explain" } else { "explains" };
-        Some(format!("{names} {explain} {}", self.explained_share()?))
-    }
-
-    /// `70 % of the error beyond the noise (2.89 to 0.88 deg)`.
-    pub(super) fn explained_share(&self) -> Option<String> {
+        let gained: Vec<String> = gained.into_iter().map(str::to_owned).collect();
+        let explain = match gained.as_slice() {
+            [] => return None,
+            [_] => "explains",
+            _ => "explain",
+        };
         let share = percent(self.consequence().explained()?);
         let (from, to) = (rounded(self.before?.rmse()?), self.output(self.error()));
-        Some(format!("{share} of the error beyond the noise ({from} to {to})"))
-    }
-
-    /// `dead_band and end_stop`; of many those that carry most: `dead_band, end_stop and 4 more`.
-    fn gained_in_words(&self, mut gained: Vec<&'static str>) -> Option<String> {
-        let found = self.attribution.map_or(&[][..], |known| &known.found);
-        let share =
-            |id: &str| found.iter().find(|one| one.effect == id).map_or(0.0, |one| one.error_share);
-        if gained.len() > MOST {
-            gained.sort_by(|a, b| share(b).total_cmp(&share(a)));
-        }
-        first_of(&gained)
+        let names = listed(&gained, "and");
+        Some(format!("{names} {explain} {share} of the error beyond the noise ({from} to {to})"))
     }
 
     /// What the model explains of the motion: `1 − e/d` with the standard deviation `d` of what
@@ -75,25 +64,6 @@ impl Finding<'_> {
             _ => format!("{model} does not explain the motion"),
         }
     }
-}
-
-/// Names that a person takes in.
-const MOST: usize = 4;
-
-/// `dead_band and end_stop`; of many the first: `dead_band, end_stop, leakage and 4 more`. Nothing of none.
-pub(super) fn first_of(names: &[impl AsRef<str>]) -> Option<String> {
-    /// Names that are said of more.
-    const FIRST: usize = 3;
-    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
-    let (last, others) = names.split_last()?;
-    Some(match others {
-        [] => (*last).to_owned(),
-        others if others.len() < MOST => format!("{} and {last}", others.join(", ")),
-        _ => {
-            let first = names.get(..FIRST).unwrap_or_default().join(", ");
-            format!("{first} and {} more", names.len() - FIRST)
-        }
-    })
 }
 
 /// `The output follows the input itself, not its integral (r² 0.93): the model is a first order

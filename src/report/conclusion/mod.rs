@@ -1,6 +1,5 @@
 //! A verdict in words that an engineer can act on.
 
-mod answers;
 mod figures;
 mod passage;
 mod verdict;

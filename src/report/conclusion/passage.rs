@@ -2,10 +2,10 @@
 //! does not follow.
 
 use crate::diagnosis::failure::WorstSegment;
-use crate::diagnosis::{Curve, CurveOf, ShownBy};
+use crate::diagnosis::{Curve, CurveOf};
 use crate::figure::curves::farthest;
 use crate::report::Finding;
-use crate::report::finding::{in_proportion, times_as_large};
+use crate::report::finding::in_proportion;
 use crate::wording::{
     capitalized, failure_sentences, measure, percent, rounded, unit_suffix, worst_segment_text,
 };
@@ -74,30 +74,13 @@ impl Finding<'_> {
     }
 
     /// How large the error is, and where.
-    pub(in crate::report) fn fails(&self) -> Vec<Passage> {
-        let size = std::iter::once(self.size()).chain(self.shown_beside_size());
-        let passages =
-            [Passage::of(Topic::ERROR, size), self.where_it_fails(), self.worst_segments()];
+    pub(crate) fn fails(&self) -> Vec<Passage> {
+        let passages = [
+            Passage::of(Topic::ERROR, [self.size()]),
+            self.where_it_fails(),
+            self.worst_segments(),
+        ];
         passages.into_iter().flatten().collect()
-    }
-
-    /// What shows the lack of fit of an error that may be no larger than noise.
-    fn shown_beside_size(&self) -> Option<String> {
-        let test = self.comparison().lack_of_fit?;
-        match test.shown_by? {
-            ShownBy::UnseenPart => {
-                let times = times_as_large(test.times_training?);
-                Some(format!("On the validation part it is {times}."))
-            }
-            ShownBy::FewWindows => {
-                let times = rounded(test.local?.times_noise?);
-                Some(format!(
-                    "It is not spread evenly, as noise is: in one window the simulated motion is \
-                     wrong by {times} times the noise."
-                ))
-            }
-            ShownBy::Shapes | ShownBy::Size => None,
-        }
     }
 
     /// Under which conditions most of the error arises.

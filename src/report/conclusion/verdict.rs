@@ -10,9 +10,8 @@ use crate::explain::Candidate;
 use crate::fit::{AssessedModel, Status, is_rounding, makes_first_order};
 use crate::model::Component;
 use crate::report::Finding;
-use crate::report::finding::times_as_large;
-use crate::report::finding::{added, specs};
-use crate::report::parameters::filled_in;
+use crate::report::finding::added;
+use crate::report::parameters::equation;
 use crate::report::ranking::separation_sentence;
 use crate::wording::{
     measure, misfit_units, p_text, parameter_units, parameter_value, percent, range_text,
@@ -37,7 +36,7 @@ impl Finding<'_> {
     }
 
     pub(super) fn adequate(&self) -> Vec<Passage> {
-        let error = [self.test(), self.size()].into_iter().chain(self.misses_validation());
+        let error = [self.test(), self.size()];
         let limits = std::iter::once(self.limits()).chain(self.undetermined());
         let passages = [
             Passage::of(Topic::ERROR, error),
@@ -102,20 +101,6 @@ impl Finding<'_> {
         is_rounding(&self.joint().trials, largest.fold(0.0, f64::max))
     }
 
-    /// A warning where the part that was not fitted is worse than noise, and than the other one.
-    fn misses_validation(&self) -> Option<String> {
-        let validation = self.comparison().validation?.rmse;
-        let times = validation / self.comparison().training?.rmse;
-        let is_worse = times > ABOVE_NOISE && validation > ABOVE_NOISE * self.noise()?;
-        is_worse.then(|| {
-            format!(
-                "The test covers the training part; on the validation part, which shows what to \
-                 expect of new data, the error is {}.",
-                times_as_large(times)
-            )
-        })
-    }
-
     /// What the record covers: beyond it nothing was shown.
     fn limits(&self) -> String {
         let input = self.joint().trials.iter().flat_map(Trial::input);
@@ -153,7 +138,7 @@ impl Finding<'_> {
     pub(super) fn missing(&self, best: &Candidate) -> Vec<Passage> {
         let described = added(best).map(|component| self.described(best, component));
         let compared = [self.improvement(best), self.alternatives(best)];
-        let missing = described.chain(compared).chain(self.look_alikes(best));
+        let missing = described.chain(compared);
         let passages = [
             self.where_it_fails(),
             self.worst_segments(),
@@ -169,14 +154,14 @@ impl Finding<'_> {
         let is_first_order =
             makes_first_order(spec.id) && first_order(self.joint(), &best.fit).is_some();
         let parameters = self.parameters(&best.fit, &format!("{}.", spec.id));
-        let law = filled_in(component);
+        let law = equation(component);
         let with = if parameters.is_empty() { "" } else { ", with " };
         let summary = if is_first_order {
             "turns the integrator into a first-order lag, which settles at a constant input".into()
         } else {
             component.summary()
         };
-        format!("{} ({summary}): here {law}{with}{parameters}.", spec.id)
+        format!("{} ({summary}): {law}{with}{parameters}.", spec.id)
     }
 
     /// What the error becomes.
@@ -222,23 +207,6 @@ impl Finding<'_> {
         self.ranking.iter().find(|other| other.effects != best.effects)
     }
 
-    /// What the catalogue confuses with it, and how that did.
-    fn look_alikes(&self, best: &Candidate) -> Option<String> {
-        let next = self.next_to(best).map(|next| next.effects.as_slice()).unwrap_or_default();
-        let mentioned = [&best.effects, &best.indistinguishable_from, next];
-        let named = |id: &&str| !mentioned.iter().any(|ids| ids.contains(id));
-        let confused = specs(best).flat_map(|spec| spec.confused_with).copied().filter(named);
-        let how = |id: &str| {
-            let other = self.ranking.iter().find(|other| other.effects == [id]);
-            other.map_or_else(
-                || format!("{id} (not in the ranking)"),
-                |other| format!("{id} (error {})", self.output(other.rmse())),
-            )
-        };
-        let confused: Vec<String> = confused.map(how).collect();
-        (!confused.is_empty()).then(|| format!("Often confused with it: {}.", confused.join(", ")))
-    }
-
     /// `upper = 0.612 ± 0.021 V` for each of the parameters that start with `prefix`; those that were
     /// not fitted say nothing of the joint.
     fn parameters(&self, fit: &AssessedModel, prefix: &str) -> String {
@@ -271,8 +239,7 @@ impl Finding<'_> {
 
     pub(super) fn unexplained(&self) -> Vec<Passage> {
         let mut passages = self.fails();
-        passages
-            .extend(Passage::of(Topic::RESIDUAL, self.shape().into_iter().chain(self.likeliest())));
+        passages.extend(Passage::of(Topic::RESIDUAL, self.shape()));
         passages.extend(Passage::of(Topic::SHARES, self.consequence().sentences()));
         passages.extend(Passage::of(Topic::NEXT, self.several_together()));
         passages
@@ -329,41 +296,6 @@ impl Finding<'_> {
         let unit = unit_suffix(region.feature.unit(&misfit_units(self.joint())).as_deref());
         let part = region_text(region);
         format!("{} where it is {part}{unit}", self.output(region.mean_residual))
-    }
-
-    /// The effect that is the likeliest, and what is to be thought of it; nothing where it is named as of
-    /// no consequence already, or gains nothing.
-    fn likeliest(&self) -> Option<String> {
-        /// The share of the misfit from which a significant effect is likely one of several. Chosen: of
-        /// 30 simulated misfits from outside the catalogue the likeliest effect explained 77 % at most.
-        const ONE_OF_SEVERAL: f64 = 0.8;
-        let likeliest = self.ranking.first()?;
-        let refinements = self.attribution.map_or(&[][..], |known| &known.refinements);
-        let (name, explained) = (likeliest.name(), likeliest.share_of_misfit.clamp(0.0, 1.0));
-        let with = likeliest.rmse();
-        // One that diverges has no error.
-        let gains = with < self.error() && rounded(with) != rounded(self.error());
-        if !gains || likeliest.effects.iter().all(|id| refinements.contains(id)) {
-            return None;
-        }
-        Some(if explained >= ONE_OF_SEVERAL && likeliest.is_significant() {
-            let share = percent(explained);
-            format!(
-                "The likeliest further effect, {name}, would explain {share} of the error beyond \
-                 the noise and leave a lack of fit: several effects are probably missing."
-            )
-        } else {
-            let with = self.output(with);
-            let why = if likeliest.is_significant() {
-                "that is too little for it to be named"
-            } else {
-                "the reduction is not significant"
-            };
-            format!(
-                "The likeliest further effect, {name}, would reduce the error to {with}, but \
-                 {why}."
-            )
-        })
     }
 }
 

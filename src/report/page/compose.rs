@@ -2,12 +2,11 @@
 
 use serde_json::{Value, json};
 
-use super::document::{Attachment, Block, Document, Entry, slug};
-use super::report::{RecordingFile, Report};
-use super::{delays, joint};
+use super::document::{Block, Document, Entry, slug};
+use super::joint;
+use super::report::Report;
 use crate::experiment::{Joint, Source, Trial};
 use crate::report::difference::differences_json;
-use crate::report::estimate::chosen_line;
 use crate::report::explain::conclusion_json;
 use crate::report::json::{document, without_empty};
 use crate::report::settings::settings_table;
@@ -17,21 +16,14 @@ use crate::wording::counted;
 impl Report<'_> {
     /// Puts the report together.
     pub(crate) fn document(&self) -> Document {
-        let by = [self.heading.author, self.heading.date].into_iter().flatten();
-        let by = by.collect::<Vec<_>>().join(", ");
-        let by = Some(by).filter(|by| !by.is_empty()).map(Block::text);
-        let start = [Block::text(self.extent()), Block::Contents(self.contents())];
-        let mut blocks: Vec<_> = by.into_iter().chain(start).collect();
-        // Of models the delays are what they are made from.
-        let overview = delays::overview(self.joints).filter(|_| self.models.is_empty());
-        blocks.extend(overview.map(|figure| Block::Figures(vec![figure])));
+        let mut blocks = vec![Block::text(self.extent()), Block::Contents(self.contents())];
         if !self.failures.is_empty() {
             blocks.push(Block::Lead("Left out".to_owned()));
             blocks.push(Block::List(self.failures.to_vec()));
         }
         for (index, joint) in self.joints.iter().enumerate() {
             blocks.push(Block::section(&joint.joint.name, &anchor(index, joint.joint)));
-            blocks.extend(joint::blocks(self, *joint, &anchor(index, joint.joint)));
+            blocks.extend(joint::blocks(self, *joint));
         }
         blocks.extend(origin(self));
         Document { title: self.title(), blocks }
@@ -44,7 +36,7 @@ impl Report<'_> {
     }
 
     fn title(&self) -> String {
-        if let Some(title) = self.heading.title {
+        if let Some(title) = self.title {
             return title.to_owned();
         }
         let what = if self.models.is_empty() { "Delays" } else { "Models and delays" };
@@ -80,7 +72,7 @@ impl Report<'_> {
     }
 }
 
-/// Where links to a joint lead, and what its drawings' names begin with.
+/// Where links to a joint lead.
 fn anchor(index: usize, joint: &Joint) -> String {
     format!("joint-{}-{}", index + 1, slug(&joint.name))
 }
@@ -112,14 +104,9 @@ pub(super) fn origin(report: &Report<'_>) -> Vec<Block> {
     if !report.notes.is_empty() {
         blocks.push(Block::List(report.notes.to_vec()));
     }
-    blocks.extend(report.recording.iter().flat_map(recording));
+    blocks.extend(report.recording.into_iter().flat_map(recording));
     blocks.push(Block::part("Settings"));
     blocks.push(Block::Table(settings_table(report.settings)));
-    let chosen: Vec<String> = report.joints.iter().filter_map(chosen_line).collect();
-    if !chosen.is_empty() {
-        blocks.push(Block::text("Chosen from the record of"));
-        blocks.push(Block::List(chosen));
-    }
     if let Some(text) = report.revised {
         let file = vec![Block::Code(text.to_owned())];
         blocks.push(Block::details("The models, as a model file", file));
@@ -136,21 +123,16 @@ pub(super) fn files(sources: &[Source]) -> TextTable {
     TextTable::of(["file", "bytes", "SHA-256"], &[1], sources.iter().map(row))
 }
 
-/// How to look at the recording.
-fn recording(recording: &RecordingFile<'_>) -> Vec<Block> {
-    let RecordingFile { name, bytes } = recording;
-    let location = if bytes.is_some() { "is in this page" } else { "is beside this report" };
-    let mut blocks = vec![
+/// How to look at the recording of this name.
+fn recording(name: &str) -> [Block; 3] {
+    [
         Block::part("Recording"),
         Block::text(format!(
-            "{name} {location}: every decision, to be stepped through in the Rerun viewer \
+            "{name} is beside this report: every decision, to be stepped through in the Rerun viewer \
              (package rerun-sdk of PyPI), with:"
         )),
         Block::Code(format!("rerun {name}")),
-    ];
-    let file = bytes.map(|bytes| Attachment { name: (*name).to_owned(), bytes: bytes.to_vec() });
-    blocks.extend(file.map(Block::Attachment));
-    blocks
+    ]
 }
 
 /// The document of `report --format json`: what was written where, and what is said of each joint; its

@@ -1,22 +1,17 @@
 //! The record of a joint, its delays over time and against its state, and its dead time, as drawings.
 
-use super::document::{Block, Figure, HALF, WIDTH, slug};
+use super::document::{Block, Figure, HALF, WIDTH};
 use super::timeline::{Timeline, values_of};
-use crate::delay::{
-    AgainstOfKind, AgainstState, Bounds, DeadTime, Decision, DelayProfile, DelayTable, Transition,
-    Verdict,
-};
+use crate::delay::{AgainstState, Bounds, DeadTime, Decision, DelayTable, Transition, Verdict};
 use crate::experiment::Trial;
-use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, delay_levels, thinned_places};
-use crate::numerics::quantile;
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, delay_levels};
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;
 use crate::report::answer::dead_time_sentences;
-use crate::report::decisions::doubted;
-use crate::wording::{bracketed, capitalized, p_cell};
+use crate::wording::bracketed;
 
 /// Input and output over time.
-pub(super) fn record_figure(estimated: EstimatedJoint<'_>, file: String) -> Figure {
+pub(super) fn record_figure(estimated: EstimatedJoint<'_>) -> Figure {
     let joint = estimated.joint;
     let name = format!("Input and output of {} over time", joint.name);
     let mut caption =
@@ -25,7 +20,7 @@ pub(super) fn record_figure(estimated: EstimatedJoint<'_>, file: String) -> Figu
         caption += " Lines are interrupted where nothing was logged.";
     }
     let panels = record_panels(estimated, &Timeline::of(joint)).into();
-    Figure { file, name, width: WIDTH, panels, caption }
+    Figure { name, width: WIDTH, panels, caption }
 }
 
 /// The output with the breakpoints above, the input below.
@@ -88,30 +83,26 @@ fn breakpoint(
     Some((timeline.at(index, sample), output))
 }
 
-/// Steps between which the delay is drawn.
-const MOST_STEPS: usize = 2000;
-
 /// What a joint's delays are over time.
 #[derive(Default)]
 struct Delays {
     accepted: Vec<Place>,
     intervals: Vec<Vec<Place>>,
     rejected: Vec<f64>,
-    held: Vec<Vec<Place>>,
 }
 
 /// The delay of each step over time; none where none was accepted.
-pub(super) fn over_time(estimated: EstimatedJoint<'_>, file: String) -> Option<Figure> {
+pub(super) fn over_time(estimated: EstimatedJoint<'_>) -> Option<Figure> {
     let panels = vec![delay_panel(estimated, &Timeline::of(estimated.joint))?];
     let name = format!("Delay of {} over time", estimated.joint.name);
     let caption = "Delay of each step against the time of the step; rejected steps are marked at \
                    the bottom."
         .to_owned();
-    Some(Figure { file, name, width: WIDTH, panels, caption })
+    Some(Figure { name, width: WIDTH, panels, caption })
 }
 
 pub(crate) fn delay_panel(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> Option<Panel> {
-    let Delays { accepted, intervals, rejected, held } = delays(estimated, timeline);
+    let Delays { accepted, intervals, rejected } = delays(estimated, timeline);
     if accepted.is_empty() {
         return None;
     }
@@ -120,13 +111,7 @@ pub(crate) fn delay_panel(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>
     let bottom = y.low + 0.05 * (y.high - y.low);
     let rejected: Vec<Place> = rejected.into_iter().map(|time| (time, bottom)).collect();
     let mut marks = vec![timeline.borders()];
-    // Of more steps than that only a filled area would be seen.
-    let are_apart = accepted.len() <= MOST_STEPS;
-    if are_apart {
-        let held = Mark::lines(Role::Smoothed, 1.0, held);
-        marks.push(held.named("delay of every sample"));
-    }
-    if !intervals.is_empty() && are_apart {
+    if !intervals.is_empty() {
         marks.push(Mark::lines(Role::Faint, 1.4, intervals).named("interval"));
     }
     marks.push(Mark::dots(Role::Accepted, accepted).named("accepted step"));
@@ -155,59 +140,29 @@ fn delays(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> Delays {
                     .map(|fine| vec![(at, fine.low * period_s), (at, fine.high * period_s)]),
             );
         }
-        let place = |(k, tau): (usize, f64)| (timeline.at(index, (k + 1) as f64), tau * period_s);
-        let runs = runs(&estimate.profile).into_iter();
-        delays.held.extend(runs.map(|run| run.into_iter().map(place).collect()));
     }
     delays
 }
 
-/// Spans of samples with a delay, each as its corners.
-fn runs(profile: &DelayProfile) -> Vec<Vec<(usize, f64)>> {
-    let known: Vec<_> = profile.iter().enumerate().collect();
-    let same = |a: &(usize, Option<f64>), b: &(usize, Option<f64>)| a.1.is_some() == b.1.is_some();
-    let runs = known.chunk_by(same).filter(|run| run.iter().all(|(_, tau)| tau.is_some()));
-    runs.map(|run| {
-        corners(&run.iter().filter_map(|(k, tau)| Some((*k, (*tau)?))).collect::<Vec<_>>())
-    })
-    .collect()
-}
-
-/// A run without samples whose neighbours have the same delay, thinned to what is seen.
-fn corners(run: &[(usize, f64)]) -> Vec<(usize, f64)> {
-    #[expect(clippy::float_cmp, reason = "a held delay is the same number")]
-    let is_inside = |trio: &[(usize, f64)]| match trio {
-        [a, b, c] => a.1 == b.1 && b.1 == c.1,
-        _ => false,
-    };
-    let inside = run.windows(3).filter(|trio| !is_inside(trio)).filter_map(|trio| trio.get(1));
-    let kept: Vec<_> = run.first().into_iter().chain(inside).chain(run.last()).copied().collect();
-    thinned_places(&kept, 4000)
-}
-
 /// The median delay over the level, by kind of step; none where none was accepted.
-pub(super) fn over_levels(
-    estimated: EstimatedJoint<'_>,
-    found: &DelayTable,
-    file: String,
-) -> Option<Figure> {
+pub(super) fn over_levels(estimated: EstimatedJoint<'_>, found: &DelayTable) -> Option<Figure> {
     let panel = delay_levels::panel(found, estimated.joint.input_unit.as_deref())?;
     let name = format!("Delay of {} by level", estimated.joint.name);
     let caption = "Median delay against the level after the step (for a stop, the level before \
                    it), with its 95 % interval and the number of accepted steps out of all; a \
                    cross at the bottom marks a level without an accepted step."
         .to_owned();
-    Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
+    Some(Figure { name, width: WIDTH, panels: vec![panel], caption })
 }
 
 /// Number of the speed among the variables.
 const SPEED: usize = 0;
 
 /// The delay against the speed, and against what it goes with most besides.
-pub(super) fn against(joint: &str, found: &AgainstState, file: &str) -> Vec<Figure> {
+pub(super) fn against(joint: &str, found: &AgainstState) -> Vec<Figure> {
     let strongest = by_strength(found).into_iter().find(|variable| *variable != SPEED);
     let shown = std::iter::once(SPEED).chain(strongest);
-    shown.filter_map(|variable| scatter(joint, found, variable, file)).collect()
+    shown.filter_map(|variable| scatter(joint, found, variable)).collect()
 }
 
 /// All variables, that on which the delay of a kind of step depends most surely first.
@@ -221,13 +176,12 @@ pub(crate) fn by_strength(found: &AgainstState) -> Vec<usize> {
     all
 }
 
-fn scatter(joint: &str, found: &AgainstState, variable: usize, file: &str) -> Option<Figure> {
+fn scatter(joint: &str, found: &AgainstState, variable: usize) -> Option<Figure> {
     let panel = against_panel(found, variable)?;
     let variable_name = &found.correlations.get(variable)?.variable;
     let name = format!("Delay of {joint} against {}", panel.x.name);
-    let file = format!("{file}-against-{}", slug(variable_name));
-    let caption = caption(found, variable, variable_name);
-    Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
+    let caption = format!("Delay against {}.", variable_name.replace('_', " "));
+    Some(Figure { name, width: HALF, panels: vec![panel], caption })
 }
 
 /// The delays against one variable, by kind of step; none where it is not known.
@@ -258,71 +212,14 @@ pub(crate) fn against_panel(found: &AgainstState, variable: usize) -> Option<Pan
     })
 }
 
-/// What is said of each kind of step.
-fn caption(found: &AgainstState, variable: usize, name: &str) -> String {
-    let of_kind = |kind: &AgainstOfKind| {
-        let one = kind.correlations.get(variable)?;
-        let Some(rho) = one.rho else {
-            return Some(format!(
-                "{}: not tested: too few steps, or the quantity does not change",
-                kind.transition
-            ));
-        };
-        let p = p_cell(one.p_holm);
-        let p = if p.starts_with('<') { format!("p {p}") } else { format!("p = {p}") };
-        let said = if one.significant { "the delay depends on it" } else { "no dependence shown" };
-        Some(format!("{}: {said} (ρ = {rho:+.2}, {p})", kind.transition))
-    };
-    let said: Vec<_> = found.kinds.iter().filter_map(of_kind).collect();
-    let name = name.replace('_', " ");
-    format!("Delay against {name}. {}.", capitalized(&said.join("; ")))
-}
-
-/// How the delays of each joint are spread; none of fewer than two joints.
-pub(super) fn overview(joints: &[EstimatedJoint<'_>]) -> Option<Figure> {
-    let spread = |joint: &EstimatedJoint<'_>| Some((joint.joint.name.clone(), spread(*joint)?));
-    let (names, spreads): (Vec<String>, Vec<[f64; 5]>) = joints.iter().filter_map(spread).unzip();
-    if names.len() < 2 {
-        return None;
-    }
-    let rows = || (0_u32..).map(|row| -f64::from(row)).zip(&spreads);
-    let line = |from: usize, to: usize| {
-        rows().map(|(row, at)| vec![(at[from], row), (at[to], row)]).collect::<Vec<_>>()
-    };
-    let x = Span::around(spreads.iter().flat_map(|at| [at[0], at[4]]).chain([0.0]), 0.03);
-    let panel = Panel {
-        x: Axis::new(x, "delay [s]", 8.0),
-        y: Axis::of_names(&names, ""),
-        height: 22 * u32::try_from(names.len()).unwrap_or(1) + 10,
-        marks: vec![
-            Mark::lines(Role::Faint, 1.2, line(0, 4)).named("least to greatest"),
-            Mark::lines(Role::Smoothed, 6.0, line(1, 3)).named("middle half"),
-            Mark::dots(Role::Ink, rows().map(|(row, at)| (at[2], row)).collect()).named("median"),
-        ],
-    };
-    let [file, name, caption] =
-        ["delays", "Delays of all joints", "The accepted delays of each joint."].map(str::to_owned);
-    Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
-}
-
-/// The least, the quartiles and the greatest of the accepted delays of a joint, in seconds.
-fn spread(estimated: EstimatedJoint<'_>) -> Option<[f64; 5]> {
-    let delays = doubted(estimated).filter_map(|it| it.delay_s(it.decision.accepted_delay()));
-    let mut delays: Vec<f64> = delays.collect();
-    delays.sort_by(f64::total_cmp);
-    let at = |share: f64| quantile(&delays, share);
-    Some([*delays.first()?, at(0.25)?, at(0.5)?, at(0.75)?, *delays.last()?])
-}
-
 /// What is said and drawn of it; nothing for an input that is made of steps.
-pub(super) fn dead_time_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
+pub(super) fn dead_time_blocks(estimated: EstimatedJoint<'_>) -> Vec<Block> {
     let Some(found) = &estimated.estimate.dead_time else { return Vec::new() };
     let mut blocks = vec![Block::part("Dead time")];
     let sentences = dead_time_sentences(&estimated);
     blocks.extend(sentences.into_iter().map(|sentence| Block::text(format!("{sentence}."))));
-    let mut figures = Vec::new();
-    figures.extend(windows_over_time(estimated, found, format!("{file}-windows")));
-    figures.extend(curve(estimated, found, format!("{file}-dead-time")));
+    let drawn = [windows_over_time(estimated, found), curve(estimated, found)];
+    let figures: Vec<Figure> = drawn.into_iter().flatten().collect();
     if !figures.is_empty() {
         blocks.push(Block::Figures(figures));
     }
@@ -330,17 +227,13 @@ pub(super) fn dead_time_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Vec
 }
 
 /// The dead time of each window, with its interval.
-fn windows_over_time(
-    estimated: EstimatedJoint<'_>,
-    found: &DeadTime,
-    file: String,
-) -> Option<Figure> {
+fn windows_over_time(estimated: EstimatedJoint<'_>, found: &DeadTime) -> Option<Figure> {
     let panels = vec![dead_time_panel(found, &Timeline::of(estimated.joint))?];
     let name = format!("Dead time of {} over time", estimated.joint.name);
     let caption = "Dead time in windows of the record, with intervals; a window in which the \
                    input moves the output too little has none."
         .to_owned();
-    Some(Figure { file, name, width: WIDTH, panels, caption })
+    Some(Figure { name, width: WIDTH, panels, caption })
 }
 
 pub(crate) fn dead_time_panel(found: &DeadTime, timeline: &Timeline<'_>) -> Option<Panel> {
@@ -372,7 +265,7 @@ pub(crate) fn dead_time_panel(found: &DeadTime, timeline: &Timeline<'_>) -> Opti
 }
 
 /// The prediction error of each dead time.
-fn curve(estimated: EstimatedJoint<'_>, found: &DeadTime, file: String) -> Option<Figure> {
+fn curve(estimated: EstimatedJoint<'_>, found: &DeadTime) -> Option<Figure> {
     let points: Vec<Place> = found.curve.iter().map(|p| (p.delay_s, p.error)).collect();
     let (bounds, last) = found.bounds().zip(points.last())?;
     let y = Span::around(points.iter().map(|place| place.1), 0.1);
@@ -388,17 +281,5 @@ fn curve(estimated: EstimatedJoint<'_>, found: &DeadTime, file: String) -> Optio
     let caption = "Prediction error against dead time; all other parameters are refitted for each \
                    dead time."
         .to_owned();
-    Some(Figure { file, name, width: WIDTH, panels: vec![panel], caption })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_run_of_equal_delays_is_drawn_by_its_corners() {
-        let run = [(3, 1.0), (4, 1.0), (5, 1.0), (6, 2.0), (7, 2.0), (8, 2.0)];
-        assert_eq!(corners(&run), [(3, 1.0), (5, 1.0), (6, 2.0), (8, 2.0)]);
-        assert_eq!(corners(&run[..1]).first(), Some(&(3, 1.0)));
-    }
+    Some(Figure { name, width: WIDTH, panels: vec![panel], caption })
 }

@@ -1,4 +1,4 @@
-//! What a report says, before it is written down as a page or as Markdown.
+//! What a report says, before it is written down as a page.
 
 use crate::figure::Panel;
 use crate::report::TextTable;
@@ -42,8 +42,6 @@ pub(super) enum Block {
     Table(TextTable),
     /// What is shown when it is asked for.
     Details { summary: String, blocks: Vec<Self> },
-    /// A file that is in the page.
-    Attachment(Attachment),
 }
 
 /// An entry of a list of sections.
@@ -57,21 +55,12 @@ pub(super) struct Entry {
 /// A drawing: panels above one another.
 #[derive(Clone, Debug)]
 pub(super) struct Figure {
-    /// A name for its file, without suffix.
-    pub(super) file: String,
     /// What it is, for those who do not see it.
     pub(super) name: String,
     /// In pixels.
     pub(super) width: u32,
     pub(super) panels: Vec<Panel>,
     pub(super) caption: String,
-}
-
-/// A file that is in the page.
-#[derive(Clone, Debug)]
-pub(super) struct Attachment {
-    pub(super) name: String,
-    pub(super) bytes: Vec<u8>,
 }
 
 impl Block {
@@ -92,21 +81,8 @@ impl Block {
     }
 }
 
-/// `name` as a part of a link or of a file's name: small letters, digits and `-`, and no more of
-/// them than a file's name has room for beside a number and an ending.
+/// `name` as a part of a link: small letters, digits and `-`.
 pub(super) fn slug(name: &str) -> String {
-    const LONGEST: usize = 120;
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
-    name.chars().map(plain).take(LONGEST).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_slug_is_safe_in_links_and_file_names() {
-        assert_eq!(slug("Boom_<1>/é"), "boom--1---");
-        assert_eq!(slug(&"é".repeat(255)).len(), 120);
-    }
+    name.chars().map(plain).collect()
 }

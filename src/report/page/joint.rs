@@ -20,14 +20,14 @@ use crate::wording::{capitalized, difference_sentences};
 const MOST_ROWS: usize = 2000;
 
 /// All that is said of a joint, but for its [`sentences`], which stand at the head of the page.
-pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
-    let mut blocks = vec![Block::Figures(vec![record_figure(estimated, format!("{file}-record"))])];
+pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Vec<Block> {
+    let mut blocks = vec![Block::Figures(vec![record_figure(estimated)])];
     // Where there is a model, the delays are what it is made from.
     if let Some(improved) = report.model_of(estimated.joint) {
-        blocks.extend(model::blocks(improved, file));
+        blocks.extend(model::blocks(improved));
     }
-    blocks.extend(dead_time_blocks(estimated, file));
-    let segments = segment::figures(estimated, &format!("{file}-segment"));
+    blocks.extend(dead_time_blocks(estimated));
+    let segments = segment::figures(estimated);
     if !segments.is_empty() {
         blocks.push(Block::part("Single decisions"));
         blocks.push(Block::Figures(segments));
@@ -36,9 +36,9 @@ pub(super) fn blocks(report: &Report<'_>, estimated: EstimatedJoint<'_>, file: &
     blocks.extend(doubtful(estimated));
     blocks.extend(part_with_table("Reviewed by a person", reviewed_table(estimated)));
     let found = estimated.delay_table();
-    blocks.extend(delay_blocks(estimated, file));
+    blocks.extend(delay_blocks(estimated));
     if !found.rows.is_empty() {
-        blocks.extend(level_blocks(estimated, file, &found));
+        blocks.extend(level_blocks(estimated, &found));
     }
     blocks.extend(rejections(estimated));
     if estimated.estimate.dead_time.is_none() {
@@ -66,10 +66,8 @@ fn sentence(words: &str) -> String {
 }
 
 /// Figures and table of the delays.
-fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
-    let Some(figure) = delays::over_time(estimated, format!("{file}-delay")) else {
-        return Vec::new();
-    };
+fn delay_blocks(estimated: EstimatedJoint<'_>) -> Vec<Block> {
+    let Some(figure) = delays::over_time(estimated) else { return Vec::new() };
     let found = estimated.against_state();
     let mut blocks = vec![Block::part("Delay")];
     blocks.extend(onset_line(&estimated).map(|line| Block::text(line.trim_end())));
@@ -77,7 +75,7 @@ fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
     blocks.push(Block::Figures(vec![figure]));
     let note = format!("{CORRECTED}: the delay depends on a quantity where p is at most 0.05.");
     blocks.push(Block::text(note));
-    blocks.push(Block::Figures(delays::against(&estimated.joint.name, &found, file)));
+    blocks.push(Block::Figures(delays::against(&estimated.joint.name, &found)));
     let table = Block::Table(against(&estimated.joint.name, &found));
     let mut details = vec![table];
     let confounded = confounded_sentences(&found);
@@ -89,9 +87,9 @@ fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Vec<Block> {
 }
 
 /// The delays by kind of step and level.
-fn level_blocks(estimated: EstimatedJoint<'_>, file: &str, found: &DelayTable) -> Vec<Block> {
+fn level_blocks(estimated: EstimatedJoint<'_>, found: &DelayTable) -> Vec<Block> {
     let unit = estimated.joint.input_unit.as_deref();
-    let figure = delays::over_levels(estimated, found, format!("{file}-delay-by-level"));
+    let figure = delays::over_levels(estimated, found);
     let mut blocks = vec![
         Block::part("Delay by kind of step"),
         Block::text(sentence(&neutral_sentence(found, unit))),
@@ -156,13 +154,7 @@ fn rejections(estimated: EstimatedJoint<'_>) -> Vec<Block> {
         [condition.to_string(), count.to_string(), meaning, asks]
     };
     let rows = JointSummary::of(estimated).rejected.into_iter().map(row);
-    let mut blocks = part_with_table("Rejected steps", TextTable::of(header, &[1], rows));
-    if blocks.is_empty() {
-        return blocks;
-    }
-    let asked = Condition::ALL.map(|condition| format!("{condition}: {}.", condition.asks()));
-    blocks.push(Block::details("What each condition asks", vec![Block::List(asked.to_vec())]));
-    blocks
+    part_with_table("Rejected steps", TextTable::of(header, &[1], rows))
 }
 
 /// All decisions, numbers to five digits.

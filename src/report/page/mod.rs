@@ -1,4 +1,4 @@
-//! A report to attach to an experiment: one page, or Markdown with drawings beside it.
+//! A report to attach to an experiment: one page.
 //!
 //! What is said is put together once, as a [`Document`], and then written down. It holds
 //! nothing of the moment at which it was made: the same input gives the same bytes.
@@ -16,5 +16,3 @@ mod segment;
 pub(crate) mod shaded;
 pub(crate) mod simulated;
 pub(crate) mod timeline;
-
-pub(crate) use document::Document;

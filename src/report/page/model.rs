@@ -14,7 +14,7 @@ use crate::model::Component;
 use crate::report::compare::errors_note;
 use crate::report::conclusion::Topic;
 use crate::report::ladder::{LadderRow, judged_error, ladder_table};
-use crate::report::parameters::{delay_of_steps, filled_in, parameter_table};
+use crate::report::parameters::{delay_of_steps, equation, parameter_table};
 use crate::report::ranking::ranking_table;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::{
@@ -23,7 +23,7 @@ use crate::wording::{
 };
 
 /// All that is said of the model of a joint.
-pub(super) fn blocks(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
+pub(super) fn blocks(improved: &ImprovedJoint<'_>) -> Vec<Block> {
     let compared = &improved.finding.compared;
     let conclusion = improved.conclusion();
     let mut blocks = vec![Block::part("Model")];
@@ -34,9 +34,9 @@ pub(super) fn blocks(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
         passages.map(|passage| Block::Passage { question: passage.topic.0, text: passage.text() }),
     );
     blocks.extend(conclusion.commands.into_iter().map(Block::Code));
-    blocks.extend(errors(improved, file));
-    blocks.extend(beside_the_measurement(improved, file));
-    blocks.extend(failures(improved, file));
+    blocks.extend(errors(improved));
+    blocks.extend(beside_the_measurement(improved));
+    blocks.extend(failures(improved));
     blocks.push(Block::part("Equations and parameters"));
     blocks.push(Block::Code(equations(compared)));
     blocks.push(Block::Table(parameter_table(compared.joint, &compared.comparison.fit)));
@@ -56,7 +56,7 @@ pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
     format!("Model: {}.{stopped}", improved.finding.headline())
 }
 
-/// The model in equations with its numbers, in the order in which a signal runs through it.
+/// The model in equations, in the order in which a signal runs through it.
 fn equations(compared: &ComparedJoint<'_>) -> String {
     let fit = &compared.comparison.fit;
     let units = parameter_units(compared.joint, &fit.model);
@@ -101,15 +101,14 @@ fn law(component: &Component) -> String {
         Stage::Load => "on the speed",
         Stage::Output => "on the output",
     };
-    format!("    {}, {acts}: {}", spec.id, filled_in(component))
+    format!("    {}, {acts}: {}", spec.id, equation(component))
 }
 
 /// The ladder of errors; without several revisions, the error alone.
-fn errors(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
+fn errors(improved: &ImprovedJoint<'_>) -> Vec<Block> {
     let mut blocks = vec![Block::part("Errors")];
     if improved.ladder().len() > 1 {
-        let figure = ladder(improved, format!("{file}-ladder"));
-        blocks.push(Block::Figures(vec![figure]));
+        blocks.push(Block::Figures(vec![ladder(improved)]));
     }
     blocks.push(Block::Table(ladder_table(improved.finding.compared.joint, &improved.ladder())));
     let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
@@ -118,13 +117,11 @@ fn errors(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
 }
 
 /// What the model simulates, and the residual.
-fn beside_the_measurement(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
+fn beside_the_measurement(improved: &ImprovedJoint<'_>) -> Vec<Block> {
     let compared = &improved.finding.compared;
-    let figure = simulated::figure(improved, format!("{file}-simulated"));
+    let figure = simulated::figure(improved);
     let mut blocks = vec![Block::part("Measured and simulated"), Block::Figures(vec![figure])];
-    let earlier = simulated::earlier(improved, format!("{file}-earlier-residuals"));
-    blocks.extend(earlier.map(|figure| Block::Figures(vec![figure])));
-    let curves = curves(compared, file);
+    let curves = curves(compared);
     if !curves.is_empty() {
         blocks.push(Block::part("Measured curves"));
         blocks.push(Block::Figures(curves));
@@ -137,7 +134,7 @@ fn beside_the_measurement(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block
 }
 
 /// Where the last revision that fails does so; nothing where none fails.
-fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
+fn failures(improved: &ImprovedJoint<'_>) -> Vec<Block> {
     let fails = |revision: &Revision| revision.comparison.failure.is_some();
     let failing =
         improved.numbered().enumerate().filter(|(_, (_, revision))| fails(revision)).last();
@@ -160,8 +157,8 @@ fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Vec<Block> {
     } else {
         blocks.push(Block::List(said));
     }
-    let share = share(&compared, format!("{file}-error-share"));
-    let worst = simulated::worst(&compared, place, format!("{file}-worst-segment"));
+    let share = share(&compared);
+    let worst = simulated::worst(&compared, place);
     blocks.push(Block::Figures(share.into_iter().chain(worst).collect()));
     blocks
 }
@@ -191,7 +188,7 @@ fn rankings(improved: &ImprovedJoint<'_>) -> Vec<Block> {
 }
 
 /// A bar for the error of each revision, and the noise as a line.
-pub(super) fn ladder(improved: &ImprovedJoint<'_>, file: String) -> Figure {
+pub(super) fn ladder(improved: &ImprovedJoint<'_>) -> Figure {
     let joint = improved.finding.compared.joint;
     let rows = improved.ladder();
     // A revision has its colour in all figures, and in the recording.
@@ -211,12 +208,12 @@ pub(super) fn ladder(improved: &ImprovedJoint<'_>, file: String) -> Figure {
     }
     let name = format!("Errors of the revisions of {}", joint.name);
     let caption = "How the error falls from revision to revision.".to_owned();
-    Figure { file, name, width: WIDTH, panels: vec![panel], caption }
+    Figure { name, width: WIDTH, panels: vec![panel], caption }
 }
 
 /// Shares of the squared error and of the time in each part of the feature whose parts
 /// differ most in them.
-pub(super) fn share(compared: &ComparedJoint<'_>, file: String) -> Option<Figure> {
+pub(super) fn share(compared: &ComparedJoint<'_>) -> Option<Figure> {
     let features = by_feature(&compared.comparison.regions);
     let parts = features.max_by(|a, b| unevenness(a).total_cmp(&unevenness(b)))?;
     let feature = parts.first()?.feature;
@@ -229,11 +226,11 @@ pub(super) fn share(compared: &ComparedJoint<'_>, file: String) -> Option<Figure
         compared.comparison.arising
     );
     let panel = error_share::panel(joint, parts, &[(Role::Error, compared.comparison)])?;
-    Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
+    Some(Figure { name, width: HALF, panels: vec![panel], caption })
 }
 
 /// A figure for the input, one for the angle and one for the time, as far as the record shows them.
-pub(super) fn curves(compared: &ComparedJoint<'_>, file: &str) -> Vec<Figure> {
+pub(super) fn curves(compared: &ComparedJoint<'_>) -> Vec<Figure> {
     let joint = compared.joint;
     let figure = |curves: Curves<'_>| {
         let against = curves.against();
@@ -241,9 +238,8 @@ pub(super) fn curves(compared: &ComparedJoint<'_>, file: &str) -> Vec<Figure> {
             "Speed in the settled parts of the holds, {against}, after the delay; the influence of \
              the quantities of the other curves is removed."
         );
-        let (file, name) =
-            (format!("{file}-curve-{}", curves.of()), format!("Speed of {} {against}", joint.name));
-        Figure { file, name, width: HALF, panels: vec![curves.panel(joint, Role::Model)], caption }
+        let name = format!("Speed of {} {against}", joint.name);
+        Figure { name, width: HALF, panels: vec![curves.panel(joint, Role::Model)], caption }
     };
     Curves::all(&compared.comparison.curves).map(figure).collect()
 }

@@ -1,35 +1,23 @@
 //! Figures as SVG: panels above one another with axes, grid and a legend.
 //!
-//! Coordinates of the drawing library are whole numbers, so that a figure is drawn
-//! [`FINE`] times as large as it is shown.
-//!
 //! Colours have one meaning each, distinct for colour-blind readers too: Okabe and Ito's hues, which
-//! the recording has as well, in a shade for light ground and one for dark ground. A figure is drawn
-//! in the shades for light ground, which are right wherever no style sheet is read; the style sheet
-//! finds each by its number and gives it the shade that the reader's ground asks for. So each shade
-//! for light ground stands for one meaning only.
+//! the recording has as well, in a shade for light ground and one for dark ground. The style sheet
+//! numbers them, and gives each the shade that the reader's ground asks for.
 
 use std::collections::HashSet;
 use std::fmt::Write as _;
-use std::ops::Range;
 
-use plotters::coord::Shift;
-use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use maud::{PreEscaped, html};
 
 use super::document::Figure;
 use crate::figure::{Axis, Mark, Panel, Place, Revision, Role, Shape, within};
 use crate::wording::{capitalized, legible, listed, rounded};
 
-/// Parts of a pixel that a coordinate resolves.
-const FINE: u32 = 4;
-
 /// Height of letters in pixels.
 const LETTERS: u32 = 12;
 
 /// Room for the numbers and the name of the vertical axis.
-const LEFT: u32 = 66;
+const LEFT: u32 = 68;
 
 /// Room beyond the right end of the horizontal axis.
 const RIGHT: u32 = 14;
@@ -38,119 +26,36 @@ const RIGHT: u32 = 14;
 const LEGEND: u32 = 22;
 
 /// Width of what stands before a name in a legend.
-const SWATCH: u32 = 18;
-
-/// Width of a letter, on average, in parts of its height.
-const LETTER_WIDTH: f64 = 0.56;
-
-/// Why a figure is not there.
-#[derive(Debug, thiserror::Error)]
-#[error("a figure cannot be drawn: {0}")]
-pub(crate) struct PlotError(String);
-
-type DrawingError = DrawingAreaErrorKind<std::io::Error>;
-type Svg<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Axes = Cartesian2d<Axis, Axis>;
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Axes>;
-
-impl Axis {
-    /// The text at a tick.
-    fn text(&self, at: f64) -> String {
-        let near = |tick: f64| (tick - at).abs() <= 1e-9 * (self.span.high - self.span.low);
-        let found = self.ticks.iter().find(|(tick, _)| near(*tick));
-        found.map_or_else(String::new, |(_, text)| text.clone())
-    }
-
-    /// Room for its texts, in pixels.
-    fn width(&self) -> u32 {
-        let longest = self.ticks.iter().map(|(_, text)| text.chars().count()).max().unwrap_or(0);
-        // The name stands upright beside the numbers.
-        let name = if self.has_names { 12 } else { 30 };
-        LEFT.max(text_width(longest) + name)
-    }
-}
-
-impl Ranged for Axis {
-    type FormatOption = DefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
-        /// How far beyond the axis something is still drawn, in its lengths.
-        const BEYOND: f64 = 0.1;
-        let part = self.span.part(*value).clamp(-BEYOND, 1.0 + BEYOND);
-        #[expect(clippy::cast_possible_truncation, reason = "a place in the drawing")]
-        let offset = (part * f64::from(to - from)).round() as i32;
-        from + offset
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        if hint.weight().allow_light_points() {
-            return Vec::new();
-        }
-        self.ticks.iter().map(|(tick, _)| *tick).collect()
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.span.low..self.span.high
-    }
-}
+const SWATCH: f64 = 18.0;
 
 /// Pixels that so many letters take, about.
 fn text_width(letters: usize) -> u32 {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few letters")]
-    let width = (letters as f64 * LETTER_WIDTH * f64::from(LETTERS)).ceil() as u32;
-    width
+    /// Width of a letter, on average, in hundredths of a pixel.
+    const LETTER: u32 = 672;
+    (u32::try_from(letters).unwrap_or(1000) * LETTER).div_ceil(100)
 }
 
-/// Room for an entry of a legend.
-fn entry_width(name: &str) -> u32 {
-    SWATCH + 6 + text_width(name.chars().count()) + 10
-}
-
-fn fine(pixels: u32) -> i32 {
-    i32::try_from(pixels * FINE).unwrap_or(i32::MAX)
-}
-
-fn color(role: Role, opacity: f64) -> RGBAColor {
-    let (red, green, blue) = role.rgb();
-    RGBAColor(red, green, blue, opacity)
-}
-
-fn stroke(role: Role, width: f64) -> ShapeStyle {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few pixels")]
-    let stroke_width = (width * f64::from(FINE)).round() as u32;
-    ShapeStyle { color: color(role, 1.0), filled: false, stroke_width }
-}
-
-fn filled(role: Role, opacity: f64) -> ShapeStyle {
-    ShapeStyle { color: color(role, opacity), filled: true, stroke_width: 0 }
-}
-
-/// The letters of texts; the library asks for 1.24 times their height.
-fn letters(role: Role) -> TextStyle<'static> {
-    let size = f64::from(LETTERS * FINE) * 1.24;
-    ("sans-serif", size).into_font().color(&color(role, 1.0))
-}
-
-/// Draws the panels of `figure` above one another; the SVG without what stands around it, so that it
-/// may go into a page.
-pub(super) fn draw(figure: &Figure) -> Result<String, PlotError> {
+/// Draws the panels of `figure` above one another, as a part of a page.
+pub(super) fn draw(figure: &Figure) -> String {
     let Figure { name, width, panels, .. } = figure;
     let height: u32 = panels.iter().map(Panel::whole_height).sum();
-    let mut text = String::new();
-    let failed = |error: DrawingError| PlotError(error.to_string());
-    {
-        let backend = SVGBackend::with_string(&mut text, (*width * FINE, height * FINE));
-        let mut rest = backend.into_drawing_area();
-        let left = panels.iter().map(|panel| panel.y.width()).max().unwrap_or(LEFT);
-        for panel in panels {
-            let (own, below) = rest.split_vertically(fine(panel.whole_height()));
-            panel.draw(&own, left).map_err(failed)?;
-            rest = below;
-        }
-        rest.present().map_err(failed)?;
+    let left = panels.iter().map(|panel| panel.y.width()).max().unwrap_or(LEFT);
+    let (mut drawn, mut top) = (Svg(String::new()), 0);
+    for panel in panels {
+        Frame::new(panel, (left, *width - RIGHT), top).draw(&mut drawn);
+        top += panel.whole_height();
     }
-    Ok(framed(&text, (*width, height), (name, &in_words(panels))))
+    let view = format!("0 0 {width} {height}");
+    let svg = html! {
+        svg xmlns="http://www.w3.org/2000/svg" width=(width) height=(height) viewBox=(view)
+            role="img" font-family="sans-serif" font-size=(LETTERS)
+        {
+            title { (name) }
+            desc { (in_words(panels)) }
+            (PreEscaped(drawn.0))
+        }
+    };
+    legible(&svg.into_string())
 }
 
 /// The panels in sentences, for those who do not see them.
@@ -163,19 +68,14 @@ fn in_words(panels: &[Panel]) -> String {
     panels.iter().enumerate().map(one).collect::<Vec<_>>().join(" ")
 }
 
-/// The drawing in a frame of its own size, with its name and what it shows for those who do not see
-/// it.
-fn framed(text: &str, (width, height): (u32, u32), (name, described): (&str, &str)) -> String {
-    let inside = text.split_once(">\n").map_or("", |(_, inside)| inside);
-    let inside = inside.replace(" opacity=\"1\"", "");
-    let (wide, high) = (width * FINE, height * FINE);
-    let [name, described] = [name, described].map(|text| maud::html! { (text) }.into_string());
-    let svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {wide} {high}\" role=\"img\"><title>{name}</title>\n\
-         <desc>{described}</desc>\n{inside}"
-    );
-    legible(&svg)
+impl Axis {
+    /// Room for its texts, in pixels.
+    fn width(&self) -> u32 {
+        let longest = self.ticks.iter().map(|(_, text)| text.chars().count()).max().unwrap_or(0);
+        // The name stands upright beside the numbers.
+        let name = if self.has_names { 14 } else { 32 };
+        LEFT.max(text_width(longest) + name)
+    }
 }
 
 impl Panel {
@@ -209,12 +109,8 @@ impl Panel {
         format!("{upward}, {across}.{shown}")
     }
 
-    fn has_legend(&self) -> bool {
-        self.marks.iter().any(|mark| mark.name.is_some())
-    }
-
     fn top(&self) -> u32 {
-        if self.has_legend() { LEGEND } else { 8 }
+        if self.marks.iter().any(|mark| mark.name.is_some()) { LEGEND } else { 8 }
     }
 
     fn bottom(&self) -> u32 {
@@ -228,167 +124,213 @@ impl Panel {
     fn whole_height(&self) -> u32 {
         self.top() + self.height + self.bottom()
     }
+}
 
-    fn draw(&self, area: &Svg<'_>, left: u32) -> Result<(), DrawingError> {
-        let mut chart = ChartBuilder::on(area)
-            .margin_top(fine(self.top()))
-            .margin_left(fine(2))
-            .margin_right(fine(RIGHT))
-            .x_label_area_size(fine(self.bottom()))
-            .y_label_area_size(fine(left))
-            .build_cartesian_2d(self.x.clone(), self.y.clone())?;
-        let (behind, before): (Vec<&Mark>, Vec<&Mark>) =
-            self.marks.iter().partition(|mark| mark.is_ground());
-        for mark in behind {
-            mark.draw(&mut chart, self)?;
-        }
-        self.mesh(&mut chart)?;
-        for mark in before {
-            mark.draw(&mut chart, self)?;
-        }
-        self.draw_legend(area, left)
+/// A panel, and where its axes are in the drawing, in pixels.
+struct Frame<'p> {
+    panel: &'p Panel,
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+}
+
+impl<'p> Frame<'p> {
+    fn new(panel: &'p Panel, (left, right): (u32, u32), above: u32) -> Self {
+        let top = above + panel.top();
+        let [left, right, top, bottom] = [left, right, top, top + panel.height].map(f64::from);
+        Self { panel, left, right, top, bottom }
     }
 
-    fn mesh(&self, chart: &mut Chart<'_, '_>) -> Result<(), DrawingError> {
-        let (x_text, y_text) = (|x: &f64| self.x.text(*x), |y: &f64| self.y.text(*y));
-        let mut mesh = chart.configure_mesh();
-        mesh.x_label_formatter(&x_text)
-            .y_label_formatter(&y_text)
-            .label_style(letters(Role::Faint))
-            .axis_desc_style(letters(Role::Ink))
-            .axis_style(stroke(Role::Faint, 1.0))
-            .bold_line_style(stroke(Role::Grid, 1.0))
-            .light_line_style(ShapeStyle::from(&TRANSPARENT))
-            .set_all_tick_mark_size(fine(3));
-        if self.y.has_names {
-            mesh.disable_y_mesh();
+    fn x(&self, value: f64) -> f64 {
+        self.left + self.panel.x.span.part(value) * (self.right - self.left)
+    }
+
+    fn y(&self, value: f64) -> f64 {
+        self.bottom - self.panel.y.span.part(value) * (self.bottom - self.top)
+    }
+
+    fn at(&self, (x, y): Place) -> Place {
+        (self.x(x), self.y(y))
+    }
+
+    fn draw(&self, svg: &mut Svg) {
+        let (behind, before): (Vec<&Mark>, Vec<&Mark>) =
+            self.panel.marks.iter().partition(|mark| mark.is_ground());
+        behind.into_iter().for_each(|mark| self.mark(mark, svg));
+        self.axes(svg);
+        before.into_iter().for_each(|mark| self.mark(mark, svg));
+        self.legend(svg);
+    }
+
+    fn axes(&self, svg: &mut Svg) {
+        let Self { panel: Panel { x, y, .. }, left, right, top, bottom } = *self;
+        for (tick, text) in &x.ticks {
+            let at = self.x(*tick);
+            svg.line([(at, top), (at, bottom)], Role::Grid, 1.0);
+            svg.line([(at, bottom), (at, bottom + 3.0)], Role::Faint, 1.0);
+            svg.text((at, bottom + 15.0), ("middle", Role::Faint), text);
         }
-        if !self.x.name.is_empty() {
-            mesh.x_desc(&self.x.name);
+        for (tick, text) in &y.ticks {
+            let at = self.y(*tick);
+            if !y.has_names {
+                svg.line([(left, at), (right, at)], Role::Grid, 1.0);
+            }
+            svg.line([(left - 3.0, at), (left, at)], Role::Faint, 1.0);
+            svg.text((left - 6.0, at + 4.0), ("end", Role::Faint), text);
         }
-        if !self.y.name.is_empty() {
-            mesh.y_desc(&self.y.name);
-        }
-        mesh.draw()
+        svg.line([(left, top), (left, bottom), (right, bottom)], Role::Faint, 1.0);
+        let below = (f64::midpoint(left, right), bottom + 33.0);
+        svg.text(below, ("middle", Role::Ink), &x.name);
+        svg.upright((12.0, f64::midpoint(top, bottom)), &y.name);
     }
 
     /// A swatch and a name for each mark that has one, in a line above the axes.
-    fn draw_legend(&self, area: &Svg<'_>, left: u32) -> Result<(), DrawingError> {
-        let middle = fine(LEGEND) / 2 - fine(1);
-        let names = || self.legend();
-        let width: u32 = names().map(|(_, name)| entry_width(&name)).sum();
-        let (whole, _) = area.dim_in_pixel();
-        let mut x = if left + width <= whole / FINE { left } else { 4 };
-        for (mark, name) in names() {
-            mark.swatch(area, (fine(x), middle))?;
-            let style = letters(Role::Ink).pos(Pos::new(HPos::Left, VPos::Center));
-            let width = entry_width(&name);
-            area.draw(&Text::new(name, (fine(x + SWATCH + 6), middle), style))?;
-            x += width;
-        }
-        Ok(())
-    }
-}
-
-impl Mark {
-    fn swatch(&self, area: &Svg<'_>, (x, y): (i32, i32)) -> Result<(), DrawingError> {
-        let (middle, end) = (x + fine(SWATCH / 2), x + fine(SWATCH));
-        let block = [(x, y - fine(4)), (end, y + fine(4))];
-        match &self.shape {
-            Shape::Lines(_, width) => {
-                area.draw(&PathElement::new([(x, y), (end, y)], stroke(self.role, *width)))
-            }
-            Shape::Spreads(..) => {
-                area.draw(&PathElement::new([(x, y), (end, y)], stroke(self.role, 1.4)))
-            }
-            Shape::Verticals(_, width) => {
-                let ends = [(middle, y - fine(6)), (middle, y + fine(6))];
-                area.draw(&PathElement::new(ends, stroke(self.role, *width)))
-            }
-            Shape::Dots(..) => area.draw(&dot((middle, y), 3.0, self.role)),
-            Shape::Crosses(_) => area.draw(&cross((middle, y), self.role)),
-            Shape::Band(..) | Shape::Spans(..) => {
-                area.draw(&Rectangle::new(block, filled(self.role, 0.3)))
-            }
-            Shape::Bars(_) => area.draw(&Rectangle::new(block, filled(self.role, 1.0))),
-            Shape::Words(_) | Shape::Named(_) | Shape::Flags(_) => Ok(()),
+    fn legend(&self, svg: &mut Svg) {
+        let names: Vec<(&Mark, String)> = self.panel.legend().collect();
+        let width = |name: &str| SWATCH + 16.0 + f64::from(text_width(name.chars().count()));
+        let all: f64 = names.iter().map(|(_, name)| width(name)).sum();
+        let mut x = if self.left + all <= self.right + f64::from(RIGHT) { self.left } else { 4.0 };
+        let y = self.top - f64::from(LEGEND) / 2.0 - 1.0;
+        for (mark, name) in names {
+            svg.swatch(mark, (x, y));
+            svg.text((x + SWATCH + 6.0, y + 4.0), ("start", Role::Ink), &name);
+            x += width(&name);
         }
     }
 
-    fn draw(&self, chart: &mut Chart<'_, '_>, panel: &Panel) -> Result<(), DrawingError> {
-        let (x, y, role) = (panel.x.span, panel.y.span, self.role);
-        let apart = |places: &[Place]| apart(places, |place| chart.backend_coord(place));
-        let area = chart.plotting_area();
-        match &self.shape {
+    fn mark(&self, mark: &Mark, svg: &mut Svg) {
+        let (panel, role) = (self.panel, mark.role);
+        match &mark.shape {
             Shape::Lines(lines, width) => {
-                let mut pieces = lines.iter().flat_map(|line| within((x, y), line));
-                pieces.try_for_each(|line| area.draw(&PathElement::new(line, stroke(role, *width))))
+                for line in lines.iter().flat_map(|line| within((panel.x.span, panel.y.span), line))
+                {
+                    svg.line(line.into_iter().map(|place| self.at(place)), role, *width);
+                }
             }
-            Shape::Dots(places, radius) => apart(places)
-                .into_iter()
-                .try_for_each(|place| area.draw(&dot(place, *radius, role))),
+            Shape::Dots(places, radius) => {
+                self.apart(places).for_each(|at| svg.dot(at, *radius, role));
+            }
+            Shape::Crosses(places) => self.apart(places).for_each(|at| svg.cross(at, role)),
             Shape::Spreads(spreads, above) => {
-                let pixel = (y.high - y.low) / f64::from(panel.height);
-                let row = |pixels: f64| y.high + pixels * pixel;
-                spreads.iter().try_for_each(|(from, to)| {
-                    let tick = |x: f64| [(x, row(above - 3.0)), (x, row(above + 3.0))];
-                    let bar = [(*from, row(*above)), (*to, row(*above))];
-                    [tick(*from), bar, tick(*to)]
-                        .into_iter()
-                        .try_for_each(|line| area.draw(&PathElement::new(line, stroke(role, 1.4))))
-                })
+                let y = self.top - above;
+                for (from, to) in spreads.iter().map(|(from, to)| (self.x(*from), self.x(*to))) {
+                    svg.line([(from, y), (to, y)], role, 1.4);
+                    for end in [from, to] {
+                        svg.line([(end, y - 3.0), (end, y + 3.0)], role, 1.4);
+                    }
+                }
+            }
+            Shape::Verticals(places, width) => {
+                for x in places.iter().map(|x| self.x(*x)) {
+                    svg.line([(x, self.top), (x, self.bottom)], role, *width);
+                }
+            }
+            Shape::Band(low, high) => {
+                svg.block([(self.left, self.y(*low)), (self.right, self.y(*high))], role, 0.18);
+            }
+            Shape::Spans(places, density) => {
+                for (from, to) in places {
+                    let corners = [(self.x(*from), self.top), (self.x(*to), self.bottom)];
+                    svg.block(corners, role, *density);
+                }
+            }
+            Shape::Bars(bars) => {
+                bars.iter().for_each(|(a, b)| svg.block([self.at(*a), self.at(*b)], role, 1.0));
+            }
+            Shape::Words(words) => {
+                for ((x, y), text) in words.iter().map(|(place, text)| (self.at(*place), text)) {
+                    svg.text((x + 5.0, y + 4.0), ("start", role), text);
+                }
             }
             // Only recordings have them.
-            Shape::Named(_) | Shape::Flags(_) => Ok(()),
-            Shape::Crosses(places) => {
-                apart(places).into_iter().try_for_each(|place| area.draw(&cross(place, role)))
-            }
-            Shape::Verticals(places, width) => places.iter().try_for_each(|at| {
-                let ends = vec![(*at, y.low), (*at, y.high)];
-                area.draw(&PathElement::new(ends, stroke(role, *width)))
-            }),
-            Shape::Band(low, high) => {
-                let corners = [(x.low, *low), (x.high, *high)];
-                area.draw(&Rectangle::new(corners, filled(role, 0.18)))
-            }
-            Shape::Spans(places, density) => places.iter().try_for_each(|(from, to)| {
-                let corners = [(*from, y.low), (*to, y.high)];
-                area.draw(&Rectangle::new(corners, filled(role, *density)))
-            }),
-            Shape::Bars(bars) => bars.iter().try_for_each(|(from, to)| {
-                area.draw(&Rectangle::new([*from, *to], filled(role, 1.0)))
-            }),
-            Shape::Words(words) => {
-                let style = letters(role).pos(Pos::new(HPos::Left, VPos::Center));
-                words.iter().try_for_each(|(place, text)| {
-                    let text = Text::new(text.clone(), (fine(5), 0), style.clone());
-                    area.draw(&(EmptyElement::at(*place) + text))
-                })
-            }
+            Shape::Named(_) | Shape::Flags(_) => {}
         }
+    }
+
+    /// Where places are, without those that the sign at one before them hides.
+    fn apart(&self, places: &[Place]) -> impl Iterator<Item = Place> {
+        /// Side of a square in which one sign hides the others, in pixels.
+        const SQUARE: f64 = 4.0;
+        let mut taken = HashSet::new();
+        let square = |(x, y): &Place| [x, y].map(|at| (at / SQUARE).floor().to_bits());
+        places.iter().map(|place| self.at(*place)).filter(move |at| taken.insert(square(at)))
     }
 }
 
-/// Places without those that the sign at one before them hides.
-fn apart(places: &[Place], drawn_at: impl Fn(&Place) -> (i32, i32)) -> Vec<Place> {
-    /// Side of a square in which one sign hides the others, in pixels.
-    const SQUARE: u32 = 4;
-    let mut taken = HashSet::new();
-    let square = |place: &Place| {
-        let (x, y) = drawn_at(place);
-        (x.div_euclid(fine(SQUARE)), y.div_euclid(fine(SQUARE)))
-    };
-    places.iter().filter(|place| taken.insert(square(place))).copied().collect()
+/// The elements of a drawing; places are in pixels.
+struct Svg(String);
+
+impl Svg {
+    fn line(&mut self, places: impl IntoIterator<Item = Place>, role: Role, width: f64) {
+        let points = places.into_iter().map(|(x, y)| format!("{x:.1},{y:.1}"));
+        let (points, color) = (points.collect::<Vec<_>>().join(" "), color(role));
+        self.push(format_args!(
+            "<polyline points=\"{points}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\"/>"
+        ));
+    }
+
+    fn dot(&mut self, (x, y): Place, radius: f64, role: Role) {
+        let color = color(role);
+        self.push(format_args!(
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{color}\"/>"
+        ));
+    }
+
+    fn cross(&mut self, (x, y): Place, role: Role) {
+        self.line([(x - 4.0, y - 4.0), (x + 4.0, y + 4.0)], role, 1.8);
+        self.line([(x - 4.0, y + 4.0), (x + 4.0, y - 4.0)], role, 1.8);
+    }
+
+    /// Filled between two corners.
+    fn block(&mut self, [a, b]: [Place; 2], role: Role, opacity: f64) {
+        let (x, y, color) = (a.0.min(b.0), a.1.min(b.1), color(role));
+        let (width, height) = ((a.0 - b.0).abs(), (a.1 - b.1).abs());
+        self.push(format_args!(
+            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" \
+             fill=\"{color}\" opacity=\"{opacity}\"/>"
+        ));
+    }
+
+    /// A text that starts, ends or has its middle at a place.
+    fn text(&mut self, (x, y): Place, (anchor, role): (&str, Role), text: &str) {
+        let (x, y) = (format!("{x:.1}"), format!("{y:.1}"));
+        let text = html! { text x=(x) y=(y) text-anchor=(anchor) fill=(color(role)) { (text) } };
+        self.push(format_args!("{}", text.into_string()));
+    }
+
+    /// A text that runs upward, its middle at a place.
+    fn upright(&mut self, (x, y): Place, text: &str) {
+        let place = format!("translate({x:.1} {y:.1}) rotate(-90)");
+        let text = html! { text transform=(place) text-anchor="middle" fill=(color(Role::Ink)) { (text) } };
+        self.push(format_args!("{}", text.into_string()));
+    }
+
+    fn swatch(&mut self, mark: &Mark, (x, y): Place) {
+        let (middle, end) = (x + SWATCH / 2.0, x + SWATCH);
+        let block = [(x, y - 4.0), (end, y + 4.0)];
+        match &mark.shape {
+            Shape::Lines(_, width) => self.line([(x, y), (end, y)], mark.role, *width),
+            Shape::Spreads(..) => self.line([(x, y), (end, y)], mark.role, 1.4),
+            Shape::Verticals(_, width) => {
+                self.line([(middle, y - 6.0), (middle, y + 6.0)], mark.role, *width);
+            }
+            Shape::Dots(..) => self.dot((middle, y), 3.0, mark.role),
+            Shape::Crosses(_) => self.cross((middle, y), mark.role),
+            Shape::Band(..) | Shape::Spans(..) => self.block(block, mark.role, 0.3),
+            Shape::Bars(_) => self.block(block, mark.role, 1.0),
+            Shape::Words(_) | Shape::Named(_) | Shape::Flags(_) => {}
+        }
+    }
+
+    fn push(&mut self, element: std::fmt::Arguments<'_>) {
+        writeln!(self.0, "{element}").unwrap_or_default();
+    }
 }
 
-fn dot<P>(place: P, radius: f64, role: Role) -> Circle<P, i32> {
-    #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
-    let radius = (radius * f64::from(FINE)).round() as i32;
-    Circle::new(place, radius, filled(role, 1.0))
-}
-
-fn cross<P>(place: P, role: Role) -> Cross<P, i32> {
-    Cross::new(place, fine(4), stroke(role, 1.8))
+/// A role's colour, whose shade is in the style sheet.
+fn color(role: Role) -> String {
+    format!("var(--c{})", Role::all().position(|other| other == role).unwrap_or(0))
 }
 
 /// Shades of the revisions after the first one, on light and on dark ground: the hues that the
@@ -428,29 +370,19 @@ impl Role {
             }
         }
     }
-
-    /// Red, green and blue on light ground.
-    pub(super) const fn rgb(self) -> (u8, u8, u8) {
-        let [_, red, green, blue] = self.shades().0.to_be_bytes();
-        (red, green, blue)
-    }
 }
 
-/// The rules that give the lines and texts of figures their shade.
+/// The shades of all roles on either ground.
 pub(super) fn figure_style() -> String {
-    let (mut light, mut dark, mut rules) = (String::new(), String::new(), String::new());
+    let (mut light, mut dark) = (String::new(), String::new());
     for (number, role) in Role::all().enumerate() {
         let (on_light, on_dark) = role.shades();
         write!(light, "--c{number}:#{on_light:06X};").unwrap_or_default();
         write!(dark, "--c{number}:#{on_dark:06X};").unwrap_or_default();
-        for part in ["stroke", "fill"] {
-            write!(rules, "[{part}=\"#{on_light:06X}\"]{{{part}:var(--c{number})}}")
-                .unwrap_or_default();
-        }
     }
     format!(
         ":root{{{light}}}@media (prefers-color-scheme:dark){{:root{{{dark}}}}}\
-         @media print{{:root{{{light}}}}}{rules}"
+         @media print{{:root{{{light}}}}}"
     )
 }
 
@@ -461,8 +393,7 @@ mod tests {
 
     fn svg(panel: Panel, name: &str) -> String {
         let (name, panels) = (name.to_owned(), vec![panel]);
-        draw(&Figure { file: String::new(), name, width: 300, panels, caption: String::new() })
-            .unwrap()
+        draw(&Figure { name, width: 300, panels, caption: String::new() })
     }
 
     fn panel(marks: Vec<Mark>) -> Panel {
@@ -510,15 +441,14 @@ mod tests {
         let lines = Shape::Lines(vec![vec![(0.0, 0.0), (10.0, 10.0)]], 1.0);
         let svg = svg(panel(vec![Mark::new(Role::Model, lines)]), "");
         let parsed = roxmltree::Document::parse(&svg).unwrap();
-        let (red, green, blue) = Role::Model.rgb();
-        let shade = format!("#{red:02X}{green:02X}{blue:02X}");
+        let shade = color(Role::Model);
         let line = parsed.descendants().find(|node| node.attribute("stroke") == Some(&shade));
         let points = line.unwrap().attribute("points").unwrap();
-        let numbers: Vec<i32> =
+        let numbers: Vec<f64> =
             points.split([',', ' ']).filter_map(|number| number.parse().ok()).collect();
         let [from_x, from_y, to_x, to_y] = numbers[..] else { panic!("{points}") };
-        assert!((to_x - from_x - fine(300 - LEFT - RIGHT - 2)).abs() <= fine(1), "{points}");
-        assert!((from_y - to_y - fine(100)).abs() <= fine(1), "{points}");
+        assert!((to_x - from_x - f64::from(300 - LEFT - RIGHT)).abs() <= 1.0, "{points}");
+        assert!((from_y - to_y - 100.0).abs() <= 1.0, "{points}");
     }
 
     #[test]
@@ -536,14 +466,6 @@ mod tests {
 #[cfg(test)]
 mod palette_tests {
     use super::*;
-
-    #[test]
-    fn a_shade_means_one_thing() {
-        let mut shades: Vec<u32> = Role::all().map(|role| role.shades().0).collect();
-        shades.sort_unstable();
-        shades.dedup();
-        assert_eq!(shades.len(), Role::all().count());
-    }
 
     /// Relative luminance (WCAG 2.2).
     fn luminance(shade: u32) -> f64 {

@@ -1,13 +1,9 @@
-//! A report as one page that needs nothing else, or as Markdown with its drawings as files beside it.
+//! A report as one page that needs nothing else.
 
-use std::fmt::Write as _;
-
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::document::{Attachment, Block, Document, Entry, Figure};
-use super::plot::{PlotError, draw, figure_style};
+use super::document::{Block, Document, Entry, Figure};
+use super::plot::{draw, figure_style};
 use crate::report::TextTable;
 use crate::wording::{legible, typed_parts};
 
@@ -16,10 +12,7 @@ const STYLE: &str = include_str!("style.css");
 
 impl Document {
     /// The report as one HTML page: no script, and nothing is fetched.
-    ///
-    /// # Errors
-    /// When a figure cannot be drawn.
-    pub(crate) fn html(&self) -> Result<String, PlotError> {
+    pub(crate) fn html(&self) -> String {
         let style = format!("{}{STYLE}", figure_style());
         let page = html! {
             (DOCTYPE)
@@ -37,17 +30,17 @@ impl Document {
                 body {
                     main {
                         h1 { (self.title) }
-                        @for block in &self.blocks { (written(block)?) }
+                        @for block in &self.blocks { (written(block)) }
                     }
                 }
             }
         };
-        Ok(legible(&page.into_string()) + "\n")
+        legible(&page.into_string()) + "\n"
     }
 }
 
-fn written(block: &Block) -> Result<Markup, PlotError> {
-    Ok(match block {
+fn written(block: &Block) -> Markup {
+    match block {
         Block::Heading { depth, text, anchor } => heading(*depth, text, anchor.as_deref()),
         Block::Text(text) => html! { p { (prose(text)) } },
         Block::Passage { question, text } => html! { p { b { (question) ":" } " " (prose(text)) } },
@@ -55,16 +48,15 @@ fn written(block: &Block) -> Result<Markup, PlotError> {
         Block::List(entries) => html! { ul { @for entry in entries { li { (prose(entry)) } } } },
         Block::Contents(entries) => contents(entries),
         Block::Code(text) => html! { pre { code { (text) } } },
-        Block::Figures(figures) => drawn(figures)?,
+        Block::Figures(figures) => drawn(figures),
         Block::Table(rows) => table(rows),
         Block::Details { summary, blocks } => html! {
             details {
                 summary { (summary) }
-                @for block in blocks { (written(block)?) }
+                @for block in blocks { (written(block)) }
             }
         },
-        Block::Attachment(file) => attachment(file),
-    })
+    }
 }
 
 /// A sentence in which what is typed looks so.
@@ -94,15 +86,15 @@ fn contents(entries: &[Entry]) -> Markup {
     }
 }
 
-fn drawn(figures: &[Figure]) -> Result<Markup, PlotError> {
+fn drawn(figures: &[Figure]) -> Markup {
     let class = if figures.len() > 1 { "figures several" } else { "figures" };
-    Ok(html! {
+    html! {
         div class=(class) {
             @for one in figures {
-                figure { (PreEscaped(draw(one)?)) figcaption { (prose(&one.caption)) } }
+                figure { (PreEscaped(draw(one))) figcaption { (prose(&one.caption)) } }
             }
         }
-    })
+    }
 }
 
 fn table(table: &TextTable) -> Markup {
@@ -120,165 +112,5 @@ fn table(table: &TextTable) -> Markup {
                 }
             } } }
         } }
-    }
-}
-
-fn attachment(file: &Attachment) -> Markup {
-    let link = format!("data:application/octet-stream;base64,{}", STANDARD.encode(&file.bytes));
-    html! { p { a download=(file.name) href=(link) { "Save " (file.name) } } }
-}
-
-/// A report as Markdown.
-#[derive(Clone, Debug)]
-pub(crate) struct Markdown {
-    /// The text.
-    pub(crate) text: String,
-    /// Names and contents of the drawings that it shows, which are in the folder that was
-    /// asked for.
-    pub(crate) files: Vec<(String, String)>,
-}
-
-impl Document {
-    /// The report as Markdown, whose drawings are in the folder `folder` beside it.
-    ///
-    /// # Errors
-    /// When a figure cannot be drawn.
-    pub(crate) fn markdown(&self, folder: &str) -> Result<Markdown, PlotError> {
-        let mut markdown = Markdown { text: String::new(), files: Vec::new() };
-        let folder = url(folder);
-        markdown.line(&format!("# {}", escaped(&self.title)));
-        for block in &self.blocks {
-            markdown.block(block, &folder)?;
-        }
-        markdown.text = legible(&markdown.text);
-        Ok(markdown)
-    }
-}
-
-impl Markdown {
-    /// A paragraph.
-    fn line(&mut self, text: &str) {
-        self.text.push_str(text.trim_end());
-        self.text.push_str("\n\n");
-    }
-
-    fn block(&mut self, block: &Block, folder: &str) -> Result<(), PlotError> {
-        match block {
-            Block::Heading { depth, text, anchor } => {
-                let marks = "#".repeat(usize::from(*depth));
-                if let Some(anchor) = anchor {
-                    self.line(&format!("<a id=\"{anchor}\"></a>"));
-                }
-                self.line(&format!("{marks} {}", escaped(text)));
-            }
-            Block::Text(text) => self.line(&prose_escaped(text)),
-            Block::Passage { question, text } => {
-                self.line(&format!("**{question}:** {}", prose_escaped(text)));
-            }
-            Block::Lead(text) => self.line(&format!("**{}**", escaped(text))),
-            Block::List(entries) => {
-                let lines = entries.iter().map(|entry| format!("- {}", prose_escaped(entry)));
-                self.line(&lines.collect::<Vec<_>>().join("\n"));
-            }
-            Block::Contents(entries) => {
-                let lines: Vec<String> = entries.iter().map(entry).collect();
-                self.line(&lines.join("\n"));
-            }
-            Block::Code(text) => {
-                let fence = fence(text);
-                self.line(&format!("{fence}text\n{text}\n{fence}"));
-            }
-            Block::Figures(figures) => {
-                figures.iter().try_for_each(|one| self.figure(one, folder))?;
-            }
-            Block::Table(table) => self.line(&table.markdown(escaped)),
-            Block::Details { summary, blocks } => {
-                self.line(&format!("<details><summary>{}</summary>", escaped(summary)));
-                for block in blocks {
-                    self.block(block, folder)?;
-                }
-                self.line("</details>");
-            }
-            // A file can only be in a page; here it is beside.
-            Block::Attachment(file) => self.line(&format!("`{}`", file.name)),
-        }
-        Ok(())
-    }
-
-    fn figure(&mut self, figure: &Figure, folder: &str) -> Result<(), PlotError> {
-        let (caption, file) = (escaped(&figure.caption), format!("{}.svg", figure.file));
-        self.line(&format!("![{caption}]({folder}/{file})"));
-        self.line(&format!("*{caption}*"));
-        self.files.push((file, with_style(&draw(figure)?)));
-        Ok(())
-    }
-}
-
-fn entry(Entry { name, anchor, text }: &Entry) -> String {
-    format!("- [{}](#{anchor}) {}", escaped(name), prose_escaped(text))
-}
-
-/// A sentence as Markdown, in which what is typed stays between backticks.
-fn prose_escaped(sentence: &str) -> String {
-    let part = |(part, is_typed): (&str, bool)| {
-        if is_typed { format!("`{part}`") } else { escaped(part) }
-    };
-    typed_parts(sentence).into_iter().map(part).collect()
-}
-
-/// A drawing with the shades of either ground in it.
-fn with_style(svg: &str) -> String {
-    let style = figure_style();
-    let ground = "svg{background:#fff}@media (prefers-color-scheme:dark){svg{background:#16181b}}";
-    svg.replacen("</title>", &format!("</title><style>{style}{ground}</style>"), 1)
-}
-
-/// `text` without marks that Markdown or HTML would take for their own, in one line.
-fn escaped(text: &str) -> String {
-    let mut plain = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '<' => plain.push_str("&lt;"),
-            '>' => plain.push_str("&gt;"),
-            '&' => plain.push_str("&amp;"),
-            '\n' | '\r' => plain.push(' '),
-            '\\' | '`' | '*' | '_' | '[' | ']' | '|' | '#' | '~' | '$' | '!' => {
-                plain.push('\\');
-                plain.push(c);
-            }
-            _ => plain.push(c),
-        }
-    }
-    plain
-}
-
-/// Backticks that do not end within `text`.
-fn fence(text: &str) -> String {
-    let longest = text.split(|c| c != '`').map(str::len).max().unwrap_or(0);
-    "`".repeat(3.max(longest + 1))
-}
-
-/// A name as a part of a link.
-fn url(name: &str) -> String {
-    let mut link = String::new();
-    for byte in name.bytes() {
-        if byte.is_ascii_alphanumeric() || b"-_.~".contains(&byte) {
-            link.push(char::from(byte));
-        } else {
-            write!(link, "%{byte:02X}").unwrap_or_default();
-        }
-    }
-    link
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_stay_what_they_are() {
-        assert_eq!(escaped("a_b <i>|*x*&\n#1"), r"a\_b &lt;i&gt;\|\*x\*&amp; \#1");
-        assert_eq!(url("my report_files"), "my%20report_files");
-        assert_eq!(fence("a ```` b"), "`````");
     }
 }

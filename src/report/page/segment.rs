@@ -6,9 +6,8 @@ use super::document::{Figure, NARROW};
 use crate::delay::{Condition, Verdict};
 use crate::experiment::Joint;
 use crate::figure::segment::{Scale, SegmentFigure};
-use crate::report::decisions::doubted;
+use crate::report::decisions::{doubted, step_line};
 use crate::report::{Doubted, EstimatedJoint};
-use crate::wording::{rounded, to_place};
 
 /// A decision that is worth a look, and why.
 struct Choice<'a> {
@@ -17,9 +16,9 @@ struct Choice<'a> {
 }
 
 /// The best, a typical and the most doubtful of the accepted decisions, and a rejected one.
-pub(super) fn figures(estimated: EstimatedJoint<'_>, file: &str) -> Vec<Figure> {
+pub(super) fn figures(estimated: EstimatedJoint<'_>) -> Vec<Figure> {
     let choices = choices(estimated);
-    choices.iter().map(|choice| choice.figure(estimated.joint, file)).collect()
+    choices.iter().map(|choice| choice.figure(estimated.joint)).collect()
 }
 
 fn choices(estimated: EstimatedJoint<'_>) -> Vec<Choice<'_>> {
@@ -60,74 +59,17 @@ fn is_telling(found: &Doubted<'_>) -> bool {
 }
 
 impl Choice<'_> {
-    fn figure(&self, joint: &Joint, file: &str) -> Figure {
+    fn figure(&self, joint: &Joint) -> Figure {
         let Doubted { trial, decision, smoothed, .. } = &self.found;
         let unit = joint.output_unit.as_deref();
         let drawn = SegmentFigure::new((trial, unit), *smoothed, decision, Scale::time(trial));
         let panels = vec![drawn.output(), drawn.errors()];
         let number = self.found.decision.number;
         let name = format!("{} step of {}: number {number}", self.why, joint.name);
-        let file = format!("{file}-{}", self.why.to_ascii_lowercase().replace(' ', "-"));
-        Figure { file, name, width: NARROW, panels, caption: self.caption(joint) }
+        let (why, step) = (self.why, step_line(joint, trial, decision));
+        let by = decision.reviewer_verdict.as_ref().map_or("", |_| " (reviewed by a person)");
+        Figure { name, width: NARROW, panels, caption: format!("{why}: {step}{by}.") }
     }
-
-    fn caption(&self, joint: &Joint) -> String {
-        let Self { why, found: Doubted { trial, decision, .. } } = self;
-        let trial_said = match joint.trials.len() {
-            1 => String::new(),
-            _ => format!(" of trial {}", trial.label()),
-        };
-        let at = rounded_time(trial.time_s(decision.input_step.sample));
-        let (i, delay) = (decision.number, self.delay());
-        let verdict = match decision.verdict() {
-            Verdict::Accepted => "accepted".to_owned(),
-            Verdict::Rejected(condition) => {
-                format!("rejected as {condition}: {}", condition.meaning())
-            }
-        };
-        format!(
-            "{why}: step {i}{trial_said} at {at} s, {delay}, {verdict}{}.",
-            self.beside_reviewer()
-        )
-    }
-
-    /// Who said it, and what the program says, where a person said something.
-    fn beside_reviewer(&self) -> String {
-        let decision = self.found.decision;
-        let Some(said) = &decision.reviewer_verdict else { return String::new() };
-        let by = if said.reviewer.is_empty() { "a person" } else { said.reviewer.as_str() };
-        let program = match (decision.program_verdict(), decision.program_delay()) {
-            (Verdict::Accepted, Some(delay)) => {
-                format!(
-                    "accepted, delay {} s",
-                    rounded(delay * self.found.trial.period().seconds())
-                )
-            }
-            (Verdict::Accepted, None) => "accepted".to_owned(),
-            (Verdict::Rejected(condition), _) => format!("rejected as {condition}"),
-        };
-        let moved = decision.delay_before_review().map_or("", |_| " (grey line)");
-        format!(" by {by}; the program: {program}{moved}")
-    }
-
-    /// `delay 0.17 s`, with its interval where there is one.
-    fn delay(&self) -> String {
-        let seconds = |samples: f64| rounded(samples * self.found.trial.period().seconds());
-        let Some(delay) = self.found.decision.delay() else { return "no delay".to_owned() };
-        let own = self
-            .found
-            .decision
-            .fine
-            .filter(|_| self.found.decision.delay_before_review().is_none());
-        let ends = own.map(|fine| (seconds(fine.low), seconds(fine.high)));
-        let ends = ends.map_or_else(String::new, |(low, high)| format!(" ({low} to {high} s)"));
-        format!("delay {} s{ends}", seconds(delay))
-    }
-}
-
-/// A time to the hundredth, where that is enough.
-fn rounded_time(seconds: f64) -> String {
-    if seconds.abs() < 1e6 { to_place(seconds, 2) } else { rounded(seconds) }
 }
 
 #[cfg(test)]

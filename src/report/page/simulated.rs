@@ -10,13 +10,13 @@ use crate::diagnosis::sensor_noise;
 use crate::experiment::Trial;
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, thinned_places};
 use crate::report::{ComparedJoint, ImprovedJoint};
-use crate::wording::{bracketed, measure, percent, worst_segment_text};
+use crate::wording::{bracketed, percent};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
 
 /// Measured and simulated output over time, and the residual.
-pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Figure {
+pub(super) fn figure(improved: &ImprovedJoint<'_>) -> Figure {
     let compared = &improved.finding.compared;
     let role = Role::of_revision(improved.revisions.len().saturating_sub(1));
     let timeline = Timeline::of(compared.joint);
@@ -27,7 +27,7 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Figure {
         caption += " Worst segments are those with the largest sums of squares, and the one with the \
                     largest residual.";
     }
-    Figure { file, name, width: WIDTH, panels: panels.into(), caption }
+    Figure { name, width: WIDTH, panels: panels.into(), caption }
 }
 
 /// The output above, the residual below, which says where the model `fails` and under which condition.
@@ -63,65 +63,19 @@ pub(crate) fn simulated_panels(
     [output, Panel { x: timeline.axis(), y, height: 110, marks }]
 }
 
-/// What each revision before the last one left, over time, each at its own scale; none where there
-/// was none before.
-pub(super) fn earlier(improved: &ImprovedJoint<'_>, file: String) -> Option<Figure> {
-    let last = improved.finding.compared;
-    let timeline = Timeline::of(last.joint);
-    let before = improved.numbered().filter(|(number, _)| *number != last.revision);
-    let before: Vec<_> = before
-        .map(|(revision, step)| ComparedJoint { revision, comparison: &step.comparison, ..last })
-        .collect();
-    let panel = |(place, compared): (usize, &ComparedJoint<'_>)| {
-        let name = format!("revision {}", compared.revision);
-        let unit = last.joint.output_unit.as_deref();
-        let axis = timeline.axis();
-        let lines = timeline.lines(|index, _| residual(compared, index));
-        let mut marks = vec![timeline.borders()];
-        marks.extend(worst_mark(compared, &timeline).into_iter().chain(noise(compared)));
-        marks.push(Mark::lines(Role::of_revision(place), 1.0, lines).named(name));
-        marks.extend(noise_edges(compared, timeline.ends()));
-        let y = Axis::new(residuals(compared), bracketed("residual", unit), 4.0);
-        let x = if place + 1 < before.len() { axis.bare() } else { axis };
-        Panel { x, y, height: 80, marks }
-    };
-    if before.is_empty() {
-        return None;
-    }
-    let panels = before.iter().enumerate().map(panel).collect();
-    let name = format!("Residual of the earlier revisions of {}", last.joint.name);
-    let caption = "Residuals of the earlier revisions, each at its own scale.".to_owned();
-    Some(Figure { file, name, width: WIDTH, panels, caption })
-}
-
 /// The segment with the largest share of the squared error, larger; none where no lack of
 /// fit is shown.
-pub(super) fn worst(compared: &ComparedJoint<'_>, place: usize, file: String) -> Option<Figure> {
+pub(super) fn worst(compared: &ComparedJoint<'_>, place: usize) -> Option<Figure> {
     let joint = compared.joint;
-    let segments = &compared.comparison.failure.as_ref()?.worst_segments;
-    let worst = segments.first()?;
+    let worst = compared.comparison.failure.as_ref()?.worst_segments.first()?;
     let timeline = Timeline::shifted(joint, vec![0.0; joint.trials.len()]);
     let panel = worst_panel(compared, Role::of_revision(place), &timeline)?;
     let name = format!("The worst segment of {}", joint.name);
     let share = percent(worst.share_of_squared_error);
-    let unit = joint.output_unit.as_deref();
-    let height = |one: &WorstSegment| one.largest_residual.abs();
-    let spike = segments.iter().max_by(|a, b| height(a).total_cmp(&height(b)));
-    let spike = spike.map_or_else(String::new, |spike| {
-        let height = measure(height(spike), unit);
-        let place = if spike == worst {
-            "is in it".to_owned()
-        } else if joint.trials.len() > 1 {
-            format!("is in trial {}, {}", spike.trial, worst_segment_text(spike))
-        } else {
-            format!("is in {}", worst_segment_text(spike))
-        };
-        format!(" The largest residual of all, {height}, {place}.")
-    });
     let caption = format!(
-        "The worst segment: it contains {share} of the squared error, more than any other.{spike}"
+        "The worst segment: it contains {share} of the squared error, more than any other."
     );
-    Some(Figure { file, name, width: HALF, panels: vec![panel], caption })
+    Some(Figure { name, width: HALF, panels: vec![panel], caption })
 }
 
 /// The segment with the largest share of the squared error, and a part of the record around it.

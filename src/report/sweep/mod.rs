@@ -1,6 +1,5 @@
 //! How delays move with the settings, as text and as schema `tauscope/sweep/1`.
 
-mod sets;
 pub(crate) mod text;
 
 use serde_json::{Map, Value, json};
@@ -44,7 +43,7 @@ pub(crate) fn run_text(settings: &Settings) -> String {
 }
 
 /// A value of a setting as an option takes it.
-pub(super) fn value(grid: &Grid, factor: Factor, level: usize) -> String {
+fn value(grid: &Grid, factor: Factor, level: usize) -> String {
     let found = match factor {
         Factor::Method => grid.bases().get(level).map(|base| base.settings.method.to_string()),
         Factor::Passband => grid.passbands().get(level).map(|low_pass| {

@@ -1,16 +1,10 @@
 //! What a person wants to know of a sweep: a sentence for each joint, what each value of a
 //! setting does, and the steps to look at.
 
-use comfy_table::{Cell, CellAlignment, Table, presets};
-
 use super::level_text;
-use super::sets::{Clause, clauses};
 use crate::delay::sweep::{Factor, Grid, LevelSummary, Sensitivity, SweptStep};
 use crate::report::{ReportedSweep, TextTable};
 use crate::wording::{percent, rounded, wrapped};
-
-/// Clauses of the settings that agree that are said; the JSON has all.
-const CLAUSES: usize = 3;
 
 /// How many steps that depend on a setting are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,16 +67,6 @@ pub(crate) fn sweep_sentences(grid: &Grid, reported: &ReportedSweep<'_>) -> Vec<
     sentences
 }
 
-/// The settings of the runs that are `chosen`, in few words.
-pub(crate) fn settings_in_words(grid: &Grid, chosen: &[bool]) -> String {
-    let found = clauses(grid, chosen);
-    let total: usize = found.iter().map(|clause| clause.combinations).sum();
-    if total == grid.combinations().len() {
-        return "all settings".to_owned();
-    }
-    said(&found)
-}
-
 /// On which settings how many delays depend.
 fn on_what(reported: &ReportedSweep<'_>) -> String {
     let hanging = reported.sweep.sensitive();
@@ -118,29 +102,12 @@ fn named(factor: Factor) -> String {
     }
 }
 
-/// The settings that agree with each other.
+/// How many settings agree with each other.
 fn who_agrees(grid: &Grid, reported: &ReportedSweep<'_>) -> String {
-    let found = clauses(grid, &reported.agreeing());
-    let total: usize = found.iter().map(|clause| clause.combinations).sum();
-    if total == 0 {
-        return "No setting agrees with most others on nine steps of ten.".to_owned();
-    }
-    if total == grid.combinations().len() {
-        return "All settings agree on nine steps of ten.".to_owned();
-    }
-    format!("On nine steps of ten these agree: {}.", said(&found))
-}
-
-/// The first clauses, and how many combinations the others are.
-fn said(found: &[Clause]) -> String {
-    let (said, others) = found.split_at(found.len().min(CLAUSES));
-    let mut said: Vec<String> = said.iter().map(|clause| clause.words.join(", ")).collect();
-    match others.iter().map(|clause| clause.combinations).sum() {
-        0 => {}
-        1 => said.push("1 more combination".to_owned()),
-        left => said.push(format!("{left} more combinations")),
-    }
-    said.join("; ")
+    let agreeing = reported.agreeing();
+    let agrees = grid.combinations().iter().filter(|one| agreeing.get(one.run) == Some(&true));
+    let (agree, all) = (agrees.count(), grid.combinations().len());
+    format!("{agree} of {all} combinations of settings agree on nine steps of ten.")
 }
 
 /// Where a lag was found that other methods take for delay.
@@ -167,12 +134,11 @@ fn lag_sentence(grid: &Grid, reported: &ReportedSweep<'_>) -> Option<String> {
 }
 
 /// What each value of a setting does to each joint.
-fn levels_table(grid: &Grid, joints: &[ReportedSweep<'_>]) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_BORDERS_ONLY);
+fn levels_table(grid: &Grid, joints: &[ReportedSweep<'_>]) -> TextTable {
     let columns: Vec<(String, &[Vec<LevelSummary>])> = joints.iter().flat_map(columns).collect();
     let names = columns.iter().map(|(name, _)| name.clone());
-    table.set_header(std::iter::once("setting".to_owned()).chain(names));
+    let header: Vec<String> = std::iter::once("setting".to_owned()).chain(names).collect();
+    let mut rows = Vec::new();
     for (index, factor) in Factor::ALL.into_iter().enumerate() {
         let varied = grid.levels(factor) > 1;
         for level in (0..grid.levels(factor)).filter(|_| varied) {
@@ -180,13 +146,11 @@ fn levels_table(grid: &Grid, joints: &[ReportedSweep<'_>]) -> String {
                 let summary = levels.get(index).and_then(|levels| levels.get(level));
                 summary.map_or_else(|| "-".to_owned(), level_cell)
             };
-            let cells = columns.iter().map(of_column);
-            let cells = cells.map(|cell| Cell::new(cell).set_alignment(CellAlignment::Right));
-            let name = Cell::new(level_text(grid, factor, level));
-            table.add_row(std::iter::once(name).chain(cells));
+            let name = level_text(grid, factor, level);
+            rows.push(std::iter::once(name).chain(columns.iter().map(of_column)).collect());
         }
     }
-    table.to_string()
+    TextTable { numbers: (1..header.len()).collect(), header, rows }
 }
 
 /// The columns of a joint: one, or one for each kind of step where these differ.

@@ -43,7 +43,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     if let Some(path) = preview {
         if is_page(path) {
             let sources = known.experiment.as_ref().map_or(&[][..], |read| &read.sources);
-            write_bytes(path, design_document(&joints, sources).html()?)?;
+            write_bytes(path, design_document(&joints, sources).html())?;
         } else {
             write_file(path, |file| Ok(preview_table(&joints).write_csv(file)?))?;
         }

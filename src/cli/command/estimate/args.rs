@@ -4,10 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{AgainstArgs, AlgorithmArgs, DataArgs, ReviewArgs, RunArgs, number};
+use crate::cli::args::{AgainstArgs, AlgorithmArgs, DataArgs, ResultArgs, ReviewArgs, number};
 use crate::cli::each_log::FolderArgs;
 use crate::cli::output::Detail;
-use crate::cli::viewer::StreamArgs;
 use crate::delay::{Method, Settings};
 
 /// Estimate the delay of every input step of every joint
@@ -67,12 +66,8 @@ pub(crate) struct FollowArgs {
 /// What is written where.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct OutputArgs {
-    /// Record every decision for the Rerun viewer
-    #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
-    pub(crate) recording: Option<PathBuf>,
-
     #[command(flatten)]
-    pub(crate) stream: StreamArgs,
+    pub(crate) to: ResultArgs,
 
     /// Candidates in the recording: all, or fewer of accepted segments that are not doubtful
     #[arg(long, value_enum, default_value_t = Detail::Auto)]
@@ -96,8 +91,8 @@ pub(crate) struct OutputArgs {
     pub(crate) table: Option<PathBuf>,
 
     /// Write the delay table as source code that a controller looks delays up in: C99, MATLAB
-    /// or Octave, Python, or JSON, by the name's ending
-    #[arg(long, value_name = "FILE.c|.m|.py|.json")]
+    /// or Octave, or Python, by the name's ending
+    #[arg(long, value_name = "FILE.c|.m|.py")]
     pub(crate) export: Option<PathBuf>,
 
     /// Show every step: its delay with the interval, and how near the verdict was
@@ -108,14 +103,4 @@ pub(crate) struct OutputArgs {
     /// further signals
     #[arg(long)]
     pub(crate) against_state: bool,
-
-    #[command(flatten)]
-    pub(super) run: RunArgs,
-}
-
-impl OutputArgs {
-    /// Whether anything is made for a viewer.
-    pub(super) fn is_recorded(&self) -> bool {
-        self.recording.is_some() || self.stream.is_asked()
-    }
 }

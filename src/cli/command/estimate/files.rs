@@ -13,8 +13,7 @@ use crate::report::{EstimatedJoint, Recording, write_delays};
 use super::args::OutputArgs;
 use crate::cli::console::Verbosity;
 use crate::cli::output::{
-    CsvText, FileKind, OutputKind, Outputs, of_delays, write_bytes, write_csv, write_file,
-    write_parquet, write_table,
+    FileKind, OutputKind, Outputs, of_delays, write_bytes, write_file, write_parquet, write_table,
 };
 use crate::cli::viewer::Stream;
 use crate::delay::Settings;
@@ -41,20 +40,13 @@ pub(super) struct Estimated<'a> {
 }
 
 /// The files that were asked for, found to be writable before the work starts.
-pub(crate) struct Files<'a> {
-    args: &'a OutputArgs,
-    text: CsvText,
-}
+pub(crate) struct Files<'a>(&'a OutputArgs);
 
 impl<'a> Files<'a> {
     /// Refuses what cannot be written, or would replace an input or another output.
-    pub(crate) fn check(
-        args: &'a OutputArgs,
-        inputs: &[PathBuf],
-        text: CsvText,
-    ) -> anyhow::Result<Self> {
+    pub(crate) fn check(args: &'a OutputArgs, inputs: &[PathBuf]) -> anyhow::Result<Self> {
         let outputs = Outputs::default()
-            .with(OutputKind::Recording, &args.recording)
+            .with(OutputKind::Recording, &args.to.recording)
             .with(OutputKind::Table, args.decisions.iter().chain(&args.delays).chain(&args.table))
             .with(OutputKind::Csv, &args.review_sheet)
             .with(OutputKind::Other, &args.export);
@@ -63,12 +55,12 @@ impl<'a> Files<'a> {
             check_sheet(sheet)?;
         }
         args.export.as_deref().map(named_lookup).transpose()?;
-        Ok(Self { args, text })
+        Ok(Self(args))
     }
 
     /// Why a file that was asked for is not written, where nothing would be in it.
     pub(crate) fn left_out(&self, result: &Estimated<'_>) -> Vec<String> {
-        let path = self.args.export.as_ref().filter(|_| lookup(result).is_empty());
+        let path = self.0.export.as_ref().filter(|_| lookup(result).is_empty());
         let why = |path: &PathBuf| {
             format!("{}: not written: no joint has an accepted delay to look up", path.display())
         };
@@ -82,33 +74,31 @@ impl<'a> Files<'a> {
         stream: &Stream,
         verbosity: Verbosity,
     ) -> anyhow::Result<()> {
-        if let Some(path) = &self.args.decisions {
-            write_table(&decision_table(result.runs), path, self.text)?;
+        if let Some(path) = &self.0.decisions {
+            write_table(&decision_table(result.runs), path)?;
         }
-        if let Some(path) = &self.args.review_sheet {
-            write_table(&review_sheet(result.joints), path, self.text)?;
+        if let Some(path) = &self.0.review_sheet {
+            write_table(&review_sheet(result.joints), path)?;
         }
-        if let Some(path) = &self.args.delays {
+        if let Some(path) = &self.0.delays {
             write_file(path, |file| match FileKind::of(path) {
-                FileKind::Csv => {
-                    write_csv(file, self.text, |out| Ok(write_delays(result.joints, out)?))
-                }
+                FileKind::Csv => Ok(write_delays(result.joints, file)?),
                 FileKind::Parquet => write_parquet(&delay_table(result.joints), file),
             })?;
         }
-        if let Some(path) = &self.args.table {
-            write_table(&level_table(result.joints), path, self.text)?;
+        if let Some(path) = &self.0.table {
+            write_table(&level_table(result.joints), path)?;
         }
-        if let Some(path) = self.args.export.as_ref().filter(|_| !lookup(result).is_empty()) {
+        if let Some(path) = self.0.export.as_ref().filter(|_| !lookup(result).is_empty()) {
             let (language, name) = named_lookup(path)?;
             let source = language.source(&lookup(result), name)?;
             write_bytes(path, source)?;
         }
         let delays = (result.joints, result.settings);
         let recording = of_delays("estimate", result.experiment, delays);
-        let detail = self.args.detail.of(result.joints);
+        let detail = self.0.detail.of(result.joints);
         let recording = Recording { also: result.others, detail, ..recording };
-        if let Some(path) = &self.args.recording {
+        if let Some(path) = &self.0.to.recording {
             recording.record(path, verbosity)?;
         }
         stream.send(&recording, None)
@@ -125,8 +115,8 @@ fn named_lookup(path: &Path) -> anyhow::Result<(Language, &str)> {
     let shown = path.display();
     let Some(language) = Language::of(path) else {
         bail!(
-            "{shown}: a lookup is written as C, MATLAB, Python or JSON; give the file a name \
-               that ends in .c, .m, .py or .json"
+            "{shown}: a lookup is written as C, MATLAB or Python; give the file a name that ends in \
+             .c, .m or .py"
         );
     };
     let name = path.file_stem().and_then(|name| name.to_str()).unwrap_or_default();

@@ -7,8 +7,8 @@ mod follow;
 use crate::cli::each_log::Each;
 use crate::cli::exit::Completion;
 use crate::cli::failure::nothing_usable;
-use crate::cli::run::{Session, compared, estimated, failures, left_over, notes, others};
-use crate::delay::{CandidateLines, Settings};
+use crate::cli::run::{Session, compared, estimated, failures, notes, others};
+use crate::delay::Settings;
 use crate::report::against_table;
 use crate::report::decisions::steps_table;
 use crate::report::delays::delay_levels_text;
@@ -23,27 +23,23 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     if args.folder.is_asked_for() {
         return each_log(args);
     }
-    let verbosity = args.output.run.verbosity();
-    let is_drawn = args.output.is_recorded();
-    let lines = if is_drawn { CandidateLines::All } else { CandidateLines::Best };
+    let verbosity = args.output.to.run.verbosity();
+    let lines = args.output.to.lines();
     let with_lines = |settings| Settings { lines, ..settings };
     let settings: Vec<_> = args.runs().into_iter().map(with_lines).collect();
-    let csv_text = args.folder.csv_text();
     let inputs = args.inputs();
-    let files = Files::check(&args.output, &inputs, csv_text)?;
+    let files = Files::check(&args.output, &inputs)?;
     let review = args.review.read()?;
-    let stream = args.output.stream.open(verbosity)?;
+    let stream = args.output.to.stream.open(verbosity)?;
     let followed =
         args.follow.is_on.then(|| follow::follow(args, &settings, &stream)).transpose()?;
     let options = args.data.options()?;
-    let session = Session::begin("estimate", &args.data, &options, (&args.output.run, stream))?;
+    let session = Session::begin("estimate", &args.data, &options, (&args.output.to.run, stream))?;
     let session = session.reviewed(review);
     let experiment = &session.experiment;
     let settings: Vec<_> = settings.iter().map(|one| session.in_samples(one)).collect();
-    let automatic = args.algorithm.automatic();
-    let results = session.in_threads(|| session.estimates(&settings, automatic))?;
-    let asked = (settings.as_slice(), automatic);
-    let others = others(&session, (&args.against, &args.data), asked, &results)?;
+    let results = session.in_threads(|| session.estimates(&settings))?;
+    let others = others(&session, (&args.against, &args.data), &settings, &results)?;
     let mut failures = results.first().map_or_else(Vec::new, |first| failures(experiment, first));
     let joints: Vec<_> = results.iter().map(|results| estimated(experiment, results)).collect();
     let runs: Vec<Run<'_>> =
@@ -64,12 +60,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         against: &against,
     };
     failures.extend(files.left_out(&result));
-    let further = left_over(&against, &args.data);
-    let notes: Vec<_> = notes(first_joints).into_iter().chain(further).collect();
+    let notes = notes(first_joints);
     session.warn(&failures, &notes);
     if args.follow.is_on {
         // The log may have come as a link to what is written.
-        Files::check(&args.output, &args.inputs(), csv_text)?;
+        Files::check(&args.output, &args.inputs())?;
     }
     files.write(&result, &session.stream, verbosity)?;
     let all_notes: Vec<_> = experiment.notes.iter().cloned().chain(notes).collect();
@@ -85,8 +80,8 @@ fn each_log(args: &Args) -> anyhow::Result<Completion> {
         data: &args.data,
         decisions: output.decisions.as_deref(),
         refused: &[
-            ("--output", output.recording.is_some()),
-            ("--connect, --spawn or --serve", output.stream.is_asked()),
+            ("--output", output.to.recording.is_some()),
+            ("--connect, --spawn or --serve", output.to.stream.is_asked()),
             ("--follow", args.follow.is_on),
             ("--against", !args.against.against.is_empty()),
             ("--review", args.review.review.is_some()),
@@ -97,7 +92,7 @@ fn each_log(args: &Args) -> anyhow::Result<Completion> {
             ("--steps", output.steps),
             ("--against-state", output.against_state),
         ],
-        run: &output.run,
+        run: &output.to.run,
     })
 }
 

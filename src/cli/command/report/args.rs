@@ -10,7 +10,6 @@ use crate::cli::args::{
 };
 use crate::cli::viewer::StreamArgs;
 use crate::explain::MAX_EFFECTS;
-use crate::report::page::report::Heading;
 
 /// Write a report: one page with figures and numbers to attach to an experiment
 ///
@@ -65,14 +64,9 @@ pub(super) struct ModelArgs {
 /// What is written where.
 #[derive(ClapArgs, Debug)]
 pub(super) struct OutputArgs {
-    /// The report: a page, or Markdown with its drawings in a folder `FILE_files` beside it.
-    /// The recording goes beside it as `FILE.rrd`
-    #[arg(short = 'o', long = "output", value_name = "FILE.html|FILE.md", required = true)]
+    /// The report. The recording goes beside it as `FILE.rrd`
+    #[arg(short = 'o', long = "output", value_name = "FILE.html", required = true)]
     pub(super) report: Option<PathBuf>,
-
-    /// Put the recording into the page, if it has no more than 8 MiB
-    #[arg(long, conflicts_with = "no_recording")]
-    pub(super) embed: bool,
 
     /// Write no recording
     #[arg(long)]
@@ -87,24 +81,9 @@ pub(super) struct OutputArgs {
     #[arg(long, value_name = "TEXT")]
     pub(super) title: Option<String>,
 
-    /// Whose report it is, written below the title
-    #[arg(long, value_name = "NAME")]
-    pub(super) author: Option<String>,
-
-    /// The date, written below the title as it is given
-    #[arg(long, value_name = "TEXT")]
-    pub(super) date: Option<String>,
-
     #[command(flatten)]
     pub(super) stream: StreamArgs,
 
     #[command(flatten)]
     pub(super) run: RunArgs,
-}
-
-impl OutputArgs {
-    pub(super) fn heading(&self) -> Heading<'_> {
-        let Self { title, author, date, .. } = self;
-        Heading { title: title.as_deref(), author: author.as_deref(), date: date.as_deref() }
-    }
 }

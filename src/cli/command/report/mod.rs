@@ -4,37 +4,32 @@ mod args;
 mod first_look;
 mod target;
 
-use std::fs;
 use std::path::Path;
 
 use crate::batch::Threads;
-use crate::delay::Automatic;
 use crate::experiment::{Joint, Source};
 use crate::explain::{Improvement, Options, Revision, Verdict};
 use crate::model::{LogHash, ModelFile};
 use crate::report::answer::input_note;
 use crate::report::page::compose::{report_json, report_text};
-use crate::report::page::report::{RecordingFile, Report};
+use crate::report::page::report::Report;
 use crate::report::review_page::review_page;
 use crate::report::{EstimatedJoint, ImprovedJoint};
 use crate::study::{Known, Mode, OfJoints, explain_unknown_joints, improve_joints};
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 pub(crate) use args::Args;
 use args::ModelArgs;
 use target::{Target, file_name};
 
 use crate::cli::args::{add_arguments, read_model};
-use crate::cli::console::{Bar, Interrupt, STOPPING, Verbosity, message};
+use crate::cli::console::{Bar, Interrupt, STOPPING, Verbosity};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, said};
 use crate::cli::output::write_bytes;
 use crate::cli::run::{
-    self, Progress, Session, Start, Study, as_it_is, compared, estimated, log_hashes, others,
+    self, Session, Start, Study, as_it_is, compared, ended, estimated, log_hashes, others,
 };
 use crate::cli::typed::quoted;
-
-/// Bytes of a recording up to which it is put into the page.
-const EMBEDDED: u64 = 8 * 1024 * 1024;
 
 /// Where the files of a first look go for which no name is given.
 pub(crate) const BESIDE_THE_LOG: &str = ".";
@@ -89,7 +84,7 @@ fn report(args: &Args, target: Option<&Target>, shown: Shown) -> anyhow::Result<
     let reading = args.data.options_with_others()?;
     let session = Session::begin("report", &args.data, &reading, (&args.output.run, stream))?;
     let mut session = session.reviewed(review);
-    let asked = (std::slice::from_ref(&settings), Automatic::default());
+    let asked = std::slice::from_ref(&settings);
     session.beside = others(&session, (&args.against, &args.data), asked, &[])?;
     let study = Study::of(session, &settings)?;
     if shown == Shown::Everything {
@@ -100,7 +95,7 @@ fn report(args: &Args, target: Option<&Target>, shown: Shown) -> anyhow::Result<
     let arguments = add_arguments(&args.data, &path, study.joints());
     let start = Start::of(&study, &file, args.model.model.as_deref(), arguments)?;
     let models = args.model.improved(&start, &file, &study, &options)?;
-    Reported { args, start: &start, study: &study, shown }.report(models.as_ref(), target)
+    Reported { args, start: &start, study: &study, shown }.report(&models, target)
 }
 
 impl ModelArgs {
@@ -115,35 +110,38 @@ impl ModelArgs {
     }
 
     /// The model of each joint with what it lacks; none where no model is asked for.
-    fn improved<'a>(
+    fn improved(
         &self,
-        start: &'a Start<'a>,
+        start: &Start<'_>,
         file: &ModelFile,
         study: &Study<'_>,
         options: &Options,
-    ) -> anyhow::Result<Option<Improved<'a>>> {
+    ) -> anyhow::Result<Improved> {
         let (joints, estimates) = (study.joints(), &study.estimates);
         let starts = |joint: &Joint| start.model(joint);
         let protocol = self.protocol.with(Mode::FitOrIntegrator);
-        let interrupt = self.improve.then(|| Interrupt::watch(STOPPING));
-        let progress = Progress::new(start, interrupt);
-        let done = |index, revision: &Revision| progress.done(index, revision);
-        let models = if self.improve {
-            study.work("improving", |bar, others| {
+        if self.improve {
+            let interrupt = Interrupt::watch(STOPPING);
+            let done = |index, revision: &Revision| {
+                start.say(index, revision);
+                !interrupt.was_pressed()
+            };
+            let models = study.work("improving", |bar, others| {
                 let protocol = protocol.watched(bar).beside(others);
                 improve_joints(joints, estimates, starts, protocol, options, done, &Threads)
-            })?
-        } else if self.model.is_some() {
+            })?;
+            return Ok((models, Some(interrupt)));
+        }
+        if self.model.is_some() {
             let known = |joint: &Joint| known(file, joint, &study.experiment.sources);
             let explained = study.work("explaining", |bar, others| {
                 let watched = protocol.watched(bar).beside(others);
                 explain_unknown_joints(joints, estimates, starts, known, watched, options, &Threads)
             })?;
-            explained.into_iter().map(|found| Some(found?.map(as_it_is))).collect()
-        } else {
-            return Ok(None);
-        };
-        Ok(Some((models, progress)))
+            let models = explained.into_iter().map(|found| Some(found?.map(as_it_is)));
+            return Ok((models.collect(), None));
+        }
+        Ok((Vec::new(), None))
     }
 }
 
@@ -159,8 +157,8 @@ fn known(file: &ModelFile, joint: &Joint, sources: &[Source]) -> Option<Known> {
     Some(Known { rmse, verdict: Verdict::by_id(fitted.verdict.as_deref()?)? })
 }
 
-/// The models of all joints, and who watched them.
-type Improved<'a> = (OfJoints<Improvement>, Progress<'a>);
+/// The models of all joints, and who may have stopped the search for what they lack.
+type Improved = (OfJoints<Improvement>, Option<Interrupt>);
 
 /// What is asked, and what came of it.
 struct Reported<'a> {
@@ -174,7 +172,7 @@ impl Reported<'_> {
     /// Writes the report of what was found.
     fn report(
         &self,
-        found: Option<&Improved<'_>>,
+        (results, interrupt): &Improved,
         target: Option<&Target>,
     ) -> anyhow::Result<Completion> {
         let study = self.study;
@@ -185,19 +183,18 @@ impl Reported<'_> {
             return Err(nothing_usable(failures.last()));
         }
         let mut models = Vec::new();
-        if let Some((results, progress)) = found {
-            for (index, (joint, result)) in study.joints().iter().zip(results).enumerate() {
-                match result {
-                    Some(Ok(found)) => {
-                        let improved = progress.improved(index, joint, found);
-                        models.extend(improved.map(ImprovedJoint::since_its_beginning));
-                    }
-                    Some(Err(error)) => {
-                        failures.push(format!("joint `{}`: no model: {}", joint.name, said(error)));
-                    }
-                    None => {}
+        for (index, (joint, result)) in study.joints().iter().zip(results).enumerate() {
+            match result {
+                Some(Ok(found)) => models.extend(self.start.improved(index, joint, found)),
+                Some(Err(error)) => {
+                    failures.push(format!("joint `{}`: no model: {}", joint.name, said(error)));
                 }
+                None => {}
             }
+        }
+        for model in &mut models {
+            let searched = interrupt.map_or(*model, |interrupt| ended(*model, interrupt));
+            *model = searched.since_its_beginning();
         }
         self.write(&joints, &models, &failures, target)
     }
@@ -212,21 +209,17 @@ impl Reported<'_> {
         let Self { args, study, .. } = *self;
         let experiment = &study.experiment;
         let against = compared(joints, &study.beside)?;
-        let further = run::left_over(&against, &args.data);
         let notes = experiment.notes.iter().cloned().chain(run::notes(joints));
-        let notes: Vec<String> = notes.chain(further).collect();
+        let notes: Vec<String> = notes.collect();
         let revised = (!models.is_empty()).then(|| self.revised(models)).transpose()?;
-        let embedded = self.record(models, target)?;
         let recording_path = target.and_then(|target| target.recording.as_deref());
+        study.record_revisions(recording_path, models)?;
         let recording_name = recording_path.map(file_name);
-        let recording = recording_name
-            .as_deref()
-            .map(|name| RecordingFile { name, bytes: embedded.as_deref() });
         let command = command();
         let has_models = args.model.improve || args.model.model.is_some();
         let with_models = (!has_models).then(|| format!("{command} --improve"));
         let report = Report {
-            heading: args.output.heading(),
+            title: args.output.title.as_deref(),
             experiment,
             joints,
             settings: &study.settings,
@@ -235,7 +228,7 @@ impl Reported<'_> {
             revised: revised.as_ref().map(ModelFile::text),
             command: &command,
             with_models: with_models.as_deref(),
-            recording,
+            recording: recording_name.as_deref(),
             notes: &notes,
             failures,
         };
@@ -267,27 +260,6 @@ impl Reported<'_> {
         Ok(if is_whole { completion } else { Completion::Partial })
     }
 
-    /// Writes the recording; its bytes, where they are to be in the page.
-    fn record(
-        &self,
-        models: &[ImprovedJoint<'_>],
-        target: Option<&Target>,
-    ) -> anyhow::Result<Option<Vec<u8>>> {
-        let path = target.and_then(|target| target.recording.as_deref());
-        self.study.record_revisions(path, models)?;
-        let Some(path) = path.filter(|_| self.args.output.embed) else {
-            return Ok(None);
-        };
-        let size = fs::metadata(path).map_or(u64::MAX, |file| file.len());
-        if size > EMBEDDED {
-            let name = path.display();
-            message("note", &format!("{name}: too large for the page; it is beside it"));
-            return Ok(None);
-        }
-        let bytes = fs::read(path);
-        Ok(Some(bytes.with_context(|| format!("{}: cannot be read", path.display()))?))
-    }
-
     /// The model file with the fitted models in it.
     fn revised(&self, models: &[ImprovedJoint<'_>]) -> anyhow::Result<ModelFile> {
         let mut file = self.start.revised(models, |joint| Some(joint.finding.verdict))?;
@@ -315,7 +287,7 @@ fn write_model(path: &Path, file: &ModelFile, verbosity: Verbosity) -> anyhow::R
 fn write_files(report: &Report<'_>, target: &Target, verbosity: Verbosity) -> anyhow::Result<()> {
     {
         let _bar = Bar::spinner(verbosity, "writing the report");
-        target.write(&report.document())?;
+        write_bytes(&target.path, report.document().html())?;
         if let Some(path) = &target.review {
             write_bytes(path, review_page(report))?;
         }

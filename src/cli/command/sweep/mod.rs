@@ -2,11 +2,9 @@
 
 mod values;
 
-use std::path::PathBuf;
-
 use crate::batch::Threads;
 use crate::delay::sweep::{Base, Grid};
-use crate::delay::{Automatic, EstimateError, Method, Settings};
+use crate::delay::{EstimateError, Method};
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::numerics::LowPass;
 use crate::report::sweep::sweep_json;
@@ -18,13 +16,12 @@ use anyhow::bail;
 use clap::Args as ClapArgs;
 
 use crate::cli::args::number::{self, OrNone};
-use crate::cli::args::{ConditionArgs, DataArgs, RunArgs, ids_with, low_pass};
+use crate::cli::args::{ConditionArgs, DataArgs, ResultArgs, ids_with, low_pass};
 use crate::cli::console::Bar;
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures, said};
 use crate::cli::output::{OutputKind, Outputs, Recorded};
 use crate::cli::run::Session;
-use crate::cli::viewer::StreamArgs;
 use values::{Values, lengths, methods, passbands};
 
 /// Estimate every delay with many settings, and say which of them it depends on
@@ -59,26 +56,12 @@ pub(crate) struct Args {
     #[command(flatten)]
     conditions: ConditionArgs,
 
-    #[command(flatten)]
-    output: OutputArgs,
-}
-
-/// What is printed and recorded.
-#[derive(ClapArgs, Debug)]
-struct OutputArgs {
-    /// Record how every delay depends on the settings, for the Rerun viewer
-    #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
-    recording: Option<PathBuf>,
-
-    #[command(flatten)]
-    stream: StreamArgs,
-
     /// Show all steps that depend on a setting, not only those that do most
     #[arg(long)]
     steps: bool,
 
     #[command(flatten)]
-    run: RunArgs,
+    output: ResultArgs,
 }
 
 /// Joints in a recording: the viewer cannot read one with the views of eight hundred.
@@ -109,10 +92,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         if args.passband.is_some() { (grid, Vec::new()) } else { fitting(&grid, trials()) };
     let runs = (joints.len() * grid.runs().len()) as u64;
     let bar = Bar::new(verbosity, "sweeping", "runs", runs);
-    let own = |joint: &Joint, settings: &Settings| {
-        session.own().of_joint(joint, &(settings.clone(), Automatic::default())).0
-    };
-    let of_joint = |joint: &Joint| grid.with_settings(|settings| own(joint, settings));
+    let of_joint =
+        |joint: &Joint| grid.with_settings(|settings| session.own().of_joint(joint, settings));
     let work = || sweep_joints(joints, of_joint, args.tolerance, || bar.step(), &Threads);
     let results = session.in_threads(work)?;
     drop(bar);
@@ -136,7 +117,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         Recorded::Sweep(&contents).record(path, verbosity)?;
     }
     session.stream.send_sweep(&contents)?;
-    let shown = if args.output.steps { StepsShown::All } else { StepsShown::Worst };
+    let shown = if args.steps { StepsShown::All } else { StepsShown::Worst };
     session.end(
         Completion::without(&failures),
         || sweep_text(&grid, args.tolerance, &swept, shown),
