@@ -36,7 +36,7 @@ const QUESTIONS: [(&str, &str); 15] = [
     ("Compare with another result", "against"),
     (
         "Which input is designed",
-        "output-range duration trials levels largest hold rate start dead-band seed \
+        "output-range duration trials levels largest hold rate start seed \
          separate power noise rehearsals",
     ),
     ("The log is still being written", "follow idle"),
