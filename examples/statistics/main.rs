@@ -4,7 +4,6 @@
 //! tests beside them are the same on a sample of seconds.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
 
-mod automatic_settings;
 mod dead_time_coverage;
 mod delay_methods;
 mod design_power;
@@ -20,7 +19,6 @@ use clap::Parser as _;
 /// Statistics on simulated joints whose truth is known
 #[derive(Debug, clap::Parser)]
 enum Statistic {
-    AutomaticSettings(automatic_settings::Args),
     DeadTimeCoverage(dead_time_coverage::Args),
     DelayMethods(delay_methods::Args),
     DesignPower(design_power::Args),
@@ -33,7 +31,6 @@ enum Statistic {
 
 fn main() -> anyhow::Result<()> {
     match Statistic::parse() {
-        Statistic::AutomaticSettings(args) => automatic_settings::run(&args),
         Statistic::DeadTimeCoverage(args) => dead_time_coverage::run(&args),
         Statistic::DelayMethods(args) => delay_methods::run(&args),
         Statistic::DesignPower(args) => design_power::run(&args),

@@ -51,13 +51,12 @@ class EstimateOptions(ReadOptions, total=False):
     )
     """How a delay is found. May be a list: the first one is the answer, the others are reported
     beside it [default: auto; two-line with `paper=True` and `--follow`]."""
-    alpha: float | str | Literal["auto"] | None
+    alpha: float | str | None
     """How far a segment extends before its input step and after the next one, in samples or in
-    seconds as in `0.1s`; `auto` chooses this and the next two from the record of each joint
-    [default: 10]."""
-    beta: float | str | Literal["auto"] | None
+    seconds as in `0.1s` [default: 10]."""
+    beta: float | str | None
     """Samples, or seconds, between two candidate breakpoints [default: 5]."""
-    passband: float | Literal["none", "auto"] | None
+    passband: float | Literal["none"] | None
     """Zero-phase low-pass on the output that Algorithm 1's lines are fitted to: its cutoff, or
     `none` [default: 5]."""
     confidence: float | Literal["none"] | None
@@ -291,13 +290,12 @@ class ReportOptions(ReadOptions, total=False):
     )
     """How a delay is found. May be a list: the first one is the answer, the others are reported
     beside it [default: auto; two-line with `paper=True` and `--follow`]."""
-    alpha: float | str | Literal["auto"] | None
+    alpha: float | str | None
     """How far a segment extends before its input step and after the next one, in samples or in
-    seconds as in `0.1s`; `auto` chooses this and the next two from the record of each joint
-    [default: 10]."""
-    beta: float | str | Literal["auto"] | None
+    seconds as in `0.1s` [default: 10]."""
+    beta: float | str | None
     """Samples, or seconds, between two candidate breakpoints [default: 5]."""
-    passband: float | Literal["none", "auto"] | None
+    passband: float | Literal["none"] | None
     """Zero-phase low-pass on the output that Algorithm 1's lines are fitted to: its cutoff, or
     `none` [default: 5]."""
     confidence: float | Literal["none"] | None
@@ -409,9 +407,6 @@ class DesignOptions(ReadOptions, total=False):
     start: float | None
     """The output at which it starts [default: the middle of the range; without one, of the log, or
     0]."""
-    dead_band: tuple[float, float] | str | Literal["cross", "avoid"] | None
-    """`cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a band
-    that must contain no level."""
     separate: str | Sequence[str] | None
     """Two effects to distinguish. The model has one of them, or a log is given."""
     power: float | None

@@ -9,7 +9,7 @@ use super::revision::judged;
 use crate::report::answer::dead_time_sentences;
 use crate::report::decisions::doubtful_lines;
 use crate::report::delays::levels_text;
-use crate::report::estimate::{chosen_line, summary_table};
+use crate::report::estimate::summary_table;
 use crate::report::facts::Place;
 use crate::report::ladder::change_in_words;
 use crate::report::review::ReviewCount;
@@ -48,9 +48,6 @@ fn written(
     delay_levels(&mut page, recording.joints)?;
     let settings = settings_table(recording.settings).markdown(plain);
     writeln!(page, "\n## Settings\n\n{settings}")?;
-    for line in recording.joints.iter().filter_map(chosen_line) {
-        writeln!(page, "\nChosen from the record of {}", plain(line.trim_end()))?;
-    }
     writeln!(page, "\n{}", detail(recording, layouts))?;
     let row = |EstimatedJoint { joint, .. }: &EstimatedJoint<'_>| {
         let unit = |unit: &Option<String>| unit.clone().unwrap_or_else(|| "no unit".to_owned());

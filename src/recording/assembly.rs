@@ -45,10 +45,8 @@ impl<'a> Content for Recording<'a> {
     fn name(&self) -> String {
         let others = self.also.iter().map(|other| other.name.clone());
         let settings: Vec<_> = once(settings_in_short(self.settings)).chain(others).collect();
-        let chosen = self.joints.iter().any(|joint| joint.estimate.chosen.is_some());
-        let chosen = if chosen { ", more from the record" } else { "" };
         let (log, command) = (name_of(self.sources), self.command);
-        format!("{log} · {command} · {}{chosen}", settings.join(" | "))
+        format!("{log} · {command} · {}", settings.join(" | "))
     }
 
     fn id(&self) -> String {
@@ -172,9 +170,6 @@ fn recording_id(recording: &Recording<'_>) -> String {
         part(&format!("{:?} {:?}", recording.settings, recording.detail));
         for beside in recording.also {
             part(&format!("{beside:?}"));
-        }
-        for joint in recording.joints.iter().filter(|joint| joint.estimate.chosen.is_some()) {
-            part(&format!("{:?}", joint.estimate.settings));
         }
     })
 }

@@ -15,12 +15,11 @@ use super::settings::{own_settings, settings_json, settings_line};
 use super::summary::Headline;
 use super::{DelayRange, EstimatedJoint, JointSummary, TextTable};
 use crate::delay::{
-    AgainstState, Bounds, Chosen, Condition, DeadTime, DelayTable, Finding, KindDelay, OnsetModel,
+    AgainstState, Bounds, Condition, DeadTime, DelayTable, Finding, KindDelay, OnsetModel,
     Settings, Tracking, Unknown, Window,
 };
 use crate::experiment::{Experiment, Joint, Source};
-use crate::numerics::LowPass;
-use crate::wording::{measure, percent, rounded};
+use crate::wording::{percent, rounded};
 
 /// The table of `estimate`: a row per joint, and the settings below it.
 pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> String {
@@ -36,64 +35,23 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
     let dead_times: String = joints.iter().flat_map(dead_time_lines).collect();
     let lines = joints.iter().flat_map(|joint| [onset_line(joint), tracking_line(joint)]);
     let lags: String = lines.flatten().collect();
-    let chosen: String = joints.iter().filter_map(chosen_line).collect();
     let own = joints.iter().filter_map(|joint| {
         let own = own_settings(joint, settings)?;
-        let automatic = joint.estimate.chosen.map(|chosen| chosen.automatic).unwrap_or_default();
         let name = &joint.joint.name;
-        Some(format!("{name}, settings of its own: {}\n", settings_line(own, automatic)))
+        Some(format!("{name}, settings of its own: {}\n", settings_line(own)))
     });
     let own: String = own.collect();
-    let automatic = joints.iter().find_map(|joint| joint.estimate.chosen);
-    let automatic = automatic.map(|chosen| chosen.automatic).unwrap_or_default();
-    let settings = format!("settings: {}\n", settings_line(settings, automatic));
+    let settings = format!("settings: {}\n", settings_line(settings));
     // Nothing of it is used where all inputs move all the time.
     let is_used = |joint: &EstimatedJoint<'_>| joint.estimate.dead_time.is_none();
     let settings = if joints.iter().any(is_used) { settings } else { String::new() };
-    format!("{table}\n{kinds}{doubtful}{dead_times}{lags}{chosen}{own}{settings}")
+    format!("{table}\n{kinds}{doubtful}{dead_times}{lags}{own}{settings}")
 }
 
 /// What is said of the dead time of a joint, a line each.
 fn dead_time_lines<'a>(joint: &EstimatedJoint<'a>) -> impl Iterator<Item = String> + use<'a> {
     let name = joint.joint.name.as_str();
     dead_time_sentences(joint).into_iter().map(move |sentence| format!("{name}: {sentence}\n"))
-}
-
-/// The settings that were chosen for a joint, and why, where any were.
-pub(crate) fn chosen_line(joint: &EstimatedJoint<'_>) -> Option<String> {
-    let Chosen { automatic, statistics } = joint.estimate.chosen?;
-    let settings = &joint.estimate.settings;
-    let unit = joint.joint.output_unit.as_deref();
-    let mut parts = Vec::new();
-    if automatic.alpha {
-        parts.push(match statistics.short_delay {
-            Some(delay) => format!(
-                "α = {} (nine delays of ten are above {} samples)",
-                settings.alpha,
-                rounded(delay)
-            ),
-            None => format!("α = {} (the default, since no delay is known)", settings.alpha),
-        });
-    }
-    if automatic.beta {
-        parts.push(format!("β = {}", settings.beta));
-    }
-    if automatic.passband {
-        let noise = statistics.noise.map_or_else(
-            || "noise not known".to_owned(),
-            |noise| format!("noise {}", measure(noise, unit)),
-        );
-        parts.push(format!("{} ({noise})", low_pass_text(settings)));
-    }
-    let name = &joint.joint.name;
-    (!parts.is_empty()).then(|| format!("{name}: {}\n", parts.join(", ")))
-}
-
-fn low_pass_text(settings: &Settings) -> String {
-    settings.low_pass.map_or_else(
-        || "no low-pass".to_owned(),
-        |LowPass { cutoff_hz, order }| format!("zero-phase low-pass {cutoff_hz} Hz, order {order}"),
-    )
 }
 
 /// The response of a joint after its dead times in words, where the method fits one and onsets are
@@ -305,7 +263,7 @@ impl<'a> JointJson<'a> {
 /// What is said of all steps of a joint together.
 fn facts(estimated: EstimatedJoint<'_>, asked: &Settings, table: &DelayTable) -> Value {
     let EstimatedJoint { joint, estimate } = estimated;
-    let is_own = estimate.chosen.is_some() || own_settings(&estimated, asked).is_some();
+    let is_own = own_settings(&estimated, asked).is_some();
     let summary = JointSummary::with(estimated, table.kinds.clone());
     let rejected = summary.rejected.iter();
     let rejected = rejected.map(|(condition, count)| (condition.to_string(), (*count).into()));
@@ -323,7 +281,6 @@ fn facts(estimated: EstimatedJoint<'_>, asked: &Settings, table: &DelayTable) ->
         "input": input_json(estimated),
         "dead_time": estimate.dead_time.as_ref().map(|found| dead_time_json(estimated, found)),
         "settings": is_own.then(|| settings_json(&estimate.settings)),
-        "chosen": estimate.chosen,
         "onset_model": estimated.onset_model().map(onset_json),
         "tracking": estimated.tracking().map(tracking_json),
         "warnings": estimated.warnings(),
@@ -331,7 +288,7 @@ fn facts(estimated: EstimatedJoint<'_>, asked: &Settings, table: &DelayTable) ->
         "delay_table": rows.collect::<Value>(),
         "delay_by_transition": table.kinds.iter().map(kind_json).collect::<Value>(),
     });
-    let optional = ["reviewed", "dead_time", "settings", "chosen", "onset_model", "tracking"];
+    let optional = ["reviewed", "dead_time", "settings", "onset_model", "tracking"];
     without_empty(facts, &optional)
 }
 

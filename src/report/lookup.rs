@@ -24,8 +24,7 @@ use super::EstimatedJoint;
 use super::answer::dead_time_sentences;
 use super::settings::settings_line;
 use crate::delay::{
-    Automatic, CurvePoint, DelayCurve, DelayTable, Finding, Neutral, Settings, Transition,
-    TypicalDelay,
+    CurvePoint, DelayCurve, DelayTable, Finding, Neutral, Settings, Transition, TypicalDelay,
 };
 use crate::experiment::{Source, is_control};
 use crate::export::{ExportError, filled};
@@ -140,13 +139,11 @@ impl<'a> Lookup<'a> {
         joints: &[EstimatedJoint<'a>],
         settings: &Settings,
     ) -> Self {
-        let automatic = joints.iter().find_map(|joint| joint.estimate.chosen);
-        let automatic = automatic.map_or_else(Automatic::default, |chosen| chosen.automatic);
         let source =
             |source: &Source| format!("log: {} (SHA-256 {})", source.path.display(), source.sha256);
         let tables: Vec<_> = joints.iter().map(|joint| (joint.joint, delays_of(joint))).collect();
         let lines = [format!("made by tauscope {} estimate", env!("CARGO_PKG_VERSION"))];
-        let method = format!("method: {}", settings_line(settings, automatic));
+        let method = format!("method: {}", settings_line(settings));
         let lines = lines.into_iter().chain(sources.iter().map(source)).chain([method]);
         let counted = tables.iter().map(|(joint, table)| joint_line(&joint.name, table));
         let dead_times = joints.iter().flat_map(|joint| {

@@ -4,30 +4,18 @@ use serde_json::{Value, json};
 
 use super::json::without_empty;
 use super::{EstimatedJoint, TextTable};
-use crate::delay::{Automatic, CONFIDENCE, FirstLast, Method, Settings};
-use crate::study::JointEstimate;
+use crate::delay::{CONFIDENCE, FirstLast, Method, Settings};
 use crate::units::Length;
 use crate::wording::number;
 
 /// The settings of a joint, where it has some of its own: others than `asked`, which are those of
-/// all joints, and than those that were chosen from its record.
+/// all joints.
 pub(super) fn own_settings<'a>(
     joint: &EstimatedJoint<'a>,
     asked: &Settings,
 ) -> Option<&'a Settings> {
-    let JointEstimate { settings: own, chosen, .. } = joint.estimate;
-    let mut usual = asked.in_samples(&joint.joint.trials);
-    let automatic = chosen.map(|chosen| chosen.automatic).unwrap_or_default();
-    if automatic.alpha {
-        usual = usual.with_alpha(own.alpha_length());
-    }
-    if automatic.beta {
-        usual = usual.with_beta(own.beta_length());
-    }
-    if automatic.passband {
-        usual.low_pass = own.low_pass;
-    }
-    (own != &usual).then_some(own)
+    let own = &joint.estimate.settings;
+    (*own != asked.in_samples(&joint.joint.trials)).then_some(own)
 }
 
 /// Each setting with its value, as a table.
@@ -84,7 +72,7 @@ fn reaction(settings: &Settings) -> String {
         Some(confidence) => tested(confidence),
         None if settings.paper => "not tested".to_owned(),
         None => {
-            format!("{} in trials of few steps and until a step has reacted", tested(CONFIDENCE))
+            format!("{} in trials of few steps and at stops", tested(CONFIDENCE))
         }
     }
 }
@@ -103,16 +91,11 @@ fn telling<'a>(
 }
 
 /// The settings in one line: the method with its lengths and its low-pass, and what is not as the
-/// method has it by itself. What is `automatic` stands above, for each joint.
-pub(super) fn settings_line(settings: &Settings, automatic: Automatic) -> String {
+/// method has it by itself.
+pub(super) fn settings_line(settings: &Settings) -> String {
     let spec = settings.method.spec();
-    let Automatic { alpha, beta, passband } = automatic;
-    let chosen = ALWAYS.into_iter().zip([alpha, beta, passband]);
-    let is_chosen = |name: &str| chosen.clone().any(|it| it == (name, true));
     let always = ALWAYS.get(..if spec.has_intervals { 4 } else { 3 }).unwrap_or_default();
-    let said = telling(settings, always).map(|(name, value)| {
-        if is_chosen(name) { format!("{name} as above") } else { format!("{name} {value}") }
-    });
+    let said = telling(settings, always).map(|(name, value)| format!("{name} {value}"));
     format!("{}; {}", spec.fits, said.collect::<Vec<_>>().join("; "))
 }
 

@@ -1,8 +1,8 @@
 //! The delays of all joints: which settings are chosen for each, and when a joint fails.
 
 use crate::delay::{
-    Automatic, Chosen, DeadTime, DelayProfile, EstimateError, Estimator, InputMotion, Settings,
-    TrialEstimate, choose, dead_time,
+    DeadTime, DelayProfile, EstimateError, Estimator, InputMotion, Settings, TrialEstimate,
+    dead_time,
 };
 use crate::experiment::{Joint, Trial};
 use crate::explain::Workers;
@@ -14,8 +14,6 @@ pub struct JointEstimate {
     pub trials: Vec<Result<TrialEstimate, EstimateError>>,
     /// The settings that it was made with.
     pub settings: Settings,
-    /// Which of them were chosen from the record, and from what.
-    pub chosen: Option<Chosen>,
     /// How the input moves.
     pub motion: InputMotion,
     /// The dead time over the record, instead of one per step, where the input moves all the
@@ -45,28 +43,17 @@ pub fn estimate_joints(
     done: impl Fn() + Sync,
     workers: &impl Workers,
 ) -> Vec<Result<JointEstimate, EstimateError>> {
-    estimate_each(joints, |_| (settings.clone(), Automatic::default()), done, workers)
+    estimate_each(joints, |_| settings.clone(), done, workers)
 }
 
-/// Estimates every trial of every joint with what is `asked` for of that joint: settings, of which some
-/// are chosen from its own record (see [`choose`]).
+/// Estimates every trial of every joint with the settings that are `asked` for that joint.
 pub(crate) fn estimate_each(
     joints: &[Joint],
-    asked: impl Fn(&Joint) -> (Settings, Automatic) + Sync,
+    asked: impl Fn(&Joint) -> Settings + Sync,
     done: impl Fn() + Sync,
     workers: &impl Workers,
 ) -> Vec<Result<JointEstimate, EstimateError>> {
-    let one_joint = |joint: &Joint| {
-        let (settings, automatic) = asked(joint);
-        if !automatic.any() {
-            return estimate_one(joint, &settings, &done, workers);
-        }
-        settings.check()?;
-        let (settings, chosen) = choose(&joint.trials, &settings, automatic);
-        let estimate = estimate_one(joint, &settings, &done, workers)?;
-        Ok(JointEstimate { chosen: Some(chosen), ..estimate })
-    };
-    workers.map(joints, one_joint)
+    workers.map(joints, |joint| estimate_one(joint, &asked(joint), &done, workers))
 }
 
 /// Estimates one joint, and its dead time where its input moves all the time.
@@ -103,7 +90,7 @@ pub(super) fn estimate_steps(
         let (samples, needed) = (longest.len(), needed(longest));
         return Err(EstimateError::TooFewSamples { samples, needed });
     }
-    let estimator = Estimator::of(&joint.trials, settings)?;
+    let estimator = Estimator::of(&joint.trials, settings);
     let one_trial = |trial: &Trial| {
         let estimate = estimator.estimate(trial);
         done();
@@ -115,7 +102,6 @@ pub(super) fn estimate_steps(
         _ => Ok(JointEstimate {
             trials,
             settings: settings.clone(),
-            chosen: None,
             motion: estimator.motion(),
             dead_time: None,
         }),

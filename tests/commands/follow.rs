@@ -145,7 +145,6 @@ fn what_cannot_be_followed_is_refused() {
         ("log.csv --follow --method hinge", "--method two-line"),
         ("log.csv --follow --method two-line --method hinge", "only one method"),
         ("log.csv --follow --confidence 0.99", "--confidence none"),
-        ("log.csv --follow --alpha auto", "give a number"),
         ("log.csv --follow --fill 1", "`--fill`"),
         ("log.csv --idle 3", "--follow"),
         ("later.csv --follow --idle 1 --decisions ./later.csv", "a file that is read"),

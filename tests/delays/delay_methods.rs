@@ -226,8 +226,6 @@ fn delays_go_into_a_fit() {
     let joint = &made.joints[0];
     let delays = step_delays(&joint.trials).unwrap();
     assert_eq!(delays[0].len(), made.truth.len());
-    let seconds = |one: &Option<tauscope::delay::StepDelay>| one.map(|one| one.delay_s);
-    let delays = delays.iter().map(|trial| trial.iter().map(seconds).collect()).collect();
     let record = FitRecord::new(joint, Split::Time(1.0), Horizon::Steps).with_delays(delays);
     let measured = Component::measured(&VariableDelay).unwrap();
     let model = JointModel::integrator(10.0, 0.2).with(measured);
@@ -446,31 +444,4 @@ fn every_step_says_how_near_it_was() {
     assert!(text.contains("--min-slope-change 0.1"), "{text}");
     assert!(text.contains("% above at q = "), "{text}");
     assert!(text.contains("; interval of a delay "), "{text}");
-}
-
-#[test]
-fn settings_are_chosen_from_the_record_and_reported() {
-    let folder = tempfile::tempdir().unwrap();
-    let all = "--alpha auto --beta auto --passband auto";
-    let output =
-        run(folder.path(), &format!("{all} --method two-line --method hinge --format json"));
-    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    let joint = &json["joints"][0];
-    assert_eq!(joint["chosen"]["automatic"]["beta"], true);
-    assert!((joint["chosen"]["grounds"]["noise"].as_f64().unwrap() - 0.05).abs() < 0.03, "{joint}");
-    assert_eq!(joint["settings"]["beta"], 1);
-    assert_ne!(joint["settings"]["alpha"], json["settings"]["alpha"]);
-    assert!(joint["settings"]["low_pass"]["cutoff_hz"].as_f64().unwrap() > 1.0);
-    let chosen = ["alpha", "beta"].map(|key| joint["settings"][key].to_string());
-    let cutoff = joint["settings"]["low_pass"]["cutoff_hz"].to_string();
-    let typed = format!(
-        "--method two-line --alpha {} --beta {} --passband {cutoff} --format json",
-        chosen[0], chosen[1]
-    );
-    let again = run(folder.path(), &typed);
-    let again: serde_json::Value = serde_json::from_slice(&again.stdout).unwrap();
-    assert_eq!(again["joints"][0]["decisions"], joint["decisions"]);
-    assert!(again["joints"][0].get("chosen").is_none());
-    let text = String::from_utf8(run(folder.path(), all).stdout).unwrap();
-    assert!(text.contains("arm: α = ") && text.contains("α as above; β as above"), "{text}");
 }

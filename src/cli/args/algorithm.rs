@@ -5,7 +5,7 @@ use clap::Args as ClapArgs;
 use super::choice::{Choices, one_of};
 use super::conditions::{ConditionArgs, low_pass, method, passband};
 use super::number::{OrNone, length};
-use crate::delay::{Automatic, Interpolation, Method, Settings};
+use crate::delay::{Interpolation, Method, Settings};
 use crate::units::Length;
 
 /// The settings of the algorithm.
@@ -17,17 +17,18 @@ pub(crate) struct AlgorithmArgs {
     method: Vec<Method>,
 
     /// How far a segment extends before its input step and after the next one, in samples or in
-    /// seconds as in `0.1s`; `auto` chooses this and the next two from the record of each joint
-    /// [default: 10]
-    #[arg(long, value_name = "N|Xs|auto", value_parser = or_auto(length))]
-    alpha: Option<OrAuto<Length>>,
+    /// seconds as in `0.1s` [default: 10]
+    #[arg(long, value_name = "N|Xs", value_parser = length)]
+    alpha: Option<Length>,
 
     /// Samples, or seconds, between two candidate breakpoints [default: 5]
-    #[arg(long, value_name = "N|Xs|auto", value_parser = or_auto(length))]
-    beta: Option<OrAuto<Length>>,
+    #[arg(long, value_name = "N|Xs", value_parser = length)]
+    beta: Option<Length>,
 
-    #[arg(long, help = passband_help(), value_name = "HZ|none|auto", value_parser = or_auto(passband))]
-    passband: Option<OrAuto<OrNone>>,
+    /// Zero-phase low-pass on the output that Algorithm 1's lines are fitted to: its cutoff, or `none`
+    /// [default: 5]
+    #[arg(long, value_name = "HZ|none", value_parser = passband)]
+    passband: Option<OrNone>,
 
     #[command(flatten)]
     conditions: ConditionArgs,
@@ -35,36 +36,6 @@ pub(crate) struct AlgorithmArgs {
     /// The delay between two steps
     #[arg(long, default_value = "hold", value_parser = one_of(BETWEEN))]
     interpolate: Interpolation,
-}
-
-fn passband_help() -> String {
-    "Zero-phase low-pass on the output that Algorithm 1's lines are fitted to: its cutoff, or `none` \
-     [default: 5]"
-        .to_owned()
-}
-
-/// A value, or one that is chosen from the record.
-#[derive(Clone, Copy, Debug)]
-enum OrAuto<T> {
-    Given(T),
-    Auto,
-}
-
-/// What `one` understands, and `auto`.
-fn or_auto<T: 'static>(
-    one: fn(&str) -> Result<T, String>,
-) -> impl Fn(&str) -> Result<OrAuto<T>, String> + Clone {
-    move |text| match text {
-        "auto" => Ok(OrAuto::Auto),
-        _ => one(text).map(OrAuto::Given).map_err(|expected| format!("{expected}, or `auto`")),
-    }
-}
-
-fn given<T>(value: Option<OrAuto<T>>) -> Option<T> {
-    match value {
-        Some(OrAuto::Given(value)) => Some(value),
-        Some(OrAuto::Auto) | None => None,
-    }
 }
 
 /// The delay between two steps.
@@ -105,27 +76,15 @@ impl AlgorithmArgs {
 
     fn settings(&self, method: Method) -> Settings {
         let base = self.conditions.settings(method);
-        let (alpha, beta) = (given(self.alpha), given(self.beta));
-        let (alpha, beta) = (
-            alpha.unwrap_or_else(|| base.alpha_length()),
-            beta.unwrap_or_else(|| base.beta_length()),
-        );
-        let low_pass = match given(self.passband) {
+        let alpha = self.alpha.unwrap_or_else(|| base.alpha_length());
+        let beta = self.beta.unwrap_or_else(|| base.beta_length());
+        let low_pass = match self.passband {
             Some(passband) => low_pass(passband, self.conditions.filter_order),
             None => base.low_pass,
         };
-        let low_pass_required = given(self.passband).is_some();
+        let low_pass_required = self.passband.is_some();
         let settings =
             Settings { low_pass, low_pass_required, interpolation: self.interpolate, ..base };
         settings.with_alpha(alpha).with_beta(beta)
-    }
-
-    /// Which settings are to be chosen from the record.
-    pub(crate) fn automatic(&self) -> Automatic {
-        Automatic {
-            alpha: matches!(self.alpha, Some(OrAuto::Auto)),
-            beta: matches!(self.beta, Some(OrAuto::Auto)),
-            passband: matches!(self.passband, Some(OrAuto::Auto)),
-        }
     }
 }

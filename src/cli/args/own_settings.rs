@@ -7,11 +7,8 @@ use anyhow::anyhow;
 use super::choice::chosen;
 use super::conditions::{FIRST_LAST, INPUT, confidence, limits, low_pass, passband};
 use super::number::{length, length_or_none, probability, threshold};
-use crate::delay::{Automatic, Settings};
+use crate::delay::Settings;
 use crate::experiment::{Experiment, Joint, ReadOptions};
-
-/// What is asked for: settings, of which some are chosen from the record.
-pub(crate) type Asked = (Settings, Automatic);
 
 /// Changes settings to what a text says.
 type Set = fn(&str, Settings) -> Result<Settings, String>;
@@ -41,7 +38,7 @@ const SETTINGS: [(&str, Set); 13] = [
 /// for all joints.
 #[derive(Debug, Default)]
 pub(crate) struct OwnSettings {
-    joints: BTreeMap<String, Vec<(&'static str, Set, String)>>,
+    joints: BTreeMap<String, Vec<(Set, String)>>,
 }
 
 impl OwnSettings {
@@ -56,29 +53,25 @@ impl OwnSettings {
                 let wrong =
                     |why: String| anyhow!("--columns: [joint.{joint}.estimate] {name}: {why}");
                 let known = SETTINGS.iter().find(|(known, _)| known == name);
-                let (name, set) = known.ok_or_else(|| {
+                let (_, set) = known.ok_or_else(|| {
                     let names = SETTINGS.map(|(name, _)| name).join(", ");
                     wrong(format!("expected one of {names}"))
                 })?;
                 set(text, Settings::default()).map_err(wrong)?;
-                own.joints.entry(joint.clone()).or_default().push((name, *set, text.clone()));
+                own.joints.entry(joint.clone()).or_default().push((*set, text.clone()));
             }
         }
         Ok(own)
     }
 
     /// What is asked for of `joint`, where `asked` is for all of them.
-    pub(crate) fn of_joint(&self, joint: &Joint, asked: &Asked) -> Asked {
+    pub(crate) fn of_joint(&self, joint: &Joint, asked: &Settings) -> Settings {
         let own = self.joints.get(&joint.name).map_or(&[][..], Vec::as_slice);
-        let (mut settings, mut automatic) = asked.clone();
-        for (name, set, text) in own {
+        let mut settings = asked.clone();
+        for (set, text) in own {
             settings = set(text, settings.clone()).unwrap_or(settings);
-            // What is given is not chosen from the record.
-            automatic.alpha &= *name != "alpha";
-            automatic.beta &= *name != "beta";
-            automatic.passband &= *name != "passband";
         }
-        (settings.in_samples(&joint.trials), automatic)
+        settings.in_samples(&joint.trials)
     }
 
     /// A note on each joint that has settings and is in no log.

@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 use super::estimates::Estimates;
 use super::session::Session;
 use crate::cli::args::{AgainstArgs, DataArgs, read};
-use crate::delay::{Automatic, Settings};
+use crate::delay::Settings;
 use crate::report::EstimatedJoint;
 use crate::report::difference::Against;
 use crate::report::settings::settings_in_short;
@@ -21,17 +21,17 @@ const TAKES: &str = "`--against` takes the JSON of `estimate --format json`, a t
 pub(crate) fn others(
     session: &Session<'_>,
     (args, data): (&AgainstArgs, &DataArgs),
-    asked: (&[Settings], Automatic),
+    asked: &[Settings],
     results: &[Estimates],
 ) -> anyhow::Result<Vec<OtherResult>> {
     let joints = &session.experiment.joints;
-    let methods = asked.0.iter().zip(results).skip(1).map(|(settings, estimates)| {
+    let methods = asked.iter().zip(results).skip(1).map(|(settings, estimates)| {
         let (name, words) = (settings.method.to_string(), settings_in_short(settings));
         Ok(OtherResult::of(name, words, joints, estimates))
     });
-    let Some(first) = asked.0.first() else { return Ok(Vec::new()) };
+    let Some(first) = asked.first() else { return Ok(Vec::new()) };
     let files = args.against.iter().map(|path| {
-        let read = other(session, data, (first, asked.1), path);
+        let read = other(session, data, first, path);
         read.with_context(|| format!("{}: {TAKES}", path.display()))
     });
     methods.chain(files).collect()
@@ -41,7 +41,7 @@ pub(crate) fn others(
 fn other(
     session: &Session<'_>,
     data: &DataArgs,
-    (settings, automatic): (&Settings, Automatic),
+    settings: &Settings,
     path: &Path,
 ) -> anyhow::Result<OtherResult> {
     if path.is_dir() {
@@ -59,7 +59,7 @@ fn other(
     }
     let experiment = read(&[path.to_owned()], &data.options()?)?;
     let settings_of_one = std::slice::from_ref(settings);
-    let work = || session.estimates_of(&experiment.joints, settings_of_one, automatic).pop();
+    let work = || session.estimates_of(&experiment.joints, settings_of_one).pop();
     let estimates = session.in_threads(work)?.unwrap_or_default();
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(OtherResult::of(name, settings_in_short(settings), &experiment.joints, &estimates))

@@ -1,9 +1,7 @@
 //! Delays of joints: those that have one, and what is said of them.
 
 use crate::cli::failure::{read_failures, said};
-use crate::delay::{
-    Condition, Decision, EstimateError, Method, Verdict, delay_beyond_holds, end_at_the_next_step,
-};
+use crate::delay::{Condition, Decision, EstimateError, Method, Verdict};
 use crate::experiment::{Experiment, Joint, Trial, coarse_resolution, saturations, spike_count};
 use crate::numerics::{median, quantile, to_digits};
 use crate::report::EstimatedJoint;
@@ -63,9 +61,7 @@ fn notes_on(estimated: EstimatedJoint<'_>) -> Vec<String> {
     // What is said of two lines is not said of an onset.
     if estimate.dead_time.is_none() && !estimate.settings.method.spec().has_intervals {
         notes.extend(unsmoothed(joint, estimate));
-        notes.extend(cut_at_the_next_step(estimate));
         notes.extend(smeared(joint, estimate));
-        notes.extend(later_than_the_next_step(joint));
     }
     if estimate.dead_time.is_none() {
         notes.extend(unresolved(joint, estimate));
@@ -157,19 +153,6 @@ fn smeared(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     })
 }
 
-/// A line where the delay is longer than most holds.
-fn later_than_the_next_step(joint: &Joint) -> Option<String> {
-    delay_beyond_holds(&joint.trials).map(|delay_s| {
-        format!(
-            "over the whole record the output follows the input about {} s late, which is longer \
-             than most levels are held, so the listed delays are those of reactions to earlier \
-             steps. Fit a model to find the delay (`tauscope compare`), or hold the levels for \
-             longer",
-            number(delay_s),
-        )
-    })
-}
-
 /// A line on delays that `--max-delay` may have cut short.
 fn as_long_as_allowed(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     /// Part of the accepted delays, at least; fewer are chance.
@@ -190,18 +173,6 @@ fn as_long_as_allowed(joint: &Joint, estimate: &JointEstimate) -> Option<String>
 
 fn accepted(estimate: &JointEstimate) -> impl Iterator<Item = &Decision> {
     decisions(estimate).filter(|decision| decision.verdict() == Verdict::Accepted)
-}
-
-/// A line where segments end at the next step, since they held the reaction to it.
-fn cut_at_the_next_step(estimate: &JointEstimate) -> Option<String> {
-    let settings = &estimate.settings;
-    estimate.estimated().any(|trial| end_at_the_next_step(&trial.decisions)).then(|| {
-        format!(
-            "the joint reacts within α = {} samples, so segments that end α samples after the \
-             next step would contain the reaction to that step, too: they are ended at that step",
-            settings.alpha
-        )
-    })
 }
 
 /// A line on the trials that are sampled too slowly for the low-pass.

@@ -10,7 +10,7 @@ use crate::cli::args::{DataArgs, OwnSettings, RunArgs, read};
 use crate::cli::console::{Bar, Verbosity, warn};
 use crate::cli::exit::Completion;
 use crate::cli::viewer::Stream;
-use crate::delay::{Automatic, Settings};
+use crate::delay::Settings;
 use crate::experiment::{Experiment, Joint, ReadOptions};
 use crate::study::{OtherResult, Review, estimate_each};
 
@@ -69,28 +69,21 @@ impl<'a> Session<'a> {
         settings.in_samples(self.experiment.joints.iter().flat_map(|joint| &joint.trials))
     }
 
-    /// The delays of `joints` with each of the settings, or with their own; some settings are chosen for
-    /// each joint from its own record.
-    pub(crate) fn estimates_of(
-        &self,
-        joints: &[Joint],
-        settings: &[Settings],
-        automatic: Automatic,
-    ) -> Vec<Estimates> {
+    /// The delays of `joints` with each of the settings, or with their own.
+    pub(crate) fn estimates_of(&self, joints: &[Joint], settings: &[Settings]) -> Vec<Estimates> {
         let trials = joints.iter().map(|joint| joint.trials.len()).sum::<usize>();
         let runs = (trials * settings.len()) as u64;
         let bar = Bar::new(self.verbosity(), "estimating", "trials", runs);
         let one = |settings: &Settings| {
-            let asked = (settings.clone(), automatic);
-            let of_joint = |joint: &Joint| self.own.of_joint(joint, &asked);
+            let of_joint = |joint: &Joint| self.own.of_joint(joint, settings);
             estimate_each(joints, of_joint, || bar.step(), &Threads)
         };
         settings.iter().map(one).collect()
     }
 
     /// The delays of each joint with each of the settings.
-    pub(crate) fn estimates(&self, settings: &[Settings], automatic: Automatic) -> Vec<Estimates> {
-        let mut all = self.estimates_of(&self.experiment.joints, settings, automatic);
+    pub(crate) fn estimates(&self, settings: &[Settings]) -> Vec<Estimates> {
+        let mut all = self.estimates_of(&self.experiment.joints, settings);
         // A review is of the answer, not of what is reported beside it.
         if let Some(answer) = all.first_mut() {
             let notes = self.review.apply(&self.experiment.joints, answer);

@@ -11,7 +11,7 @@ use crate::cli::args::{DataArgs, ResultArgs};
 use crate::cli::console::Bar;
 use crate::cli::exit::Completion;
 use crate::cli::output::{OutputKind, Outputs, of_delays};
-use crate::delay::{Automatic, Settings};
+use crate::delay::Settings;
 use crate::experiment::{Joint, Other};
 use crate::explain::Revision as Step;
 use crate::fit::Mended;
@@ -71,11 +71,8 @@ impl<'a> Study<'a> {
         let asked = std::slice::from_ref(&settings);
         let [estimates, of_others] = session.in_threads(|| {
             let others = &session.experiment.others;
-            [
-                session.estimates(asked, Automatic::default()),
-                session.estimates_of(others, asked, Automatic::default()),
-            ]
-            .map(|mut all| all.pop().unwrap_or_default())
+            [session.estimates(asked), session.estimates_of(others, asked)]
+                .map(|mut all| all.pop().unwrap_or_default())
         })?;
         let study = Self { session, estimates, of_others, settings };
         study.show(&[], &[], None)?;

@@ -13,8 +13,6 @@ use super::prepared::Prepared;
 use super::settings::Settings;
 use super::spec::Method;
 
-pub(crate) use next_reaction::end_at_the_next_step;
-
 impl Method {
     /// The response after the dead times that the `trials` of a joint share, where the method looks
     /// for it.

@@ -39,12 +39,3 @@ pub(super) fn answer_the_next_step(decisions: &[Decision], beta: usize) -> bool 
     };
     late.len() >= FEWEST && explained(2) > explained(1) + MORE
 }
-
-/// Whether the segments of `decisions` end before the next step, since each would hold the reaction
-/// to it, too: what a method that cuts them makes of a joint that reacts within α.
-pub(crate) fn end_at_the_next_step(decisions: &[Decision]) -> bool {
-    let next =
-        || decisions.windows(2).map(|pair| (pair[0].segment.last, pair[1].input_step.sample));
-    let at_it = next().filter(|(last, next)| last + 1 == *next).count();
-    at_it >= FEWEST && next().all(|(last, next)| last < next)
-}

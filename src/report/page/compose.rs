@@ -7,7 +7,6 @@ use super::report::{RecordingFile, Report};
 use super::{delays, joint};
 use crate::experiment::{Joint, Source, Trial};
 use crate::report::difference::differences_json;
-use crate::report::estimate::chosen_line;
 use crate::report::explain::conclusion_json;
 use crate::report::json::{document, without_empty};
 use crate::report::settings::settings_table;
@@ -115,11 +114,6 @@ pub(super) fn origin(report: &Report<'_>) -> Vec<Block> {
     blocks.extend(report.recording.iter().flat_map(recording));
     blocks.push(Block::part("Settings"));
     blocks.push(Block::Table(settings_table(report.settings)));
-    let chosen: Vec<String> = report.joints.iter().filter_map(chosen_line).collect();
-    if !chosen.is_empty() {
-        blocks.push(Block::text("Chosen from the record of"));
-        blocks.push(Block::List(chosen));
-    }
     if let Some(text) = report.revised {
         let file = vec![Block::Code(text.to_owned())];
         blocks.push(Block::details("The models, as a model file", file));

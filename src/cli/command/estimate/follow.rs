@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::batch::Threads;
-use crate::delay::{Automatic, InputKind, Settings, Verdict, check_growing, final_part};
+use crate::delay::{InputKind, Settings, Verdict, check_growing, final_part};
 use crate::experiment::{Experiment, Joint, ReadOptions, is_text};
 use crate::report::decisions::step_line;
 use crate::report::{EstimatedJoint, Recording, decision_rows};
@@ -38,9 +38,6 @@ pub(crate) fn follow(args: &Args, runs: &[Settings], stream: &Stream) -> anyhow:
     let [settings] = runs else { bail!("--method: only one method at a time can be followed") };
     check_growing(settings).context("--follow")?;
     let settings = &as_it_grows(settings);
-    if args.algorithm.automatic().any() {
-        bail!("--follow: `auto` needs the whole record; give a number");
-    }
     let path = args.data.only_file().context("--follow")?;
     let mut log = Followed::of(&path, args)?;
     let interrupt = Interrupt::watch("at the log's end; Ctrl-C again ends at once");
@@ -172,8 +169,7 @@ impl Reported {
         let experiment = log.experiment();
         self.say_failures(args, &experiment);
         let own = OwnSettings::of(&experiment.options)?;
-        let asked = (settings.clone(), Automatic::default());
-        let of_joint = |joint: &Joint| own.of_joint(joint, &asked);
+        let of_joint = |joint: &Joint| own.of_joint(joint, settings);
         let estimates = estimate_each(&experiment.joints, of_joint, || (), &Threads);
         let pairs = experiment.joints.iter().zip(&estimates);
         let pairs = pairs.filter_map(|(joint, estimate)| Some((joint, estimate.as_ref().ok()?)));

@@ -40,10 +40,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let session = session.reviewed(review);
     let experiment = &session.experiment;
     let settings: Vec<_> = settings.iter().map(|one| session.in_samples(one)).collect();
-    let automatic = args.algorithm.automatic();
-    let results = session.in_threads(|| session.estimates(&settings, automatic))?;
-    let asked = (settings.as_slice(), automatic);
-    let others = others(&session, (&args.against, &args.data), asked, &results)?;
+    let results = session.in_threads(|| session.estimates(&settings))?;
+    let others = others(&session, (&args.against, &args.data), &settings, &results)?;
     let mut failures = results.first().map_or_else(Vec::new, |first| failures(experiment, first));
     let joints: Vec<_> = results.iter().map(|results| estimated(experiment, results)).collect();
     let runs: Vec<Run<'_>> =

@@ -8,7 +8,6 @@ use std::fs;
 use std::path::Path;
 
 use crate::batch::Threads;
-use crate::delay::Automatic;
 use crate::experiment::{Joint, Source};
 use crate::explain::{Improvement, Options, Revision, Verdict};
 use crate::model::{LogHash, ModelFile};
@@ -89,7 +88,7 @@ fn report(args: &Args, target: Option<&Target>, shown: Shown) -> anyhow::Result<
     let reading = args.data.options_with_others()?;
     let session = Session::begin("report", &args.data, &reading, (&args.output.run, stream))?;
     let mut session = session.reviewed(review);
-    let asked = (std::slice::from_ref(&settings), Automatic::default());
+    let asked = std::slice::from_ref(&settings);
     session.beside = others(&session, (&args.against, &args.data), asked, &[])?;
     let study = Study::of(session, &settings)?;
     if shown == Shown::Everything {

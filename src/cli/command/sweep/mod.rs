@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use crate::batch::Threads;
 use crate::delay::sweep::{Base, Grid};
-use crate::delay::{Automatic, EstimateError, Method, Settings};
+use crate::delay::{EstimateError, Method};
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::numerics::LowPass;
 use crate::report::sweep::sweep_json;
@@ -109,10 +109,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         if args.passband.is_some() { (grid, Vec::new()) } else { fitting(&grid, trials()) };
     let runs = (joints.len() * grid.runs().len()) as u64;
     let bar = Bar::new(verbosity, "sweeping", "runs", runs);
-    let own = |joint: &Joint, settings: &Settings| {
-        session.own().of_joint(joint, &(settings.clone(), Automatic::default())).0
-    };
-    let of_joint = |joint: &Joint| grid.with_settings(|settings| own(joint, settings));
+    let own = session.own();
+    let of_joint = |joint: &Joint| grid.with_settings(|settings| own.of_joint(joint, settings));
     let work = || sweep_joints(joints, of_joint, args.tolerance, || bar.step(), &Threads);
     let results = session.in_threads(work)?;
     drop(bar);
