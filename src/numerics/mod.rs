@@ -21,7 +21,7 @@ mod statistics;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub(crate) use autoregression::Autoregression;
+pub(crate) use autoregression::autoregression;
 pub use filter::{FilterError, LowPass, MAX_ORDER};
 pub use line::Line;
 pub(crate) use line::{PairSums, RunningLine};

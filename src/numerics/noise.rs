@@ -1,23 +1,13 @@
 //! Noise with a memory, and the filter that removes it.
 //!
-//! One model, an autoregression, and three ways to estimate it, which differ in what was
-//! fitted to the windows before: so many parameters each, columns that are known, or the mean.
+//! An autoregression, found in windows of which the mean was subtracted.
 
-use super::autoregression::Autoregression;
-use super::moments::{autocovariances, dot};
-
-/// Longest memory of the noise that is looked for in short windows, samples (chosen).
-const LONGEST_MEMORY: usize = 8;
+use super::autoregression::autoregression;
+use super::moments::dot;
 
 /// Longest memory of the noise in the residual of a model, samples: chosen; beyond it, noise
 /// cannot be separated from motion.
 const LONGEST_OF_RESIDUAL: usize = 12;
-
-/// Largest sum of the coefficients: noise that wanders is no noise about a line.
-const LARGEST_SUM: f64 = 0.98;
-
-/// Correlation of neighbours below which noise counts as white.
-const LEAST: f64 = 0.08;
 
 /// Values whose memory is taken away at a time: a processor adds a few at once.
 const LANES: usize = 8;
@@ -26,62 +16,11 @@ const LANES: usize = 8;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NoiseModel {
     coefficients: Vec<f64>,
-    /// `1 − Σ a_i`: what whitening makes of 1.
-    pub(crate) level: f64,
 }
 
 impl NoiseModel {
     pub(crate) fn white() -> Self {
-        Self::new(Vec::new())
-    }
-
-    fn new(coefficients: Vec<f64>) -> Self {
-        let level = 1.0 - coefficients.iter().sum::<f64>();
-        Self { coefficients, level }
-    }
-
-    /// Noise about a line, which does not wander.
-    fn about_line(mut coefficients: Vec<f64>) -> Self {
-        let sum: f64 = coefficients.iter().sum();
-        // With Σ a_i = 1, whitening would remove the level of the line itself.
-        if sum > LARGEST_SUM {
-            for a in &mut coefficients {
-                *a *= LARGEST_SUM / sum;
-            }
-        }
-        Self::new(coefficients)
-    }
-
-    /// Noise about a line; white where its memory is negligible.
-    fn of_found(found: Autoregression) -> Self {
-        // A first-order autoregression explains the square of its correlation.
-        let is_white = found.explained <= LEAST * LEAST;
-        if is_white { Self::white() } else { Self::about_line(found.coefficients) }
-    }
-
-    /// The noise in the residuals of many fits with so many `parameters` each.
-    ///
-    /// Each parameter removes the power of slow noise from the residuals, `S/n` from every
-    /// autocovariance, with `S` their sum over all lags and `n` the length of a fit; it is
-    /// put back.
-    pub(crate) fn of(residuals: &[Vec<f64>], parameters: usize) -> Self {
-        /// Times that `S` is estimated from what it corrects.
-        const ROUNDS: usize = 3;
-        // Whatever moves a few windows would be taken for the memory of all.
-        let usual = without_misfits(residuals);
-        let samples: usize = usual.iter().map(|window| window.len()).sum();
-        let length = samples as f64 / usual.len().max(1) as f64;
-        let measured = autocovariances(&usual, LONGEST_MEMORY.min(samples / 10));
-        let mut found = Autoregression::default();
-        for _ in 0..ROUNDS {
-            let noise = Self::about_line(found.coefficients.clone());
-            // S = σ²/(1 − Σ a_i)², with the innovations' variance σ².
-            let power = measured[0] * (1.0 - found.explained);
-            let removed = parameters as f64 / length.max(1.0) * power / noise.level.powi(2);
-            let whole: Vec<f64> = measured.iter().map(|value| value + removed).collect();
-            found = Autoregression::of(&whole, samples);
-        }
-        Self::of_found(found)
+        Self { coefficients: Vec::new() }
     }
 
     /// The noise in the residual of a model, of which the mean of each window was subtracted.
@@ -93,14 +32,16 @@ impl NoiseModel {
         const TURNS: usize = 6;
         let measured = covariances_of_pairs(windows);
         let samples: usize = windows.iter().map(Vec::len).sum();
-        let mut noise = Self::new(Autoregression::of(&measured, samples).coefficients);
+        let found =
+            |covariances: &[f64]| Self { coefficients: autoregression(covariances, samples) };
+        let mut noise = found(&measured);
         for _ in 0..TURNS {
             if noise.order() == 0 {
                 break;
             }
             let removed = noise.mean_variance(windows, measured[0]);
             let whole: Vec<f64> = measured.iter().map(|value| value + removed).collect();
-            noise = Self::new(Autoregression::of(&whole, samples).coefficients);
+            noise = found(&whole);
         }
         noise
     }
@@ -108,17 +49,6 @@ impl NoiseModel {
     /// Samples of its memory.
     pub(crate) fn order(&self) -> usize {
         self.coefficients.len()
-    }
-
-    /// `|1 − Σ a_i e^(−iωi)|²`: what whitening makes of power at `omega` radians per sample.
-    pub(crate) fn memory_gain(&self, omega: f64) -> f64 {
-        let terms = self.coefficients.iter().zip(1..);
-        let part = |(real, imaginary): (f64, f64), (a, i): (&f64, i32)| {
-            let (sine, cosine) = (omega * f64::from(i)).sin_cos();
-            (real - a * cosine, imaginary + a * sine)
-        };
-        let (real, imaginary) = terms.fold((1.0, 0.0), part);
-        real * real + imaginary * imaginary
     }
 
     /// The variance of the mean of a window, averaged over the samples in them, where the
@@ -230,30 +160,10 @@ fn covariances_of_pairs(windows: &[Vec<f64>]) -> Vec<f64> {
     (0..=LONGEST_OF_RESIDUAL.min(samples / 10)).map(covariance).collect()
 }
 
-/// Those whose mean square is not far larger than that of most: the residual of the others is no
-/// noise.
-fn without_misfits(windows: &[Vec<f64>]) -> Vec<&[f64]> {
-    /// Times the median of the mean squares (chosen).
-    const MISFIT: f64 = 2.5;
-    let power = |window: &Vec<f64>| dot(window, window) / window.len().max(1) as f64;
-    let powers: Vec<f64> = windows.iter().map(power).collect();
-    let mut sorted = powers.clone();
-    sorted.sort_by(f64::total_cmp);
-    let limit = sorted.get(sorted.len() / 2).map_or(0.0, |median| MISFIT * median);
-    let usual = windows.iter().zip(powers).filter(|(_, power)| *power <= limit);
-    usual.map(|(window, _)| window.as_slice()).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::numerics::testing::noise;
-
-    #[test]
-    fn little_memory_is_none() {
-        let signal = noise(3, 0.0, 400);
-        assert_eq!(NoiseModel::of(&[signal], 2).order(), 0);
-    }
 
     /// Noise of first order in windows, each without its mean.
     fn windows(rho: f64, length: usize, count: usize) -> Vec<Vec<f64>> {
@@ -283,7 +193,8 @@ mod tests {
 
     #[test]
     fn correlations_of_first_order_are_powers() {
-        for (lag, found) in NoiseModel::new(vec![0.9]).correlations(50).into_iter().enumerate() {
+        let noise = NoiseModel { coefficients: vec![0.9] };
+        for (lag, found) in noise.correlations(50).into_iter().enumerate() {
             let expected = 0.9_f64.powi(i32::try_from(lag).unwrap());
             assert!((found - expected).abs() < 1e-3);
         }
