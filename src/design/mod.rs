@@ -9,7 +9,6 @@
 //! An input is good where the best fit of the wrong model is far from what the right one does
 //! (T-optimality; Atkinson and Fedorov 1975): see [`Expected`].
 
-mod difference;
 mod distance;
 mod explore;
 mod family;
@@ -39,7 +38,6 @@ mod suspects;
 mod trend;
 mod within_range;
 
-pub use difference::{Apart, HoldApart, apart};
 pub use free_run::{FreeRunError, RESERVE};
 pub(crate) use levels::{default_hold_s, default_largest, default_levels};
 pub use limits::Limits;

@@ -2,13 +2,13 @@
 
 use super::compose::files;
 use super::document::{Block, Document, Figure, WIDTH, slug};
-use crate::design::{Apart, Prediction, apart};
+use crate::design::Prediction;
 use crate::experiment::Source;
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, thinned_places};
 use crate::report::TextTable;
 use crate::report::design::{DesignedJoint, Held, holds};
 use crate::report::design_words::{design_sentences, side_table};
-use crate::wording::{bracketed, measure, number, percent};
+use crate::wording::{bracketed, measure, number};
 
 /// Points of a line: two for each column that is seen.
 const POINTS: usize = 1500;
@@ -31,28 +31,16 @@ fn of_joint(joint: &DesignedJoint) -> Vec<Block> {
     blocks.extend(sentences.next().map(Block::Lead));
     blocks.extend(joint.discrimination.as_ref().map(|found| Block::Table(side_table(found))));
     blocks.push(Block::List(sentences.collect()));
-    let difference = difference(joint);
-    blocks.push(Block::Figures(vec![figure(joint, difference.as_ref())]));
-    let table = hold_table(joint, difference.as_ref());
-    blocks.push(Block::details("All levels", vec![Block::Table(table)]));
+    blocks.push(Block::Figures(vec![figure(joint)]));
+    blocks.push(Block::details("All levels", vec![Block::Table(hold_table(joint))]));
     blocks
 }
 
-/// Where two suspects differ.
-fn difference(joint: &DesignedJoint) -> Option<Apart> {
-    let noise = joint.discrimination.as_ref()?.noise;
-    match joint.expected().as_slice() {
-        [(_, one), (_, other)] => Some(apart(&joint.schedule, &one.output, &other.output, noise)),
-        _ => None,
-    }
-}
-
-/// Input, expected outputs with their margin, and their difference over time.
-fn figure(joint: &DesignedJoint, difference: Option<&Apart>) -> Figure {
+/// Input, and expected outputs with their margin.
+fn figure(joint: &DesignedJoint) -> Figure {
     let x = Axis::new(Span::new(0.0, joint.schedule.duration_s()), "time [s]", 10.0);
     let mut panels = vec![input(joint, &x)];
     panels.extend((!joint.expected().is_empty()).then(|| output(joint, &x)));
-    panels.extend(difference.map(|found| over_noise(joint, found, &x)));
     let last = panels.len() - 1;
     panels.iter_mut().take(last).for_each(|panel| panel.x = x.bare());
     Figure {
@@ -61,8 +49,7 @@ fn figure(joint: &DesignedJoint, difference: Option<&Apart>) -> Figure {
         width: WIDTH,
         panels,
         caption: "The input and the expected output; thin lines are two standard deviations of \
-                  the prediction away from it. The difference of the two effects starts at zero \
-                  at each step, as in a fit."
+                  the prediction away from it."
             .to_owned(),
     }
 }
@@ -110,37 +97,13 @@ fn output(joint: &DesignedJoint, x: &Axis) -> Panel {
     Panel { x: x.clone(), y, height: 190, marks }
 }
 
-fn over_noise(joint: &DesignedJoint, found: &Apart, x: &Axis) -> Panel {
-    let y = Span::around(found.over_noise.iter().copied().chain([0.0]), 0.06);
-    let difference = Shape::Lines(vec![line(joint, found.over_noise.iter().copied())], 1.2);
-    let marks = vec![Mark::new(Role::Error, difference)];
-    Panel { x: x.clone(), y: Axis::new(y, "difference [noise]", 4.0), height: 110, marks }
-}
-
-/// A row per level: when and how long, and how far the suspects are apart.
-fn hold_table(joint: &DesignedJoint, difference: Option<&Apart>) -> TextTable {
-    let header = [
-        "trial",
-        "from [s]",
-        "level",
-        "held [s]",
-        "difference [noise]",
-        "of the squared \
-         difference",
-    ];
+/// A row per level: when and how long.
+fn hold_table(joint: &DesignedJoint) -> TextTable {
     let unit = joint.rig.input_unit.as_deref();
-    let row = |(place, hold): (usize, Held)| {
-        let own = difference.and_then(|found| found.holds.get(place));
-        let cell = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
-        [
-            hold.trial.to_string(),
-            number(hold.start_s),
-            measure(hold.level, unit),
-            number(hold.hold_s),
-            cell(own.map(|own| measure(own.largest, None))),
-            cell(own.map(|own| percent(own.share))),
-        ]
+    let row = |hold: Held| {
+        let (start, hold_s) = (number(hold.start_s), number(hold.hold_s));
+        [hold.trial.to_string(), start, measure(hold.level, unit), hold_s]
     };
-    let rows = holds(&joint.schedule).into_iter().enumerate().map(row);
-    TextTable::of(header, &[0, 1, 2, 3, 4, 5], rows)
+    let rows = holds(&joint.schedule).into_iter().map(row);
+    TextTable::of(["trial", "from [s]", "level", "held [s]"], &[0, 1, 2, 3], rows)
 }
