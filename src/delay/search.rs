@@ -19,6 +19,8 @@ pub struct Candidates {
     best: Option<Candidate>,
     second: Option<Candidate>,
     spread: f64,
+    /// The squared error of one line through all rows.
+    one_line: f64,
     /// Squared errors of all, where these were kept.
     sse: Vec<f64>,
     /// Lines before and after each breakpoint, where these were kept.
@@ -85,6 +87,9 @@ impl Candidates {
         // digits.
         found.fit_before(values, offset);
         found.fit_after(values, offset);
+        let mut all = RunningLine::default();
+        values.iter().for_each(|y| all.push(y - offset));
+        found.one_line = all.sse();
         // Algorithm 1: q_i is where SSE_f is least.
         let best = found.lowest(TIE * sum_of_squares(values, offset), latest);
         found.count = found.sse.len();
@@ -188,6 +193,12 @@ impl Candidates {
         let neighbours = chosen.checked_sub(1).into_iter().chain([chosen + 1]);
         let neighbour = neighbours.filter(|index| *index < self.sse.len()).min_by(least);
         valley.or(neighbour)
+    }
+
+    /// The part of the squared error of one line that the best pair removes: `1 − SSE₂ / SSE₁`.
+    pub(super) fn explained(&self) -> f64 {
+        let left = self.best.map_or(0.0, |best| best.sse);
+        if self.one_line > 0.0 { (1.0 - left / self.one_line).max(0.0) } else { 0.0 }
     }
 
     /// Samples from one candidate to the next.
