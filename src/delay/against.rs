@@ -4,9 +4,7 @@
 //! whether the delay rises or falls with it. Starts, stops, changes and reversals are compared
 //! each among themselves: together they would show how they differ, not what each depends on.
 
-use std::sync::Arc;
-
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::estimate::TrialEstimate;
 use super::neutral::{Neutral, Transition};
@@ -23,8 +21,7 @@ const LEVEL: f64 = 0.05;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepState {
     /// Label of the trial; all steps of a trial share it.
-    #[serde(serialize_with = "label")]
-    pub trial: Arc<str>,
+    pub trial: String,
     /// `i`: number of the step in its trial, from 1.
     pub number: usize,
     /// Which kind of step it is.
@@ -48,11 +45,6 @@ pub struct StepState {
     /// Mean of each further signal over the five samples before the input step, in the
     /// order of [`Joint::covariates`]; none where it was not measured.
     pub covariates: Vec<Option<f64>>,
-}
-
-/// As text: serde does so for no `Arc`.
-fn label<S: Serializer>(label: &Arc<str>, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(label)
 }
 
 /// How the delay goes with one variable.
@@ -178,7 +170,7 @@ fn states<'a>(
     neutral: Option<&'a Neutral>,
 ) -> impl Iterator<Item = StepState> + 'a {
     let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
-    let (label, period_s): (Arc<str>, _) = (trial.label().into(), trial.period().seconds());
+    let period_s = trial.period().seconds();
     let decisions = estimate.decisions.iter().enumerate();
     decisions.filter_map(move |(index, decision)| {
         let (delay, best) = (decision.accepted_delay()?, decision.breakpoint()?);
@@ -187,7 +179,7 @@ fn states<'a>(
         let dwell = before.map(|before| step.sample - before.input_step.sample);
         let covariate = |signal: &Vec<f64>| mean_before(signal, step.sample);
         Some(StepState {
-            trial: Arc::clone(&label),
+            trial: trial.label().to_owned(),
             number: decision.number,
             transition: Transition::of(&step, neutral),
             delay_s: delay * period_s,

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::coming_to_rest::ComingToRest;
 use super::decision::{Decision, ReviewerVerdict};
 use super::input_motion::{InputKind, InputMotion};
 use super::neutral::Neutral;
@@ -11,7 +10,8 @@ use super::prepared::Prepared;
 use super::profile::DelayProfile;
 use super::settings::{FirstLast, Interpolation, Settings};
 use super::spec::Method;
-use super::tracking::Tracking;
+use super::stops::{Stops, stops};
+use super::tracking::{Tracking, tracking};
 use crate::experiment::{Record, Trial};
 use crate::numerics::FilterError;
 
@@ -101,7 +101,10 @@ pub(crate) struct Estimator {
     /// Those that were asked for, with what the input is taken for.
     settings: Settings,
     model: Option<Arc<OnsetModel>>,
-    rest: ComingToRest,
+    /// Where the output comes to rest where its input says, and else at which stops: not asked by the
+    /// letter of the paper, and of a record that still grows or has no steps.
+    tracking: Option<Tracking>,
+    stops: Option<Stops>,
     motion: InputMotion,
 }
 
@@ -118,20 +121,38 @@ impl Estimator {
         if settings.method == Method::AUTO && (settings.paper || settings.grows) {
             settings.method = Method::TWO_LINE;
         }
-        let rest = ComingToRest::of(trials, &settings);
-        let model = settings.method.spec().has_intervals.then(|| {
-            // Onsets are found in what was measured.
-            let unsmoothed = Settings { low_pass: None, ..settings.clone() };
-            let mut prepared = Prepared::all(trials, &unsmoothed);
-            for trial in &mut prepared {
-                rest.bound(trial, &settings.at(trial.period));
-            }
-            let period = prepared.first().map(|trial| trial.period);
-            // A response is looked for in the trials of the first one's period.
-            let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
-            settings.method.shared(&prepared, Neutral::of(trials), &settings)
-        });
-        Self { settings, model: model.flatten().map(Arc::new), rest, motion }
+        let asks = !settings.paper && !settings.grows && settings.input != InputKind::Continuous;
+        let tracking = asks.then(|| tracking(trials)).flatten();
+        let stops = asks.then(|| stops(trials)).flatten();
+        let mut estimator = Self { settings, model: None, tracking, stops, motion };
+        estimator.model = estimator.model_of(trials).map(Arc::new);
+        estimator
+    }
+
+    /// What the method finds out from all `trials` of the joint.
+    fn model_of(&self, trials: &Record) -> Option<OnsetModel> {
+        let settings = &self.settings;
+        if !settings.method.spec().has_intervals {
+            return None;
+        }
+        // Onsets are found in what was measured.
+        let unsmoothed = Settings { low_pass: None, ..settings.clone() };
+        let mut prepared = Prepared::all(trials, &unsmoothed);
+        for trial in &mut prepared {
+            self.bound(trial, &settings.at(trial.period));
+        }
+        // A response is looked for in the trials of the first one's period.
+        let settings = settings.at(prepared.first()?.period);
+        settings.method.shared(&prepared, Neutral::of(trials), &settings)
+    }
+
+    /// Bounds what says anything of each step of `trial` by where the output comes to rest.
+    fn bound(&self, trial: &mut Prepared<'_>, settings: &Settings) {
+        if let Some(tracking) = &self.tracking {
+            tracking.bound(trial, settings);
+        } else if let Some(stops) = &self.stops {
+            stops.bound(trial);
+        }
     }
 
     /// How the input of the joint moves.
@@ -146,11 +167,11 @@ impl Estimator {
     pub(crate) fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
         let settings = self.settings.at(trial.period());
         let mut prepared = Prepared::of(trial, &settings)?;
-        self.rest.bound(&mut prepared, &settings);
+        self.bound(&mut prepared, &settings);
         let decisions = settings.method.decide(&prepared, self.model.as_deref(), &settings);
         let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
         let (label, smoothed) = (trial.label().to_owned(), prepared.smoothed);
-        let (onset_model, tracking) = (self.model.clone(), self.rest.tracking());
+        let (onset_model, tracking) = (self.model.clone(), self.tracking);
         Ok(TrialEstimate { label, smoothed, decisions, profile, onset_model, tracking })
     }
 }

@@ -32,7 +32,6 @@
 //! Sample numbers are the paper's: counted from 1 within the trial.
 
 mod against;
-mod coming_to_rest;
 mod condition;
 mod dead_time;
 mod decision;
@@ -77,7 +76,7 @@ pub(crate) use first_order::{FirstOrder, followed};
 pub use growing::Growing;
 pub(crate) use growing::{check_growing, final_part};
 pub(crate) use held_input::held_inputs;
-pub(crate) use hold::level_tolerance;
+pub(crate) use hold::{alike, level_tolerance};
 pub use input_motion::{InputKind, InputMotion};
 pub use interval::FineDelay;
 pub(crate) use margin::Remedy;
