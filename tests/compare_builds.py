@@ -76,7 +76,7 @@ def runs(args, folder):
     for log in ("manipulator", "worked_example", "hidden_effect"):
         path = str(ROOT / "data" / f"{log}.csv")
         yield from ((f"{log}: {n}", a) for n, a in estimates(path, [], []))
-        yield f"{log}: settings", ["estimate", path, "--alpha", "auto", "--passband", "none",
+        yield f"{log}: settings", ["estimate", path, "--alpha", "20", "--passband", "none",
                                    "--output-limits", "-20,60", "--interpolate", "linear",
                                    "--format", "json", "--decisions", "d.csv"]
         yield f"{log}: sweep", ["sweep", path, "--alpha", "5,10", "--beta", "2,5", "--format", "json"]
