@@ -81,14 +81,4 @@ mod tests {
         let (shortest, longest) = default_hold_s(Some(&banded().with(lag)), &rig, 3.0);
         assert!(shortest > 2.0 * (0.2 + 0.9) - 0.1 && longest > 2.0 * shortest);
     }
-
-    #[test]
-    fn a_band_is_crossed_or_avoided() {
-        let applied = |band: Band, levels: &[f64]| band.applied(levels, || Some((-0.4, 0.6)));
-        assert_eq!(applied(Band::Cross, &[-2.0, 2.0]), Some(vec![-2.0, 0.1, 2.0]));
-        assert_eq!(applied(Band::Cross, &[-2.0, 0.0, 2.0]), Some(vec![-2.0, 0.0, 2.0]));
-        assert_eq!(applied(Band::Avoid, &[-2.0, 0.0, 0.6, 2.0]), Some(vec![-2.0, 2.0]));
-        assert_eq!(applied(Band::Given(-0.1, 3.0), &[-2.0, 0.0, 2.0]), Some(vec![-2.0]));
-        assert_eq!(Band::Avoid.applied(&[-2.0, 2.0], || None), None);
-    }
 }
