@@ -395,9 +395,6 @@ class DesignOptions(ReadOptions, total=False):
     start: float | None
     """The output at which it starts [default: the middle of the range; without one, of the log, or
     0]."""
-    dead_band: tuple[float, float] | str | Literal["cross", "avoid"] | None
-    """`cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a band
-    that must contain no level."""
     separate: str | Sequence[str] | None
     """Two effects to distinguish. The model has one of them, or a log is given."""
     power: float | None

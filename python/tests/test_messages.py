@@ -17,7 +17,7 @@ LOG = Path(__file__).parents[2] / "data" / "hidden_effect.csv"
 @pytest.mark.parametrize(
     ("said", "expected"),
     [
-        ("invalid value 'x' for '--alpha <N|Xs|auto>': a", "invalid value 'x' for `alpha=`: a"),
+        ("invalid value 'x' for '--alpha <N|Xs>': a", "invalid value 'x' for `alpha=`: a"),
         ("'--paper' cannot go with:\n  --beta <N>", "`paper=True` cannot go with:\n  `beta=`"),
         ("`--fill SECONDS` fills; `--trial none`", '`fill=SECONDS` fills; `trial="none"`'),
         ("`--joint NAME=IN:OUT` says which", '`joint="NAME=IN:OUT"` says which'),

@@ -103,13 +103,7 @@ fn on_growing(error: Growing) -> String {
 
 fn on_plan(error: &PlanError) -> String {
     let text = match error {
-        PlanError::TooFewLevels => "; `--levels` and `--dead-band` say which there are",
-        PlanError::NoDeadBand { has_model: true } => {
-            "; `--dead-band` takes its ends, as in -0.4,0.4"
-        }
-        PlanError::NoDeadBand { has_model: false } => {
-            "; give `--model`, or its ends with `--dead-band`, as in -0.4,0.4"
-        }
+        PlanError::TooFewLevels => "; `--levels` says which there are",
         PlanError::HoldTooLong { .. } => "; choose a shorter `--hold`, or a longer `--duration`",
         PlanError::ErrorUnknown => "; give a longer log, or `--model` alone",
         PlanError::Elsewhere { .. } => "; give an `--output-range` there, or a log of this range",

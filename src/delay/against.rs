@@ -4,14 +4,12 @@
 //! whether the delay rises or falls with it. Starts, stops, changes and reversals are compared
 //! each among themselves: together they would show how they differ, not what each depends on.
 
-use std::sync::Arc;
-
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::estimate::TrialEstimate;
 use super::neutral::{Neutral, Transition};
 use crate::experiment::{Joint, Trial};
-use crate::numerics::{RankTest, holm, mann_whitney, median, spearman};
+use crate::numerics::{holm, spearman};
 
 /// Samples before an input step over which a further signal is averaged.
 const COVARIATE_SAMPLES: usize = 5;
@@ -23,8 +21,7 @@ const LEVEL: f64 = 0.05;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepState {
     /// Label of the trial; all steps of a trial share it.
-    #[serde(serialize_with = "label")]
-    pub trial: Arc<str>,
+    pub trial: String,
     /// `i`: number of the step in its trial, from 1.
     pub number: usize,
     /// Which kind of step it is.
@@ -50,11 +47,6 @@ pub struct StepState {
     pub covariates: Vec<Option<f64>>,
 }
 
-/// As text: serde does so for no `Arc`.
-fn label<S: Serializer>(label: &Arc<str>, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(label)
-}
-
 /// How the delay goes with one variable.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Correlation {
@@ -75,35 +67,15 @@ pub struct Correlation {
     pub significant: bool,
 }
 
-/// How the delay differs between steps up and steps down.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Direction {
-    /// Accepted steps to a higher level.
-    pub up: usize,
-    /// Accepted steps to a lower level.
-    pub down: usize,
-    /// Median delay of steps up minus that of steps down, seconds.
-    pub median_difference_s: Option<f64>,
-    /// Two-sided Mann-Whitney p-value, see [`mann_whitney`]; none with fewer than four
-    /// steps, as for a correlation.
-    pub p_value: Option<f64>,
-    /// The p-value after Holm's correction for all variables of the joint.
-    pub p_holm: Option<f64>,
-    /// Whether that is at most 0.05.
-    pub significant: bool,
-}
-
 /// The accepted delays of a joint against its state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgainstState {
     /// The accepted steps of all trials, in their order.
     pub steps: Vec<StepState>,
-    /// Of the steps of all kinds: average speed, step size, dwell, angle, time, then the
-    /// further signals.
+    /// Of the steps of all kinds: average speed, step size, direction (1 up, −1 down), dwell, angle,
+    /// time, then the further signals.
     pub correlations: Vec<Correlation>,
-    /// Steps up against steps down, of all kinds.
-    pub direction: Direction,
-    /// Correlations and directions for the steps of each kind that there is.
+    /// Correlations for the steps of each kind that there is.
     #[serde(rename = "by_transition")]
     pub kinds: Vec<AgainstOfKind>,
 }
@@ -117,8 +89,6 @@ pub struct AgainstOfKind {
     pub steps: usize,
     /// As in [`AgainstState::correlations`].
     pub correlations: Vec<Correlation>,
-    /// Steps up against steps down.
-    pub direction: Direction,
     /// Pairs of variables on each of which the delay depends, and which go with one another: the
     /// record does not show which of them it is.
     pub confounded: Vec<[String; 2]>,
@@ -127,11 +97,8 @@ pub struct AgainstOfKind {
 impl AgainstState {
     /// Whether the delay of all steps, or of those of one kind, depends significantly on something.
     pub(crate) fn has_dependence(&self) -> bool {
-        let kinds = self.kinds.iter().map(|kind| (&kind.correlations, &kind.direction));
-        let mut all = std::iter::once((&self.correlations, &self.direction)).chain(kinds);
-        all.any(|(correlations, direction)| {
-            direction.significant || correlations.iter().any(|one| one.significant)
-        })
+        let of_kinds = self.kinds.iter().flat_map(|kind| &kind.correlations);
+        self.correlations.iter().chain(of_kinds).any(|one| one.significant)
     }
 
     /// Compares the delays of `joint`, by the kinds of steps about its `neutral` input;
@@ -146,60 +113,52 @@ impl AgainstState {
         let steps: Vec<_> =
             estimated.flat_map(|(trial, found)| states(trial, found, neutral)).collect();
         let all: Vec<&StepState> = steps.iter().collect();
-        let (correlations, direction) = compare(joint, &all);
+        let correlations = compare(joint, &all);
         let kinds = Transition::ALL.into_iter().filter_map(|kind| {
             let same = steps.iter().filter(|step| step.transition == kind);
             let same: Vec<&StepState> = same.collect();
-            let (correlations, direction) = compare(joint, &same);
+            let correlations = compare(joint, &same);
             (!same.is_empty()).then(|| AgainstOfKind {
                 transition: kind,
                 steps: same.len(),
-                confounded: confounded(&same, &correlations, &direction),
+                confounded: confounded(&same, &correlations),
                 correlations,
-                direction,
             })
         });
-        Self { kinds: kinds.collect(), steps, correlations, direction }
+        Self { kinds: kinds.collect(), steps, correlations }
     }
 }
 
-/// The delays of `steps` against every variable and direction, corrected for their number.
-fn compare(joint: &Joint, steps: &[&StepState]) -> (Vec<Correlation>, Direction) {
+/// The delays of `steps` against every variable, with Holm's correction for their number.
+fn compare(joint: &Joint, steps: &[&StepState]) -> Vec<Correlation> {
     let named = variables(joint).into_iter().enumerate();
     let mut correlations: Vec<_> =
         named.map(|(number, variable)| correlate(steps, number, variable)).collect();
-    let mut direction = Direction::of(steps);
-    correct(&mut correlations, &mut direction);
-    (correlations, direction)
+    let tested = correlations.iter_mut().filter_map(|one| Some((one.p_value?, one)));
+    let (p_values, tested): (Vec<f64>, Vec<&mut Correlation>) = tested.unzip();
+    for (corrected, one) in holm(&p_values).into_iter().zip(tested) {
+        one.p_holm = Some(corrected);
+        one.significant = corrected <= LEVEL;
+    }
+    correlations
 }
 
 /// The pairs, of what the delay depends on in `steps`, that go with one another.
-fn confounded(
-    steps: &[&StepState],
-    correlations: &[Correlation],
-    direction: &Direction,
-) -> Vec<[String; 2]> {
+fn confounded(steps: &[&StepState], correlations: &[Correlation]) -> Vec<[String; 2]> {
     /// Rank correlation of two variables (chosen).
     const TOGETHER: f64 = 0.8;
-    let value = |step: &StepState, variable: Option<usize>| match variable {
-        Some(number) => step.value(number),
-        None => Some(f64::from(u8::from(step.input_change > 0.0))),
-    };
-    let numbered = correlations.iter().enumerate().filter(|(_, one)| one.significant);
-    let depends: Vec<(&str, Option<usize>)> = numbered
-        .map(|(number, one)| (one.variable.as_str(), Some(number)))
-        .chain(direction.significant.then_some(("direction", None)))
-        .collect();
-    let go_together = |one: Option<usize>, other: Option<usize>| {
-        let pair = |step: &&StepState| Some((value(step, one)?, value(step, other)?));
+    let depends: Vec<usize> =
+        (0..correlations.len()).filter(|number| correlations[*number].significant).collect();
+    let go_together = |one: usize, other: usize| {
+        let pair = |step: &&StepState| Some((step.value(one)?, step.value(other)?));
         let (one, other): (Vec<f64>, Vec<f64>) = steps.iter().filter_map(pair).unzip();
         spearman(&one, &other).is_some_and(|test| test.statistic.abs() >= TOGETHER)
     };
     let mut pairs = Vec::new();
-    for (index, (one, number)) in depends.iter().enumerate() {
-        let others = depends.iter().skip(index + 1);
-        let others = others.filter(|(_, other)| go_together(*number, *other));
-        pairs.extend(others.map(|(other, _)| [(*one).to_owned(), (*other).to_owned()]));
+    for (index, one) in depends.iter().enumerate() {
+        let others = depends.iter().skip(index + 1).filter(|other| go_together(*one, **other));
+        pairs
+            .extend(others.map(|other| [*one, *other].map(|it| correlations[it].variable.clone())));
     }
     pairs
 }
@@ -211,7 +170,7 @@ fn states<'a>(
     neutral: Option<&'a Neutral>,
 ) -> impl Iterator<Item = StepState> + 'a {
     let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
-    let (label, period_s): (Arc<str>, _) = (trial.label().into(), trial.period().seconds());
+    let period_s = trial.period().seconds();
     let decisions = estimate.decisions.iter().enumerate();
     decisions.filter_map(move |(index, decision)| {
         let (delay, best) = (decision.accepted_delay()?, decision.breakpoint()?);
@@ -220,7 +179,7 @@ fn states<'a>(
         let dwell = before.map(|before| step.sample - before.input_step.sample);
         let covariate = |signal: &Vec<f64>| mean_before(signal, step.sample);
         Some(StepState {
-            trial: Arc::clone(&label),
+            trial: trial.label().to_owned(),
             number: decision.number,
             transition: Transition::of(&step, neutral),
             delay_s: delay * period_s,
@@ -253,6 +212,7 @@ fn variables(joint: &Joint) -> Vec<(&str, Option<String>)> {
     let own = [
         ("average_speed", speed),
         ("step_size", joint.input_unit.clone()),
+        ("direction", None),
         ("dwell", seconds()),
         ("angle", joint.output_unit.clone()),
         ("time", seconds()),
@@ -268,10 +228,11 @@ impl StepState {
         match variable {
             0 => Some(self.average_speed),
             1 => Some(self.input_change.abs()),
-            2 => self.dwell_s,
-            3 => Some(self.angle),
-            4 => Some(self.time_s),
-            further => self.covariates.get(further - 5).copied().flatten(),
+            2 => Some(self.input_change.signum()),
+            3 => self.dwell_s,
+            4 => Some(self.angle),
+            5 => Some(self.time_s),
+            further => self.covariates.get(further - 6).copied().flatten(),
         }
     }
 }
@@ -293,45 +254,6 @@ fn correlate(
         p_value: test.map(|test| test.p_value),
         p_holm: None,
         significant: false,
-    }
-}
-
-impl Direction {
-    /// Steps below which neither variables nor directions are compared.
-    const MIN_STEPS: usize = 4;
-
-    fn of(steps: &[&StepState]) -> Self {
-        let delays = |up: bool| {
-            let same = steps.iter().filter(|step| (step.input_change > 0.0) == up);
-            same.map(|step| step.delay_s).collect::<Vec<f64>>()
-        };
-        let (up, down) = (delays(true), delays(false));
-        let enough = steps.len() >= Self::MIN_STEPS;
-        let test: Option<RankTest> = mann_whitney(&up, &down).filter(|_| enough);
-        let medians = median(&up).zip(median(&down));
-        Self {
-            up: up.len(),
-            down: down.len(),
-            median_difference_s: medians.map(|(up, down)| up - down),
-            p_value: test.map(|test| test.p_value),
-            p_holm: None,
-            significant: false,
-        }
-    }
-}
-
-/// Holm's correction over all tests of the joint.
-fn correct(correlations: &mut [Correlation], direction: &mut Direction) {
-    let tests =
-        correlations.iter_mut().map(|one| (one.p_value, &mut one.p_holm, &mut one.significant));
-    let last = (direction.p_value, &mut direction.p_holm, &mut direction.significant);
-    let (p_values, flags): (Vec<f64>, Vec<_>) = tests
-        .chain([last])
-        .filter_map(|(p_value, p_holm, significant)| Some((p_value?, (p_holm, significant))))
-        .unzip();
-    for (corrected, (p_holm, significant)) in holm(&p_values).into_iter().zip(flags) {
-        *p_holm = Some(corrected);
-        *significant = corrected <= LEVEL;
     }
 }
 

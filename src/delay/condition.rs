@@ -43,72 +43,88 @@ impl Condition {
 
     /// Its name in files and tables.
     pub fn id(self) -> &'static str {
-        match self {
-            Self::FirstOrLast => "first_or_last",
-            Self::OutputLimit => "output_limit",
-            Self::BeforeInput => "before_input",
-            Self::SlopeChange => "slope_change",
-            Self::ShortHold => "short_hold",
-            Self::Sse => "sse",
-            Self::TooShort => "too_short",
-            Self::AtRest => "at_rest",
-            Self::NothingHappened => "nothing_happened",
-            Self::Reviewer => "reviewer",
-        }
+        self.words()[0]
     }
 
     /// What is wrong when it fails, in words.
     pub(crate) fn meaning(self) -> &'static str {
-        match self {
-            Self::FirstOrLast => "first or last step of the trial",
-            Self::OutputLimit => "output touches a limit",
-            Self::BeforeInput => "breakpoint before the input step",
-            Self::SlopeChange => "slope changes too little",
-            Self::ShortHold => "input held too short",
-            Self::Sse => "lines fit too badly",
-            Self::TooShort => "segment too short for two lines",
-            Self::AtRest => "joint at rest, before and after",
-            Self::NothingHappened => "no reaction beyond the noise",
-            Self::Reviewer => "rejected by a reviewer",
-        }
+        self.words()[1]
     }
 
     /// What is so where it is met, in few words.
     #[cfg(feature = "rrd")]
     pub(crate) fn when_met(self) -> &'static str {
-        match self {
-            Self::FirstOrLast => "not first or last",
-            Self::OutputLimit => "output in its limits",
-            Self::BeforeInput => "break after step",
-            Self::SlopeChange => "slope changes",
-            Self::ShortHold => "next step far off",
-            Self::Sse => "lines fit",
-            Self::TooShort => "room for two lines",
-            Self::AtRest => "joint moves",
-            Self::NothingHappened => "more than noise",
-            Self::Reviewer => "no reviewer's word",
-        }
+        self.words()[2]
     }
 
     /// What it asks for, in a sentence without its end.
     pub fn asks(self) -> &'static str {
+        self.words()[3]
+    }
+
+    /// Its id, what is wrong when it fails, what is so where it is met, and what it asks for.
+    fn words(self) -> [&'static str; 4] {
         match self {
-            Self::FirstOrLast => "the step is neither the first nor the last of the trial",
-            Self::OutputLimit => "no sample of the segment touches a limit of the output",
-            Self::BeforeInput => "the breakpoint q is not before the input step p",
-            Self::SlopeChange => {
-                "the slopes of the lines before and after q differ by at least the limit"
-            }
-            Self::ShortHold => {
-                "the input is held at its new level for at least as many samples as the limit"
-            }
-            Self::Sse => "the sum of squared errors of both lines is below the limit",
-            Self::TooShort => "the segment has two rows of β samples, one for each line",
-            Self::AtRest => "the joint moves after the step, and is not at rest or at its stop",
-            Self::NothingHappened => {
-                "the slope changes by more than noise explains: the p-value is not above the limit"
-            }
-            Self::Reviewer => "no person rejected the step",
+            Self::FirstOrLast => [
+                "first_or_last",
+                "first or last step of the trial",
+                "not first or last",
+                "the step is neither the first nor the last of the trial",
+            ],
+            Self::OutputLimit => [
+                "output_limit",
+                "output touches a limit",
+                "output in its limits",
+                "no sample of the segment touches a limit of the output",
+            ],
+            Self::BeforeInput => [
+                "before_input",
+                "breakpoint before the input step",
+                "break after step",
+                "the breakpoint q is not before the input step p",
+            ],
+            Self::SlopeChange => [
+                "slope_change",
+                "slope changes too little",
+                "slope changes",
+                "the slopes of the lines before and after q differ by at least the limit",
+            ],
+            Self::ShortHold => [
+                "short_hold",
+                "input held too short",
+                "next step far off",
+                "the input is held at its new level for at least as many samples as the limit",
+            ],
+            Self::Sse => [
+                "sse",
+                "lines fit too badly",
+                "lines fit",
+                "the sum of squared errors of both lines is below the limit",
+            ],
+            Self::TooShort => [
+                "too_short",
+                "segment too short for two lines",
+                "room for two lines",
+                "the segment has two rows of β samples, one for each line",
+            ],
+            Self::AtRest => [
+                "at_rest",
+                "joint at rest, before and after",
+                "joint moves",
+                "the joint moves after the step, and is not at rest or at its stop",
+            ],
+            Self::NothingHappened => [
+                "nothing_happened",
+                "no reaction beyond the noise",
+                "more than noise",
+                "the slope changes by more than noise explains: the p-value is not above the limit",
+            ],
+            Self::Reviewer => [
+                "reviewer",
+                "rejected by a reviewer",
+                "no reviewer's word",
+                "no person rejected the step",
+            ],
         }
     }
 }

@@ -142,7 +142,7 @@ impl Decision {
         let best = self.candidates.best();
         let fine = self.fine.map(|fine| (fine.high - fine.low) / 2.0);
         Doubt {
-            explained: best.map_or(1.0, |best| self.explained(&best)),
+            explained: best.map_or(1.0, |_| self.explained()),
             spread: fine.unwrap_or_else(|| self.candidates.spread()),
             crossing: best.map_or(0.0, |best| self.crossing(&best)),
             settles: self.rests(),
@@ -158,32 +158,10 @@ impl Decision {
         self.onset.as_ref().is_some_and(|onset| onset.rests)
     }
 
-    /// `1 − SSE₂ / SSE₁`. The residuals of both lines are orthogonal to every line through
-    /// either part, so that the squared error of one line is SSE₂ and its own about the two lines.
-    fn explained(&self, best: &Candidate) -> f64 {
-        if let Some(onset) = &self.onset {
-            return onset.explained;
-        }
-        // Rows are whole.
-        let last = self.segment.first + (self.candidates.len() + 1) * self.candidates.spacing();
-        let fitted = |k: usize| {
-            let line = if k < best.breakpoint { best.before } else { best.after };
-            line.at(k as f64)
-        };
-        let samples = || (self.segment.first..last).map(|k| (k as f64, fitted(k)));
-        let n = (last - self.segment.first).max(1) as f64;
-        let (sum_x, sum_y) = samples().fold((0.0, 0.0), |(a, b), (x, y)| (a + x, b + y));
-        let (mean_x, mean_y) = (sum_x / n, sum_y / n);
-        let (mut xx, mut xy) = (0.0, 0.0);
-        for (x, y) in samples().map(|(x, y)| (x - mean_x, y - mean_y)) {
-            xx += x * x;
-            xy += x * y;
-        }
-        // The squared error of one line through both, as a sum: nearly straight lines have hardly any.
-        let slope = xy / xx.max(f64::MIN_POSITIVE);
-        let bend: f64 = samples().map(|(x, y)| (y - mean_y - slope * (x - mean_x)).powi(2)).sum();
-        let one_line = best.sse + bend;
-        if one_line > 0.0 { bend / one_line } else { 0.0 }
+    /// `1 − SSE₂ / SSE₁`, or what an onset removes.
+    fn explained(&self) -> f64 {
+        let onset = self.onset.as_ref().map(|onset| onset.explained);
+        onset.unwrap_or_else(|| self.candidates.explained())
     }
 
     fn crossing(&self, best: &Candidate) -> f64 {

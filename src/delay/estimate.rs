@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use super::coming_to_rest::ComingToRest;
 use super::decision::{Decision, ReviewerVerdict};
 use super::input_motion::{InputKind, InputMotion};
 use super::neutral::Neutral;
 use super::onset_model::OnsetModel;
 use super::prepared::Prepared;
 use super::profile::DelayProfile;
-use super::settings::{FirstLast, Interpolation, Settings, SettingsError};
+use super::settings::{FirstLast, Interpolation, Settings};
 use super::spec::Method;
-use super::tracking::Tracking;
+use super::stops::{Stops, stops};
+use super::tracking::{Tracking, tracking};
 use crate::experiment::{Record, Trial};
 use crate::numerics::FilterError;
 
@@ -19,9 +19,6 @@ use crate::numerics::FilterError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EstimateError {
-    /// The settings make no sense.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
     /// The output cannot be smoothed as asked.
     #[error(transparent)]
     Filter(#[from] FilterError),
@@ -83,11 +80,10 @@ impl TrialEstimate {
 /// [`estimate_joint`] for several.
 ///
 /// # Errors
-/// [`EstimateError`] when the settings make no sense or the filter does not fit this
-/// trial. An input without a step is no error: there are no decisions then; nor is a
+/// [`EstimateError`] when the filter does not fit this trial. An input without a step is no error: there are no decisions then; nor is a
 /// trial too short for two lines, whose decisions say so.
 pub fn estimate(trial: &Trial, settings: &Settings) -> Result<TrialEstimate, EstimateError> {
-    Estimator::of(&[trial.clone()].into(), settings)?.estimate(trial)
+    Estimator::of(&[trial.clone()].into(), settings).estimate(trial)
 }
 
 /// Estimates all trials of a joint, which share the response after their dead times.
@@ -95,10 +91,8 @@ pub fn estimate_joint(
     trials: &Record,
     settings: &Settings,
 ) -> Vec<Result<TrialEstimate, EstimateError>> {
-    match Estimator::of(trials, settings) {
-        Ok(estimator) => trials.iter().map(|trial| estimator.estimate(trial)).collect(),
-        Err(error) => trials.iter().map(|_| Err(error.clone())).collect(),
-    }
+    let estimator = Estimator::of(trials, settings);
+    trials.iter().map(|trial| estimator.estimate(trial)).collect()
 }
 
 /// Estimates the trials of a joint, which share what the method finds out from all of them.
@@ -107,17 +101,16 @@ pub(crate) struct Estimator {
     /// Those that were asked for, with what the input is taken for.
     settings: Settings,
     model: Option<Arc<OnsetModel>>,
-    rest: ComingToRest,
+    /// Where the output comes to rest where its input says, and else at which stops: not asked by the
+    /// letter of the paper, and of a record that still grows or has no steps.
+    tracking: Option<Tracking>,
+    stops: Option<Stops>,
     motion: InputMotion,
 }
 
 impl Estimator {
     /// Looks at all trials of a joint.
-    ///
-    /// # Errors
-    /// [`EstimateError::Settings`] when the settings make no sense.
-    pub(crate) fn of(trials: &Record, settings: &Settings) -> Result<Self, EstimateError> {
-        settings.check()?;
+    pub(crate) fn of(trials: &Record, settings: &Settings) -> Self {
         let motion = InputMotion::of(trials);
         let mut settings = settings.with_input(&motion);
         if settings.input == InputKind::Continuous {
@@ -128,20 +121,38 @@ impl Estimator {
         if settings.method == Method::AUTO && (settings.paper || settings.grows) {
             settings.method = Method::TWO_LINE;
         }
-        let rest = ComingToRest::of(trials, &settings);
-        let model = settings.method.spec().has_intervals.then(|| {
-            // Onsets are found in what was measured.
-            let unsmoothed = Settings { low_pass: None, ..settings.clone() };
-            let mut prepared = Prepared::all(trials, &unsmoothed);
-            for trial in &mut prepared {
-                rest.bound(trial, &settings.at(trial.period));
-            }
-            let period = prepared.first().map(|trial| trial.period);
-            // A response is looked for in the trials of the first one's period.
-            let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
-            settings.method.shared(&prepared, Neutral::of(trials), &settings)
-        });
-        Ok(Self { settings, model: model.flatten().map(Arc::new), rest, motion })
+        let asks = !settings.paper && !settings.grows && settings.input != InputKind::Continuous;
+        let tracking = asks.then(|| tracking(trials)).flatten();
+        let stops = asks.then(|| stops(trials)).flatten();
+        let mut estimator = Self { settings, model: None, tracking, stops, motion };
+        estimator.model = estimator.model_of(trials).map(Arc::new);
+        estimator
+    }
+
+    /// What the method finds out from all `trials` of the joint.
+    fn model_of(&self, trials: &Record) -> Option<OnsetModel> {
+        let settings = &self.settings;
+        if !settings.method.spec().has_intervals {
+            return None;
+        }
+        // Onsets are found in what was measured.
+        let unsmoothed = Settings { low_pass: None, ..settings.clone() };
+        let mut prepared = Prepared::all(trials, &unsmoothed);
+        for trial in &mut prepared {
+            self.bound(trial, &settings.at(trial.period));
+        }
+        // A response is looked for in the trials of the first one's period.
+        let settings = settings.at(prepared.first()?.period);
+        settings.method.shared(&prepared, Neutral::of(trials), &settings)
+    }
+
+    /// Bounds what says anything of each step of `trial` by where the output comes to rest.
+    fn bound(&self, trial: &mut Prepared<'_>, settings: &Settings) {
+        if let Some(tracking) = &self.tracking {
+            tracking.bound(trial, settings);
+        } else if let Some(stops) = &self.stops {
+            stops.bound(trial);
+        }
     }
 
     /// How the input of the joint moves.
@@ -156,27 +167,16 @@ impl Estimator {
     pub(crate) fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
         let settings = self.settings.at(trial.period());
         let mut prepared = Prepared::of(trial, &settings)?;
-        self.rest.bound(&mut prepared, &settings);
+        self.bound(&mut prepared, &settings);
         let decisions = settings.method.decide(&prepared, self.model.as_deref(), &settings);
         let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
         let (label, smoothed) = (trial.label().to_owned(), prepared.smoothed);
-        let (onset_model, tracking) = (self.model.clone(), self.rest.tracking());
+        let (onset_model, tracking) = (self.model.clone(), self.tracking);
         Ok(TrialEstimate { label, smoothed, decisions, profile, onset_model, tracking })
     }
 }
 
-/// The dead time of one change of the input, seconds, with its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepDelay {
-    /// The most likely one.
-    pub delay_s: f64,
-    /// Lower end of the interval.
-    pub low_s: f64,
-    /// Upper end of the interval.
-    pub high_s: f64,
-}
-
-/// The dead time of every change of the input in all `trials` of a joint, by the best
+/// The dead time of every change of the input in all `trials` of a joint in seconds, by the best
 /// method there is; none where nothing happened or it cannot be determined.
 ///
 /// # Errors
@@ -194,9 +194,9 @@ pub struct StepDelay {
 /// let period = SamplePeriod::from_seconds(0.01).unwrap();
 /// let trial = Trial::new("swing", 0.0, period, input, output).unwrap();
 /// let delays = step_delays(&[trial].into()).unwrap();
-/// assert!((delays[0][0].unwrap().delay_s - 0.12).abs() < 1e-6);
+/// assert!((delays[0][0].unwrap() - 0.12).abs() < 1e-6);
 /// ```
-pub fn step_delays(trials: &Record) -> Result<Vec<Vec<Option<StepDelay>>>, EstimateError> {
+pub fn step_delays(trials: &Record) -> Result<Vec<Vec<Option<f64>>>, EstimateError> {
     // A line between the samples of a slow sensor looks like a lag: what is asked then is where the output
     // bends, without one.
     let is_interpolated = trials.iter().any(|trial| !trial.interpolated().is_empty());
@@ -206,15 +206,8 @@ pub fn step_delays(trials: &Record) -> Result<Vec<Vec<Option<StepDelay>>>, Estim
     let of = |(trial, estimate): (&Trial, Result<_, EstimateError>)| {
         let estimate: TrialEstimate = estimate?;
         let period_s = trial.period().seconds();
-        let decisions = estimate.decisions.iter().map(|decision| {
-            decision.accepted_delay()?;
-            let fine = decision.fine?;
-            Some(StepDelay {
-                delay_s: fine.delay * period_s,
-                low_s: fine.low * period_s,
-                high_s: fine.high * period_s,
-            })
-        });
+        let decisions = estimate.decisions.iter();
+        let decisions = decisions.map(|decision| Some(decision.accepted_delay()? * period_s));
         Ok(decisions.collect())
     };
     trials.iter().zip(estimates).map(of).collect()

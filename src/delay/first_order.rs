@@ -19,11 +19,6 @@ use crate::units::floor_to_index;
 /// by a speed 0.36 and less.
 const FOLLOWS: f64 = 0.7;
 
-/// Pairs that are enough to distinguish a squared correlation of [`FAR`] from [`FOLLOWS`]: with a tenth of
-/// them independent, its standard deviation at 0.7 is 0.02.
-const ENOUGH: usize = 5000;
-const FAR: f64 = 0.5;
-
 /// Samples that a correlation needs, and fewer ones of which it needs [`FOLLOWS_CLOSELY`]. Chosen: of
 /// a hundred samples of two random walks one pair in fifty has as much.
 const ENOUGH_SAMPLES: usize = 200;
@@ -49,17 +44,10 @@ fn best_lag(trials: &[Trial]) -> Option<(usize, f64)> {
     if samples < FEWEST {
         return None;
     }
-    let best = |of: fn(f64) -> f64, every: usize| {
-        let tried = lags(trials).map(|lag| (lag, correlation(trials, lag, of, every)));
+    let best = |of: fn(f64) -> f64| {
+        let tried = lags(trials).map(|lag| (lag, correlation(trials, lag, of)));
         tried.max_by(|a, b| a.1.total_cmp(&b.1))
     };
-    // Of most long records a few pairs show that they are far from it; an odd step keeps away from
-    // the periods of most inputs.
-    let every = (samples / ENOUGH) | 1;
-    if best(|input| input, every)?.1 < FAR {
-        return None;
-    }
-    let best = |of| best(of, 1);
     let least = if samples < ENOUGH_SAMPLES { FOLLOWS_CLOSELY } else { FOLLOWS };
     let follows = best(|input| input).filter(|(_, squared)| *squared >= least)?;
     // A joint that runs into its stops follows the sign of its input just as well.
@@ -77,13 +65,12 @@ fn lags(trials: &[Trial]) -> impl Iterator<Item = usize> + use<> {
     std::iter::successors(Some(0), next).take_while(move |lag| *lag <= longest)
 }
 
-/// Squared correlation of the output with what `of` makes of the input `lag` samples before, by
-/// `every` so many pairs one.
-fn correlation(trials: &[Trial], lag: usize, of: fn(f64) -> f64, every: usize) -> f64 {
+/// Squared correlation of the output with what `of` makes of the input `lag` samples before.
+fn correlation(trials: &[Trial], lag: usize, of: fn(f64) -> f64) -> f64 {
     let mut sums = PairSums::default();
     for trial in trials {
         let behind = trial.output().get(lag..).unwrap_or_default();
-        let pairs = trial.input().iter().zip(behind).step_by(every);
+        let pairs = trial.input().iter().zip(behind);
         pairs.for_each(|(input, output)| sums.push(of(*input), *output));
     }
     sums.r_squared()

@@ -58,7 +58,7 @@ impl Property for LevelTolerance {
 
 /// Groups of values, which are in the order of their levels: each level within `tolerance` of the
 /// first of its group.
-pub(super) fn alike<T>(sorted: &[T], level: impl Fn(&T) -> f64, tolerance: f64) -> Vec<&[T]> {
+pub(crate) fn alike<T>(sorted: &[T], level: impl Fn(&T) -> f64, tolerance: f64) -> Vec<&[T]> {
     let (mut groups, mut rest) = (Vec::new(), sorted);
     while let Some(least) = rest.first() {
         let limit = level(least) + tolerance;

@@ -29,13 +29,9 @@ impl<'a> Levels<'a> {
         const WINDOW_S: f64 = 0.09;
         const SAMPLES: std::ops::RangeInclusive<usize> = 5..=15;
         let exact = |values| Self { values, tolerance: 0.0, reach: 0 };
-        if let Some(values) = without_dropouts(input, period_s) {
-            return exact(Cow::Owned(values));
-        }
-        let Some(noise) = noise(input) else {
-            return exact(without_glitches(input).map_or(Cow::Borrowed(input), Cow::Owned));
-        };
-        let input = without_spikes(input, noise, period_s).map_or(Cow::Borrowed(input), Cow::Owned);
+        let input = without_faults(Cow::Borrowed(input), 0.0, period_s);
+        let Some(noise) = noise(&input) else { return exact(input) };
+        let input = without_faults(input, noise, period_s);
         let (low, high) = limits(input.iter().copied());
         let is_small = |noise: f64| noise < OF_RANGE * (high - low);
         if is_small(noise) {
@@ -51,75 +47,31 @@ impl<'a> Levels<'a> {
     }
 }
 
-/// Single samples between two of one level.
-fn alone(input: &[f64]) -> impl Iterator<Item = usize> {
-    let comes_back = |k: &usize| (input[k + 1] - input[k - 1]).abs() <= 0.0;
-    let all = (1..input.len().saturating_sub(1)).filter(comes_back);
-    all.filter(|k| (input[*k] - input[*k - 1]).abs() > 0.0)
-}
-
-/// An input with the sample before each of its `faults` in the place of it; none where there are none.
-fn mended(input: &[f64], faults: impl Iterator<Item = usize>) -> Option<Vec<f64>> {
-    let mut mended: Option<Vec<f64>> = None;
-    for fault in faults {
-        mended.get_or_insert_with(|| input.to_vec())[fault] = input[fault - 1];
-    }
-    mended
-}
-
-/// An exact input that holds its levels for long, without single samples of another one: so briefly that
-/// hardly a joint moves, as a logger drops a value.
-fn without_dropouts(input: &[f64], period_s: f64) -> Option<Vec<f64>> {
-    /// Samples of other holds, but for one in ten: a value may be dropped beside an edge.
-    const LONG: usize = 10;
-    const SHORT: usize = 10;
-    let dropped = alone(input).count();
-    // Of more there are fewer holds so long than of them: they are noise or dither.
-    if period_s > BRIEF_S || dropped * (LONG - 1) > input.len() {
-        return None;
-    }
-    let without = mended(input, alone(input))?;
-    let holds = holds(&without);
-    let short = holds.iter().filter(|hold| **hold < LONG).count();
-    (dropped <= holds.len() && SHORT * short <= holds.len()).then_some(without)
-}
-
-/// An input measured with noise without single samples that are off those before and after them by more
-/// than the largest change that is noise, as a logger drops a value; none where there are none, or many.
-fn without_spikes(input: &[f64], noise: f64, period_s: f64) -> Option<Vec<f64>> {
+/// An input with the sample before each fault of a logger in its place: a single sample that is off those
+/// before and after it by more than `noise`, which have one level. It lasts so briefly that hardly a joint
+/// moves, or lies far beyond all others; more than a few are no faults.
+fn without_faults(input: Cow<'_, [f64]>, noise: f64, period_s: f64) -> Cow<'_, [f64]> {
     /// Samples to each, at least (chosen).
     const SELDOM: usize = 100;
-    let is_spike = |k: &usize| {
+    /// Part of the samples that are beyond all others, at most, and times the range of these.
+    const OUTER: f64 = 1e-3;
+    const BEYOND: f64 = 1.0;
+    let is_alone = |k: &usize| {
         let [before, at, behind] = [input[k - 1], input[*k], input[k + 1]];
         (behind - before).abs() <= noise && (at - before).abs().min((at - behind).abs()) > noise
     };
-    let inside = 1..input.len().saturating_sub(1);
-    let spikes: Vec<usize> = inside.filter(|_| period_s <= BRIEF_S).filter(is_spike).collect();
-    let are_few = SELDOM * spikes.len() <= input.len();
-    mended(input, spikes.into_iter().filter(|_| are_few))
-}
-
-/// An exact input without samples far beyond all others, as faults of a logger are.
-fn without_glitches(input: &[f64]) -> Option<Vec<f64>> {
-    /// Parts of the samples that are beyond all others, at most, and times the range of these.
-    const SELDOM: f64 = 1e-3;
-    const BEYOND: f64 = 1.0;
-    alone(input).next()?;
-    let (low, high) = (quantile(input, SELDOM)?, quantile(input, 1.0 - SELDOM)?);
-    let room = BEYOND * (high - low);
-    let is_far = |k: &usize| !(low - room..=high + room).contains(&input[*k]);
-    mended(input, alone(input).filter(is_far))
-}
-
-/// Samples of each run of one level, but for those at the ends of the record and single samples on the way
-/// from one level to the next, as a logger that averages has them at an edge.
-fn holds(input: &[f64]) -> Vec<usize> {
-    let runs: Vec<&[f64]> = input.chunk_by(|a, b| (b - a).abs() <= 0.0).collect();
-    let is_edge = |three: &[&[f64]]| {
-        let [before, at, behind] = [three[0][0], three[1][0], three[2][0]];
-        three[1].len() == 1 && (at - before) * (behind - at) > 0.0
-    };
-    runs.windows(3).filter(|three| !is_edge(three)).map(|three| three[1].len()).collect()
+    let mut faults: Vec<usize> = (1..input.len().saturating_sub(1)).filter(is_alone).collect();
+    if !faults.is_empty() && period_s > BRIEF_S {
+        let ends = [OUTER, 1.0 - OUTER].map(|part| quantile(&input, part).unwrap_or(0.0));
+        let room = BEYOND * (ends[1] - ends[0]);
+        faults.retain(|k| !(ends[0] - room..=ends[1] + room).contains(&input[*k]));
+    }
+    if faults.is_empty() || SELDOM * faults.len() > input.len() {
+        return input;
+    }
+    let mut mended = input.into_owned();
+    faults.into_iter().for_each(|fault| mended[fault] = mended[fault - 1]);
+    Cow::Owned(mended)
 }
 
 /// The part of the standard deviation of normal noise that a median of so many samples has

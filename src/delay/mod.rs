@@ -27,14 +27,11 @@
 //! - [`DelayProfile`]: the delay of every sample
 //! - [`DelayTable`]: the delays by kind of step and level
 //! - [`AgainstState`]: what the delay may depend on
-//! - [`choose`]: α, β and the passband from a joint's own record
 //! - [`sweep`]: how every delay moves with the settings
 //!
 //! Sample numbers are the paper's: counted from 1 within the trial.
 
 mod against;
-mod beyond_holds;
-mod coming_to_rest;
 mod condition;
 mod dead_time;
 mod decision;
@@ -68,21 +65,18 @@ mod tracking;
 mod typical;
 
 pub use crate::numerics::Line;
-pub use against::{AgainstOfKind, AgainstState, Correlation, Direction, StepState};
-pub(crate) use beyond_holds::delay_beyond_holds;
+pub use against::{AgainstOfKind, AgainstState, Correlation, StepState};
 pub use condition::{Check, Condition, Outcome};
 pub use dead_time::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown, Window, dead_time};
 pub use decision::{Breakpoint, Decision, ReviewerVerdict, Verdict};
 pub use doubt::{Doubt, Flag, doubts};
 pub(crate) use estimate::Estimator;
-pub use estimate::{
-    EstimateError, StepDelay, TrialEstimate, estimate, estimate_joint, step_delays,
-};
+pub use estimate::{EstimateError, TrialEstimate, estimate, estimate_joint, step_delays};
 pub(crate) use first_order::{FirstOrder, followed};
 pub use growing::Growing;
 pub(crate) use growing::{check_growing, final_part};
 pub(crate) use held_input::held_inputs;
-pub(crate) use hold::level_tolerance;
+pub(crate) use hold::{alike, level_tolerance};
 pub use input_motion::{InputKind, InputMotion};
 pub use interval::FineDelay;
 pub(crate) use margin::Remedy;
@@ -94,7 +88,7 @@ pub use scan::delay_scan;
 pub use search::{Candidate, Candidates};
 pub use segment::Segment;
 pub(crate) use settings::CONFIDENCE;
-pub use settings::{CandidateLines, FirstLast, InSeconds, Interpolation, Settings, SettingsError};
+pub use settings::{CandidateLines, FirstLast, InSeconds, Interpolation, Settings};
 pub use spec::{Method, MethodSpec};
 pub use steps::InputStep;
 pub(crate) use steps::{are_strokes, joint_steps};

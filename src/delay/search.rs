@@ -19,6 +19,8 @@ pub struct Candidates {
     best: Option<Candidate>,
     second: Option<Candidate>,
     spread: f64,
+    /// The squared error of one line through all rows.
+    one_line: f64,
     /// Squared errors of all, where these were kept.
     sse: Vec<f64>,
     /// Lines before and after each breakpoint, where these were kept.
@@ -83,14 +85,13 @@ impl Candidates {
         }
         // Equations are in Σ y and Σ k·y about the first sample: a joint far from zero keeps its
         // digits.
-        let scale = Scale::of(values, offset);
-        found.fit_before(values, scale);
-        found.fit_after(values, scale);
+        found.fit_before(values, offset);
+        found.fit_after(values, offset);
+        let mut all = RunningLine::default();
+        values.iter().for_each(|y| all.push(y - offset));
+        found.one_line = all.sse();
         // Algorithm 1: q_i is where SSE_f is least.
-        let best = found.lowest(TIE * sum_of_squares(values, scale), latest);
-        for sse in &mut found.sse {
-            *sse *= scale.unit * scale.unit;
-        }
+        let best = found.lowest(TIE * sum_of_squares(values, offset), latest);
         found.count = found.sse.len();
         found.best = best.and_then(|best| found.get(best));
         found.second = best.and_then(|best| found.get(found.second_to(best)?));
@@ -104,35 +105,35 @@ impl Candidates {
     }
 
     /// Fits the lines before each breakpoint, from the front.
-    fn fit_before(&mut self, values: &[f64], scale: Scale) {
+    fn fit_before(&mut self, values: &[f64], offset: f64) {
         let count = values.len() / self.beta - 1;
         self.sse.reserve_exact(count);
         self.lines.reserve_exact(count);
         let mut line = RunningLine::default();
         for (row, f) in values.chunks_exact(self.beta).take(count).zip(1..) {
             for y in row {
-                line.push(scale.apply(*y));
+                line.push(y - offset);
             }
             // The regression line goes through the mean, in the middle of its f·β samples.
             let middle = self.first_sample as f64 + ((f * self.beta) as f64 - 1.0) / 2.0;
             self.sse.push(line.sse());
-            let before = scale.line(middle, line.mean(), line.slope());
+            let before = line_through(middle, line.mean() + offset, line.slope());
             self.lines.push((before, Line::default()));
         }
     }
 
     /// Fits the lines after each breakpoint, from the back.
-    fn fit_after(&mut self, values: &[f64], scale: Scale) {
+    fn fit_after(&mut self, values: &[f64], offset: f64) {
         let last = self.first_sample as f64 + values.len() as f64 - 1.0;
         let mut line = RunningLine::default();
         let slots = self.lines.iter_mut().rev().zip(self.sse.iter_mut().rev());
         for ((row, (lines, sse)), count) in values.rchunks_exact(self.beta).zip(slots).zip(1..) {
             for y in row.iter().rev() {
-                line.push(scale.apply(*y));
+                line.push(y - offset);
             }
             let middle = last - ((count * self.beta) as f64 - 1.0) / 2.0;
             // Grown towards the front: its own slope has the other sign.
-            lines.1 = scale.line(middle, line.mean(), -line.slope());
+            lines.1 = line_through(middle, line.mean() + offset, -line.slope());
             // SSE_f = SSE of rows 1 … f + SSE of rows f+1 … M.
             *sse += line.sse();
         }
@@ -194,6 +195,12 @@ impl Candidates {
         valley.or(neighbour)
     }
 
+    /// The part of the squared error of one line that the best pair removes: `1 − SSE₂ / SSE₁`.
+    pub(super) fn explained(&self) -> f64 {
+        let left = self.best.map_or(0.0, |best| best.sse);
+        if self.one_line > 0.0 { (1.0 - left / self.one_line).max(0.0) } else { 0.0 }
+    }
+
     /// Samples from one candidate to the next.
     pub(super) fn spacing(&self) -> usize {
         if self.is_empty() { 1 } else { self.beta.max(1) }
@@ -225,42 +232,15 @@ impl Candidates {
     }
 }
 
-/// Values about the first one, in a unit in which their squares are still numbers.
-#[derive(Clone, Copy, Debug)]
-struct Scale {
-    offset: f64,
-    /// A power of two, so that nothing is rounded; 1 for all but absurd outputs.
-    unit: f64,
-    per_unit: f64,
+/// The line of `slope` through `value` at sample `k`.
+fn line_through(k: f64, value: f64, slope: f64) -> Line {
+    Line { slope, intercept: value - slope * k }
 }
 
-impl Scale {
-    fn of(values: &[f64], offset: f64) -> Self {
-        /// Exponents of two whose fourth power is still a number.
-        const USUAL: std::ops::Range<f64> = -200.0..200.0;
-        let largest = values.iter().fold(0.0, |largest: f64, y| largest.max((y - offset).abs()));
-        let exponent = largest.log2().floor();
-        let usual = largest == 0.0 || USUAL.contains(&exponent);
-        let unit = if usual { 1.0 } else { exponent.clamp(-1000.0, 1000.0).exp2() };
-        Self { offset, unit, per_unit: 1.0 / unit }
-    }
-
-    fn apply(&self, y: f64) -> f64 {
-        (y - self.offset) * self.per_unit
-    }
-
-    /// The line of `slope` through `value` at sample `k`, back in the output's unit.
-    fn line(&self, k: f64, value: f64, slope: f64) -> Line {
-        let slope = slope * self.unit;
-        Line { slope, intercept: value * self.unit + self.offset - slope * k }
-    }
-}
-
-/// Total sum of squares about the mean, in the scale's unit.
-fn sum_of_squares(values: &[f64], scale: Scale) -> f64 {
-    let sum: f64 = values.iter().map(|y| scale.apply(*y)).sum();
-    let mean = sum / values.len() as f64;
-    values.iter().map(|y| (scale.apply(*y) - mean) * (scale.apply(*y) - mean)).sum()
+/// Total sum of squares about the mean.
+fn sum_of_squares(values: &[f64], offset: f64) -> f64 {
+    let mean = values.iter().map(|y| y - offset).sum::<f64>() / values.len() as f64;
+    values.iter().map(|y| (y - offset - mean) * (y - offset - mean)).sum()
 }
 
 #[cfg(test)]

@@ -71,19 +71,8 @@ pub struct InSeconds {
     pub max_delay: Option<f64>,
 }
 
-impl InSeconds {
-    /// Each with its name.
-    fn named(self) -> [(&'static str, Option<f64>); 4] {
-        [
-            ("α in seconds", self.alpha),
-            ("β in seconds", self.beta),
-            ("the shortest hold in seconds", self.min_delay),
-            ("the longest delay in seconds", self.max_delay),
-        ]
-    }
-}
-
-/// A method and its settings; the default is the onset model. The paper's search is that of
+/// A method and its settings; the default is the onset model. Lengths and thresholds are no less than
+/// zero, and probabilities lie between zero and one. The paper's search is that of
 /// [`Method::TWO_LINE`], with what real logs need beside it, see [`Settings::paper`].
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
@@ -184,42 +173,6 @@ impl Default for Settings {
     }
 }
 
-/// Why settings make no sense, whatever the log.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SettingsError {
-    /// A number of samples is zero.
-    #[error("{name} is 0, but must be at least 1 sample")]
-    Zero {
-        /// The setting's name.
-        name: &'static str,
-    },
-    /// The limits of the output are not in order.
-    #[error("the output limits {low},{high} are not in order: the lower one comes first")]
-    LimitsSwapped {
-        /// The first limit.
-        low: f64,
-        /// The second limit.
-        high: f64,
-    },
-    /// A probability is not one.
-    #[error("{name} is {value}, but must be between 0 and 1, as in 0.99")]
-    Probability {
-        /// The setting's name.
-        name: &'static str,
-        /// What was given.
-        value: f64,
-    },
-    /// A threshold is negative or not a number.
-    #[error("{name} is {value}, but must be a number from 0 up")]
-    Threshold {
-        /// The setting's name.
-        name: &'static str,
-        /// What was given.
-        value: f64,
-    },
-}
-
 impl Settings {
     /// The low-pass of a trial that is sampled every `period`.
     pub(crate) fn low_pass_at(&self, period: SamplePeriod) -> Option<LowPass> {
@@ -242,43 +195,5 @@ impl Settings {
         let is_continuous = self.takes_as_continuous(motion);
         let input = if is_continuous { InputKind::Continuous } else { InputKind::Steps };
         Self { input, ..self.clone() }
-    }
-
-    /// Checks what can be checked without a log.
-    ///
-    /// # Errors
-    /// [`SettingsError`], the first that is found.
-    pub fn check(&self) -> Result<(), SettingsError> {
-        for (name, samples) in [("α", self.alpha), ("β", self.beta)] {
-            if samples == 0 {
-                return Err(SettingsError::Zero { name });
-            }
-        }
-        if let Some((low, high)) = self.output_limits
-            && (low >= high || low.is_nan() || high.is_nan())
-        {
-            return Err(SettingsError::LimitsSwapped { low, high });
-        }
-        let probabilities = [
-            ("the confidence of a reaction", self.confidence),
-            ("the confidence of an interval", Some(self.interval)),
-        ];
-        for (name, value) in probabilities {
-            let Some(value) = value else { continue };
-            if !(value > 0.0 && value < 1.0) {
-                return Err(SettingsError::Probability { name, value });
-            }
-        }
-        let thresholds = [
-            ("the smallest change of slope", Some(self.min_slope_change)),
-            ("the largest squared error", self.max_sse),
-            ("the smallest step of the input", Some(self.min_step)),
-        ];
-        let thresholds = thresholds.into_iter().chain(self.in_seconds.named());
-        let mut given = thresholds.into_iter().filter_map(|(name, value)| Some((name, value?)));
-        match given.find(|(_, value)| value.is_nan() || *value < 0.0) {
-            Some((name, value)) => Err(SettingsError::Threshold { name, value }),
-            None => Ok(()),
-        }
     }
 }

@@ -9,8 +9,10 @@ use super::hold::level_tolerance;
 use super::motion::{StepMotion, arrival};
 use super::neutral::Neutral;
 use super::prepared::Prepared;
-use super::steps::{InputStep, hold_ranges};
-use crate::experiment::{Record, Trial};
+use super::settings::Settings;
+use super::steps::{InputStep, hold_ranges, joint_steps};
+use super::tracking::tracking;
+use crate::experiment::{Property, Record, Trial};
 use crate::numerics::{limits, median, noise_of_differences};
 
 /// Holds in which the joint comes to the same end of its range, which show a stop.
@@ -33,9 +35,23 @@ pub(super) struct Stops {
     tolerance: f64,
 }
 
+/// The stops that a record shows; none of an output that comes to rest where its input says.
+pub(super) fn stops(record: &Record) -> Option<Stops> {
+    *record.property()
+}
+
+impl Property for Option<Stops> {
+    fn find(record: &Record) -> Self {
+        if tracking(record).is_some() {
+            return None;
+        }
+        Stops::of(record, &joint_steps(record, &Settings::default()))
+    }
+}
+
 impl Stops {
     /// The stops that `trials` with these `steps` show; `None` where there is none.
-    pub(super) fn of<'a>(trials: &'a Record, steps: &[Vec<InputStep>]) -> Option<Self> {
+    fn of<'a>(trials: &'a Record, steps: &[Vec<InputStep>]) -> Option<Self> {
         let of_trial = |(trial, steps): (&'a Trial, &Vec<InputStep>)| -> Vec<(f64, &'a [f64])> {
             let output = trial.output();
             let holds = steps.iter().zip(hold_ranges(steps, output.len()));

@@ -7,7 +7,6 @@
 
 use std::ops::Range;
 
-use super::input_motion::InputMotion;
 use super::motion::{StepMotion, arrival};
 use super::prepared::Prepared;
 use super::settings::Settings;
@@ -42,8 +41,7 @@ pub(crate) fn tracking(record: &Record) -> Option<Tracking> {
 
 impl Property for Option<Tracking> {
     fn find(record: &Record) -> Self {
-        let settings = Settings::default().with_input(&InputMotion::of(record));
-        Tracking::of(record, &joint_steps(record, &settings))
+        Tracking::of(record, &joint_steps(record, &Settings::default()))
     }
 }
 
@@ -66,7 +64,7 @@ impl Tracking {
 
     /// The relation between where the output rests and the level that is held, over all `trials`
     /// with their `steps`; `None` where there is none.
-    pub(super) fn of(trials: &[Trial], steps: &[Vec<InputStep>]) -> Option<Self> {
+    fn of(trials: &[Trial], steps: &[Vec<InputStep>]) -> Option<Self> {
         let holds = steps.iter().map(Vec::len).sum::<usize>();
         let (low, high) = limits(trials.iter().flat_map(Trial::output).copied());
         let range = high - low;

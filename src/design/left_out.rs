@@ -8,13 +8,13 @@ use rand::SeedableRng as _;
 use rand::seq::SliceRandom as _;
 use rand_chacha::ChaCha8Rng;
 
-use super::stops::{SHORTEST_RUN, Stops, extent};
+use super::stops::{SHORTEST_RUN, Stops};
 use super::trend::{Travel, Trend};
 use crate::effect::{Effect as _, EndStop};
 use crate::experiment::{Joint, Trial};
 use crate::fit::{FitRecord, Horizon, Split, fit, follows_input};
 use crate::model::{Commands, JointModel, Restart, Surroundings, simulate};
-use crate::numerics::median;
+use crate::numerics::{limits, median};
 
 /// Parts of a record, each of which is left out once.
 const PARTS: usize = 5;
@@ -170,7 +170,7 @@ fn forgets(model: &JointModel, pieces: &[Piece<'_>], around: &Surroundings<'_>) 
     let (samples, period_s) = ((to - from) / PART, trial.period().seconds());
     let rest = vec![0.0; samples];
     let arrivals = Commands::new(&rest, period_s).arriving(model, 0.0, None);
-    let (low, high) = extent(trial.output());
+    let (low, high) = limits(trial.output().iter().copied());
     let end = |start: f64| {
         // From both ends of where it has been: the farthest that two starts can be apart.
         let restart = [Restart { sample: 0, output: start, speed: None }];

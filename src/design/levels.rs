@@ -5,17 +5,6 @@ use super::response::{response_s, resting_band};
 use crate::explain::two_digits;
 use crate::model::JointModel;
 
-/// What becomes of the band of inputs in which the joint rests.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Band {
-    /// A level lies in that of the model: steps begin and end at rest, and cross its ends.
-    Cross,
-    /// No level lies in that of the model: every step moves the joint, or turns it.
-    Avoid,
-    /// No level lies between these, as differences to rest.
-    Given(f64, f64),
-}
-
 /// Largest level where nothing is known of the joint.
 const LARGEST: f64 = 2.0;
 
@@ -62,29 +51,6 @@ pub(crate) fn default_hold_s(
     (shortest, two_digits(LONGEST * shortest))
 }
 
-impl Band {
-    /// `levels` with one in the band, or without any; that of the model is `rests`, where it has one.
-    pub(super) fn applied(
-        self,
-        levels: &[f64],
-        rests: impl FnOnce() -> Option<(f64, f64)>,
-    ) -> Option<Vec<f64>> {
-        let (lower, upper) = match self {
-            Self::Given(lower, upper) => (lower, upper),
-            Self::Cross | Self::Avoid => rests()?,
-        };
-        let is_inside = |level: &f64| *level >= lower && *level <= upper;
-        let mut levels = levels.to_vec();
-        if self != Self::Cross {
-            levels.retain(|level| !is_inside(level));
-        } else if !levels.iter().any(is_inside) {
-            levels.push(two_digits(0.5 * (lower + upper)));
-        }
-        levels.sort_by(f64::total_cmp);
-        Some(levels)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::predict::tests::rig;
@@ -114,15 +80,5 @@ mod tests {
         let lag = Component::new(&ActuatorLag, vec![0.3.into()]).unwrap();
         let (shortest, longest) = default_hold_s(Some(&banded().with(lag)), &rig, 3.0);
         assert!(shortest > 2.0 * (0.2 + 0.9) - 0.1 && longest > 2.0 * shortest);
-    }
-
-    #[test]
-    fn a_band_is_crossed_or_avoided() {
-        let applied = |band: Band, levels: &[f64]| band.applied(levels, || Some((-0.4, 0.6)));
-        assert_eq!(applied(Band::Cross, &[-2.0, 2.0]), Some(vec![-2.0, 0.1, 2.0]));
-        assert_eq!(applied(Band::Cross, &[-2.0, 0.0, 2.0]), Some(vec![-2.0, 0.0, 2.0]));
-        assert_eq!(applied(Band::Avoid, &[-2.0, 0.0, 0.6, 2.0]), Some(vec![-2.0, 2.0]));
-        assert_eq!(applied(Band::Given(-0.1, 3.0), &[-2.0, 0.0, 2.0]), Some(vec![-2.0]));
-        assert_eq!(Band::Avoid.applied(&[-2.0, 2.0], || None), None);
     }
 }

@@ -1,10 +1,9 @@
 //! What a log shows of how a joint may be driven: where its input rests, which levels were
 //! played, and where the output has been.
 
-use crate::delay::FirstOrder;
-use crate::delay::{Neutral, level_tolerance};
+use crate::delay::{FirstOrder, Neutral, alike, level_tolerance};
 use crate::experiment::{Joint, Record, Trial};
-use crate::numerics::{median, quantile};
+use crate::numerics::{limits, median, quantile};
 
 /// What was played on a joint, and where it went.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,9 +40,7 @@ impl Logged {
         let rest = Neutral::of(&joint.trials).map_or(0.0, |neutral| neutral.level);
         // Zero is meant where a converter leaves a little.
         let rest = if rest.abs() > tolerance { rest } else { 0.0 };
-        let outputs = joint.trials.iter().flat_map(Trial::output);
-        let none = (f64::INFINITY, f64::NEG_INFINITY);
-        let extent = outputs.fold(none, |(low, high), y| (low.min(*y), high.max(*y)));
+        let extent = limits(joint.trials.iter().flat_map(Trial::output).copied());
         let levels = levels(joint);
         let settling = FirstOrder::of(&joint.trials).map(|found| {
             let output = |level: &f64| {
@@ -201,19 +198,12 @@ fn levels(joint: &Joint) -> Vec<f64> {
     let mut inputs: Vec<f64> = joint.trials.iter().flat_map(Trial::input).copied().collect();
     inputs.sort_by(f64::total_cmp);
     let tolerance = level_tolerance(&joint.trials);
-    let mut rest = inputs.as_slice();
-    let (mut held, mut samples) = (Vec::new(), 0);
-    while let Some(least) = rest.first() {
-        let count = rest.partition_point(|input| *input <= least + tolerance).max(1);
-        let (same, others) = rest.split_at(count);
-        rest = others;
-        if count as f64 >= LEAST_SHARE * inputs.len() as f64 {
-            samples += count;
-            held.extend(same.get(count / 2));
-        }
-    }
+    let is_held = |same: &&[f64]| same.len() as f64 >= LEAST_SHARE * inputs.len() as f64;
+    let held: Vec<&[f64]> =
+        alike(&inputs, |input| *input, tolerance).into_iter().filter(is_held).collect();
+    let samples: usize = held.iter().map(|same| same.len()).sum();
     if samples as f64 >= MOSTLY * inputs.len() as f64 && held.len() <= MOST_LEVELS {
-        return held;
+        return held.iter().map(|same| same[same.len() / 2]).collect();
     }
     let part = |k: u32| quantile(&inputs, 0.01 + 0.098 * f64::from(k));
     (0..=10).filter_map(part).collect()

@@ -39,7 +39,6 @@ mod trend;
 mod within_range;
 
 pub use free_run::{FreeRunError, RESERVE};
-pub use levels::Band;
 pub(crate) use levels::{default_hold_s, default_largest, default_levels};
 pub use limits::Limits;
 pub use logged::{Logged, Settling};

@@ -31,7 +31,7 @@ pub fn plan(
     index: usize,
 ) -> Result<Plan, PlanError> {
     let planner = Planner { request, rig, known, logged };
-    let levels = planner.levels()?;
+    let levels = planner.levels();
     if levels.len() < 2 {
         return Err(planner.settles_elsewhere().unwrap_or(PlanError::TooFewLevels));
     }
@@ -82,19 +82,13 @@ struct Planner<'a> {
 
 impl Planner<'_> {
     /// The levels that suit the joint, or are asked for.
-    ///
-    /// # Errors
-    /// [`PlanError::NoDeadBand`].
-    fn levels(&self) -> Result<Vec<f64>, PlanError> {
-        let PlanRequest { levels, largest, band, .. } = self.request;
-        let levels = levels.clone().unwrap_or_else(|| match (largest, self.logged) {
+    fn levels(&self) -> Vec<f64> {
+        let PlanRequest { levels, largest, .. } = self.request;
+        levels.clone().unwrap_or_else(|| match (largest, self.logged) {
             (None, Some(logged)) => self.logged_levels(logged),
             (Some(_), Some(logged)) => self.levels_of_its_signs(logged),
             _ => default_levels(self.model(), self.rig, self.largest()),
-        });
-        let Some(band) = band else { return Ok(levels) };
-        let has_model = self.known.is_some();
-        band.applied(&levels, || self.resting_band()).ok_or(PlanError::NoDeadBand { has_model })
+        })
     }
 
     /// The inputs between which the joint rests, where a model has such a band.

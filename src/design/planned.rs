@@ -1,6 +1,5 @@
 //! What is asked of random steps, and the result.
 
-use super::levels::Band;
 use super::predict::Prediction;
 use super::schedule::Schedule;
 
@@ -11,8 +10,6 @@ pub struct PlanRequest {
     pub levels: Option<Vec<f64>>,
     /// The largest magnitude of a level.
     pub largest: Option<f64>,
-    /// What becomes of the dead band.
-    pub band: Option<Band>,
     /// Shortest and longest hold, seconds.
     pub hold_s: Option<(f64, f64)>,
     /// Length of all trials together, seconds.

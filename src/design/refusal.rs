@@ -9,15 +9,6 @@ pub enum PlanError {
     /// Fewer than two levels.
     #[error("fewer than two levels are left; an input needs at least two different ones")]
     TooFewLevels,
-    /// The ends of the dead band are not known.
-    #[error(
-        "the dead band is not known: {}",
-        if *.has_model { "the model has none" } else { "no model has it" }
-    )]
-    NoDeadBand {
-        /// Whether there is a model.
-        has_model: bool,
-    },
     /// No hold fits after the rest with which an input begins.
     #[error("an input of {duration_s} s is too short for a rest and a hold of {hold_s} s after it")]
     HoldTooLong {

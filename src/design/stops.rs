@@ -2,6 +2,7 @@
 
 use crate::experiment::{Joint, Trial};
 use crate::fit::follows_input;
+use crate::numerics::limits;
 
 /// Samples of the shortest free run that counts.
 pub(super) const SHORTEST_RUN: usize = 20;
@@ -28,7 +29,7 @@ impl Stops {
     pub(super) fn of(joint: &Joint) -> Self {
         /// Part of the largest input from which one moves a joint that is free.
         const MOVES: f64 = 0.5;
-        let (low, high) = extent(joint.trials.iter().flat_map(Trial::output));
+        let (low, high) = limits(joint.trials.iter().flat_map(Trial::output).copied());
         let mut stops = Self { places: Vec::new(), width: high - low };
         if follows_input(joint).is_some() {
             return stops;
@@ -36,7 +37,7 @@ impl Stops {
         let inputs = joint.trials.iter().flat_map(Trial::input);
         let largest = inputs.fold(0.0, |largest: f64, u| largest.max(u.abs()));
         for trial in &joint.trials {
-            let (low, high) = extent(trial.output());
+            let (low, high) = limits(trial.output().iter().copied());
             let standing = stops.standing(trial);
             let both = trial.input().iter().zip(trial.output()).zip(standing);
             for ((input, output), stands) in both {
@@ -113,12 +114,6 @@ fn played_before(trial: &Trial, sample: usize, from: usize) -> Option<usize> {
     let input = trial.input();
     let changes = |k: &usize| *k > 0 && input.get(*k) != input.get(k - 1);
     (from..=sample).rev().find(changes)
-}
-
-/// The lowest and the highest of `values`.
-pub(super) fn extent<'a>(values: impl IntoIterator<Item = &'a f64>) -> (f64, f64) {
-    let none = (f64::INFINITY, f64::NEG_INFINITY);
-    values.into_iter().fold(none, |(low, high), y| (low.min(*y), high.max(*y)))
 }
 
 #[cfg(test)]

@@ -22,6 +22,7 @@
 
 use serde::Serialize;
 
+use super::speed_error::slope;
 use crate::experiment::Trial;
 use crate::fit::FitRecord;
 use crate::model::{JointModel, Simulated};
@@ -103,7 +104,7 @@ pub(super) fn curves(
     let found = product(&measured);
     let model = Product::of(&simulated, [&found.places[0], &found.places[1], &found.places[2]]);
     let mut curves = vec![found.curve(CurveOf::Input, 0, levels.clone(), &model)];
-    curves.extend(branches(&pieces, &level, &levels, &found, &simulated));
+    curves.extend(branches(&pieces, &level, &levels, &found, [&measured, &simulated]));
     for (of, index, values) in [(CurveOf::Angle, 1, &angles), (CurveOf::Time, 2, &times)] {
         let x = means_in(values, &found.places[index], found.values[index].len());
         curves.extend((x.len() > 1).then(|| found.curve(of, index, x, &model)));
@@ -273,53 +274,42 @@ fn branches(
     level: &[usize],
     levels: &[f64],
     found: &Product,
-    simulated: &[f64],
+    values: [&[f64]; 2],
 ) -> Vec<Curve> {
     /// Standard deviations of a normal variable beyond which the mean of all differences is no chance:
     /// one in ten thousand.
     const BEYOND_CHANCE: f64 = 3.9;
-    let side = |below: bool, values: &dyn Fn(usize) -> f64| {
-        let mut sums = vec![(0.0, 0.0, 0.0); levels.len()];
-        for (k, _) in pieces.iter().enumerate().filter(|(_, piece)| piece.from_below == below) {
-            let g = found.values[1][found.places[1][k]] * found.values[2][found.places[2][k]];
-            let v = values(k) / g;
-            let sum = &mut sums[level[k]];
-            *sum = (sum.0 + 1.0, sum.1 + v, sum.2 + v * v);
-        }
-        sums
-    };
-    let measured = |k: usize| pieces[k].speed;
-    let (rising, falling) = (side(true, &measured), side(false, &measured));
-    let mean_and_variance = |(n, sum, squares): (f64, f64, f64)| {
-        (sum / n, (squares / n - (sum / n).powi(2)).max(0.0) / (n - 1.0))
-    };
-    let both = rising.iter().zip(&falling).filter(|(r, f)| r.0 > 1.0 && f.0 > 1.0);
+    // Two places for each level: reached from above, and from below.
+    let sides = pieces.iter().zip(level);
+    let sides: Vec<usize> =
+        sides.map(|(piece, level)| 2 * level + usize::from(piece.from_below)).collect();
+    let [measured, model] =
+        values.map(|values| Product::of(values, [&sides, &found.places[1], &found.places[2]]));
+    let is_known = |place: usize| sides.iter().filter(|own| **own == place).count() > 1;
+    let known =
+        |side: usize| (0..levels.len()).map(move |it| 2 * it + side).filter(|it| is_known(*it));
     let (mut difference, mut variance) = (0.0, 0.0);
-    for (rising, falling) in both {
-        let ((r, of_r), (f, of_f)) = (mean_and_variance(*rising), mean_and_variance(*falling));
-        difference += f - r;
-        variance += of_r + of_f;
+    for above in known(0).filter(|above| is_known(above + 1)) {
+        difference += measured.values[0][above] - measured.values[0][above + 1];
+        variance +=
+            [above, above + 1].map(|it| measured.std_errors[0][it].powi(2)).iter().sum::<f64>();
     }
     if difference.abs() <= BEYOND_CHANCE * variance.sqrt() || variance <= 0.0 {
         return Vec::new();
     }
-    let model = |k: usize| simulated[k];
-    let curve = |of: CurveOf, below: bool, sums: &[(f64, f64, f64)]| {
-        let of_model = side(below, &model);
-        let points = levels.iter().zip(sums).zip(&of_model).filter(|((_, sum), _)| sum.0 > 1.0);
-        let mut curve =
-            Curve { of, x: vec![], y: vec![], low: vec![], high: vec![], model: vec![] };
-        for ((x, sum), model) in points {
-            let (y, variance) = mean_and_variance(*sum);
-            curve.x.push(*x);
-            curve.y.push(y);
-            curve.low.push(y - BAND * variance.sqrt());
-            curve.high.push(y + BAND * variance.sqrt());
-            curve.model.push(model.1 / model.0);
+    let curve = |of: CurveOf, side: usize| {
+        let all = measured.curve(of, 0, Vec::new(), &model);
+        let pick = |values: &[f64]| known(side).map(|place| values[place]).collect::<Vec<f64>>();
+        Curve {
+            of,
+            x: known(side).map(|place| levels[place / 2]).collect(),
+            y: pick(&all.y),
+            low: pick(&all.low),
+            high: pick(&all.high),
+            model: pick(&all.model),
         }
-        curve
     };
-    vec![curve(CurveOf::InputRising, true, &rising), curve(CurveOf::InputFalling, false, &falling)]
+    vec![curve(CurveOf::InputRising, 1), curve(CurveOf::InputFalling, 0)]
 }
 
 /// The interval of `x` in which each of its values lies, of as many intervals with equally many values
@@ -373,14 +363,6 @@ fn means_in(values: &[f64], places: &[usize], count: usize) -> Vec<f64> {
 
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
-}
-
-/// The least-squares slope of `values` per sample.
-fn slope(values: &[f64]) -> f64 {
-    let middle = (values.len() as f64 - 1.0) / 2.0;
-    let times = || (0..values.len()).map(|k| k as f64 - middle);
-    let square: f64 = times().map(|t| t * t).sum();
-    times().zip(values).map(|(t, value)| t * value).sum::<f64>() / square
 }
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ use serde::Serialize;
 use super::input_edges::InputEdges;
 use super::local_misfit::LocalMisfit;
 use super::residual_size::{
-    BEYOND_NOISE, ResidualSize, ShownBy, SizeVerdict, independent, is_near_noise,
+    BEYOND_NOISE, NEAR_NOISE, ResidualSize, ShownBy, SizeVerdict, independent,
 };
 use crate::numerics::NoiseModel;
 use crate::numerics::fisher_tail;
@@ -167,7 +167,7 @@ impl LackOfFit {
 
     /// Whether the residual is hardly more than the noise.
     pub(crate) fn is_near_noise(&self) -> bool {
-        is_near_noise(self.times_noise)
+        self.times_noise.is_some_and(|times| times <= NEAR_NOISE)
     }
 }
 

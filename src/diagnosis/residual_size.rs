@@ -104,11 +104,6 @@ pub(super) fn independent(samples: usize) -> f64 {
     samples as f64 * (1.0 - RHO * RHO) / (1.0 + RHO * RHO)
 }
 
-/// Whether a residual of `times_noise` is hardly more than the noise.
-pub(super) fn is_near_noise(times_noise: Option<f64>) -> bool {
-    times_noise.is_some_and(|times| times <= NEAR_NOISE)
-}
-
 /// Root mean square of residuals, without their spikes.
 fn without_spikes(windows: &[Vec<f64>]) -> Option<f64> {
     let clipped = clipped(windows);

@@ -53,7 +53,7 @@ fn spread(count: usize) -> f64 {
 }
 
 /// Slope of the line through `values`, per sample; 0 where there are less than two.
-fn slope(values: &[f64]) -> f64 {
+pub(super) fn slope(values: &[f64]) -> f64 {
     let middle = (values.len() as f64 - 1.0) / 2.0;
     let with: f64 = values.iter().enumerate().map(|(k, value)| (k as f64 - middle) * value).sum();
     let spread = spread(values.len());

@@ -15,7 +15,7 @@ use super::run::{Run, Speeds, best_starts, raw_residuals, residuals_from, simula
 use super::speed;
 use super::unlogged::commands;
 use super::window::{Horizon, Part, Split, Window, changes, cut, places, shorter};
-use crate::delay::{StepDelay, step_delays};
+use crate::delay::step_delays;
 use crate::effect::{RecordRange, SignalRange};
 use crate::experiment::{Joint, Trial, has_word};
 use crate::model::{Arrivals, Commands, JointModel, Signals, Surroundings};
@@ -120,11 +120,7 @@ impl<'a> FitRecord<'a> {
 
     /// The delay of each change of the input, per trial.
     fn delays(&self) -> &Delays {
-        let in_seconds = |step: Option<StepDelay>| step.map(|step| step.delay_s);
-        self.delays.get_or_init(|| {
-            let measured = step_delays(&self.joint().trials).unwrap_or_default();
-            measured.into_iter().map(|t| t.into_iter().map(in_seconds).collect()).collect()
-        })
+        self.delays.get_or_init(|| step_delays(&self.joint().trials).unwrap_or_default())
     }
 
     /// How many delays `model` takes from the record: as many numbers that are not its own.

@@ -2,7 +2,7 @@
 //!
 //! - [`LowPass`]: zero-phase smoothing
 //! - [`median`], [`quantile`]: of samples
-//! - [`mann_whitney`], [`spearman`]: rank tests
+//! - [`spearman`]: a rank test
 //! - [`Line`]: a regression line
 
 mod autoregression;
@@ -21,7 +21,7 @@ mod statistics;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub(crate) use autoregression::Autoregression;
+pub(crate) use autoregression::autoregression;
 pub use filter::{FilterError, LowPass, MAX_ORDER};
 pub use line::Line;
 pub(crate) use line::{PairSums, RunningLine};
@@ -36,7 +36,7 @@ pub(crate) use root::{halved, settle_at_root};
 pub(crate) use rounding::{
     as_written, decimal_exponent, to_decimals, to_digits, to_digits_by, to_multiple, to_nanoseconds,
 };
-pub use statistics::{RankTest, mann_whitney, median, quantile, ranks, spearman};
+pub use statistics::{RankTest, median, quantile, ranks, spearman};
 pub(crate) use statistics::{
     chi_square_tail, coin_quantile, fisher_tail, holm, normal_below, student_quantile,
 };

@@ -1,8 +1,8 @@
 //! Noise with a memory, and the filter that removes it.
 //!
-//! An autoregression, found in windows whose means were subtracted.
+//! An autoregression, found in windows of which the mean was subtracted.
 
-use super::autoregression::Autoregression;
+use super::autoregression::autoregression;
 use super::moments::dot;
 
 /// Longest memory of the noise in the residual of a model, samples: chosen; beyond it, noise
@@ -16,18 +16,11 @@ const LANES: usize = 8;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NoiseModel {
     coefficients: Vec<f64>,
-    /// `1 − Σ a_i`: what whitening makes of 1.
-    pub(crate) level: f64,
 }
 
 impl NoiseModel {
     pub(crate) fn white() -> Self {
-        Self::new(Vec::new())
-    }
-
-    fn new(coefficients: Vec<f64>) -> Self {
-        let level = 1.0 - coefficients.iter().sum::<f64>();
-        Self { coefficients, level }
+        Self { coefficients: Vec::new() }
     }
 
     /// The noise in the residual of a model, of which the mean of each window was subtracted.
@@ -39,14 +32,16 @@ impl NoiseModel {
         const TURNS: usize = 6;
         let measured = covariances_of_pairs(windows);
         let samples: usize = windows.iter().map(Vec::len).sum();
-        let mut noise = Self::new(Autoregression::of(&measured, samples).coefficients);
+        let found =
+            |covariances: &[f64]| Self { coefficients: autoregression(covariances, samples) };
+        let mut noise = found(&measured);
         for _ in 0..TURNS {
             if noise.order() == 0 {
                 break;
             }
             let removed = noise.mean_variance(windows, measured[0]);
             let whole: Vec<f64> = measured.iter().map(|value| value + removed).collect();
-            noise = Self::new(Autoregression::of(&whole, samples).coefficients);
+            noise = found(&whole);
         }
         noise
     }
@@ -198,7 +193,8 @@ mod tests {
 
     #[test]
     fn correlations_of_first_order_are_powers() {
-        for (lag, found) in NoiseModel::new(vec![0.9]).correlations(50).into_iter().enumerate() {
+        let noise = NoiseModel { coefficients: vec![0.9] };
+        for (lag, found) in noise.correlations(50).into_iter().enumerate() {
             let expected = 0.9_f64.powi(i32::try_from(lag).unwrap());
             assert!((found - expected).abs() < 1e-3);
         }

@@ -42,7 +42,7 @@ pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), R
         .segments()
         .map(|placed| {
             let (label, number) = (placed.0.trial.label(), placed.1.decision.number);
-            let is_this = |step: &&StepState| step.number == number && *step.trial == *label;
+            let is_this = |step: &&StepState| step.number == number && step.trial == label;
             (placed, coming.next_if(is_this))
         })
         .collect();

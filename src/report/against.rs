@@ -1,7 +1,7 @@
 //! The delay against the state, for the terminal.
 
 use super::TextTable;
-use crate::delay::{AgainstOfKind, AgainstState, Correlation, Direction};
+use crate::delay::{AgainstOfKind, AgainstState, Correlation};
 use crate::wording::{bracketed, p_cell};
 
 /// A row per joint, kind of step and variable; `joints` are names and what was found.
@@ -53,16 +53,14 @@ pub(super) fn against_rows(joint: &str, found: &AgainstState) -> Vec<[String; 7]
 fn kind_rows(joint: &str, kind: &AgainstOfKind) -> Vec<[String; 7]> {
     let is_known = |one: &Correlation| one.p_value.is_some();
     let name = kind.transition.to_string();
-    if kind.direction.p_value.is_none() && !kind.correlations.iter().any(is_known) {
+    if !kind.correlations.iter().any(is_known) {
         let dash = || "-".to_owned();
         let steps = kind.steps.to_string();
         let why = "too few steps, or no change".to_owned();
         return vec![[joint.to_owned(), name, why, steps, dash(), dash(), answer(None)]];
     }
-    let correlations = kind.correlations.iter().map(correlation_row);
-    let rows = correlations.chain([direction_row(&kind.direction)]);
     let full = |[a, b, c, d, e]: [String; 5]| [joint.to_owned(), name.clone(), a, b, c, d, e];
-    rows.map(full).collect()
+    kind.correlations.iter().map(correlation_row).map(full).collect()
 }
 
 fn correlation_row(found: &Correlation) -> [String; 5] {
@@ -80,15 +78,6 @@ fn correlation_row(found: &Correlation) -> [String; 5] {
 /// A variable with its unit, where there is one.
 pub(crate) fn variable_text(variable: &str, unit: Option<&str>) -> String {
     bracketed(&variable.replace('_', " "), unit)
-}
-
-fn direction_row(found: &Direction) -> [String; 5] {
-    let Direction { up, down, median_difference_s, p_value, p_holm, significant } = found;
-    let difference = median_difference_s
-        .map_or_else(|| "-".to_owned(), |seconds| format!("up - down {seconds:+.3} s"));
-    let steps = format!("{up} up, {down} down");
-    let significant = p_value.map(|_| *significant);
-    ["direction".to_owned(), steps, difference, p_cell(*p_holm), answer(significant)]
 }
 
 fn answer(significant: Option<bool>) -> String {

@@ -10,7 +10,7 @@ use crate::delay::{
 use crate::experiment::{Joint, Trial};
 use crate::numerics::{chi_square_tail, median, quantile};
 use crate::study::JointEstimate;
-use crate::wording::{measure, p_text, percent, rounded};
+use crate::wording::{p_text, percent, rounded};
 
 /// A joint as it was measured, and its delays.
 #[derive(Clone, Copy, Debug)]
@@ -235,25 +235,11 @@ impl Scatter {
 fn depends_on(found: &AgainstState) -> String {
     /// Quantities that are named.
     const NAMED: usize = 2;
-    let all = || found.kinds.iter().map(|kind| (&kind.correlations, &kind.direction));
-    let every = std::iter::once((&found.correlations, &found.direction)).chain(all());
-    let mut named: Vec<(String, f64)> = Vec::new();
-    for (correlations, direction) in every {
-        let significant = correlations.iter().filter(|it| it.significant);
-        named.extend(
-            significant.filter_map(|it| {
-                Some((format!("{} (ρ = {:.2})", it.variable, it.rho?), it.p_holm?))
-            }),
-        );
-        if let (true, Some(p), Some(apart)) =
-            (direction.significant, direction.p_holm, direction.median_difference_s)
-        {
-            named.push((
-                format!("the direction ({} between up and down)", measure(apart, Some("s"))),
-                p,
-            ));
-        }
-    }
+    let of_kinds = found.kinds.iter().flat_map(|kind| &kind.correlations);
+    let significant = found.correlations.iter().chain(of_kinds).filter(|it| it.significant);
+    let mut named: Vec<(String, f64)> = significant
+        .filter_map(|it| Some((format!("{} (ρ = {:.2})", it.variable, it.rho?), it.p_holm?)))
+        .collect();
     named.sort_by(|a, b| a.1.total_cmp(&b.1));
     let mut names: Vec<String> = Vec::new();
     for (name, _) in named {

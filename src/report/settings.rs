@@ -72,7 +72,7 @@ fn reaction(settings: &Settings) -> String {
         Some(confidence) => tested(confidence),
         None if settings.paper => "not tested".to_owned(),
         None => {
-            format!("{} in trials of few steps and until a step has reacted", tested(CONFIDENCE))
+            format!("{} in trials of few steps and at stops", tested(CONFIDENCE))
         }
     }
 }

@@ -46,14 +46,14 @@ pub fn estimate_joints(
     estimate_each(joints, |_| settings.clone(), done, workers)
 }
 
-/// Estimates every trial of every joint with the settings of that joint.
+/// Estimates every trial of every joint with the settings that are `asked` for that joint.
 pub(crate) fn estimate_each(
     joints: &[Joint],
-    settings: impl Fn(&Joint) -> Settings + Sync,
+    asked: impl Fn(&Joint) -> Settings + Sync,
     done: impl Fn() + Sync,
     workers: &impl Workers,
 ) -> Vec<Result<JointEstimate, EstimateError>> {
-    workers.map(joints, |joint: &Joint| estimate_one(joint, &settings(joint), &done, workers))
+    workers.map(joints, |joint| estimate_one(joint, &asked(joint), &done, workers))
 }
 
 /// Estimates one joint, and its dead time where its input moves all the time.
@@ -90,7 +90,7 @@ pub(super) fn estimate_steps(
         let (samples, needed) = (longest.len(), needed(longest));
         return Err(EstimateError::TooFewSamples { samples, needed });
     }
-    let estimator = Estimator::of(&joint.trials, settings)?;
+    let estimator = Estimator::of(&joint.trials, settings);
     let one_trial = |trial: &Trial| {
         let estimate = estimator.estimate(trial);
         done();

@@ -226,8 +226,6 @@ fn delays_go_into_a_fit() {
     let joint = &made.joints[0];
     let delays = step_delays(&joint.trials).unwrap();
     assert_eq!(delays[0].len(), made.truth.len());
-    let seconds = |one: &Option<tauscope::delay::StepDelay>| one.map(|one| one.delay_s);
-    let delays = delays.iter().map(|trial| trial.iter().map(seconds).collect()).collect();
     let record = FitRecord::new(joint, Split::Time(1.0), Horizon::Steps).with_delays(delays);
     let measured = Component::measured(&VariableDelay).unwrap();
     let model = JointModel::integrator(10.0, 0.2).with(measured);

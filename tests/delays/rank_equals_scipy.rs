@@ -2,7 +2,7 @@
 //! `golden/rank.py` made the numbers.
 
 use proptest::prelude::*;
-use tauscope::numerics::{mann_whitney, spearman};
+use tauscope::numerics::spearman;
 
 fn numbers(text: &str) -> Vec<f64> {
     text.split(' ').map(|number| number.parse().unwrap()).collect()
@@ -13,11 +13,11 @@ fn statistics_and_p_values_agree_to_1e_9() {
     let mut table =
         csv::ReaderBuilder::new().comment(Some(b'#')).from_path("tests/golden/rank.csv").unwrap();
     let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
-    assert!(rows.len() > 50);
+    assert!(rows.len() > 25);
     for row in rows {
         let (x, y) = (numbers(&row[4]), numbers(&row[5]));
-        let test = if &row[0] == "spearman" { spearman(&x, &y) } else { mann_whitney(&x, &y) };
-        let (test, statistic, p_value) = (test.unwrap(), numbers(&row[2])[0], numbers(&row[3])[0]);
+        let (test, statistic, p_value) =
+            (spearman(&x, &y).unwrap(), numbers(&row[2])[0], numbers(&row[3])[0]);
         assert!((test.statistic - statistic).abs() < 1e-9, "{row:?}: {test:?}");
         // Down to 1e-300 the p-values are small numbers, not zeros.
         assert!((test.p_value - p_value).abs() <= 1e-9 * p_value, "{row:?}: {test:?}");
@@ -58,18 +58,5 @@ proptest! {
                 prop_assert!(near(test.p_value, other.p_value));
             }
         }
-        if let (Some(a), Some(b)) = (mann_whitney(&x, &y), mann_whitney(&y, &x)) {
-            prop_assert!(near(a.p_value, b.p_value));
-            prop_assert!(near(a.statistic + b.statistic, (x.len() * y.len()) as f64));
-        }
     }
-}
-
-#[test]
-fn exact_and_approximate_p_values_meet() {
-    let x: Vec<f64> = (0..20).map(f64::from).collect();
-    let y: Vec<f64> = (0..20).map(|k| f64::from(k * 7 % 20) + 3.5).collect();
-    let exact = mann_whitney(&x, &y).unwrap().p_value;
-    let one_more = mann_whitney(&[&x[..], &[10.0]].concat(), &y).unwrap().p_value;
-    assert!((exact - one_more).abs() < 0.05, "{exact} {one_more}");
 }

@@ -360,22 +360,6 @@ fn what_never_goes_back_in_the_log_is_driven_back_between_trials_alone() {
 }
 
 #[test]
-fn levels_keep_out_of_the_dead_band_or_lie_in_it() {
-    let desk = desk();
-    let levels = |options: &str| {
-        let options = format!("design --model boom.toml --levels=-1..1:0.25 {options}");
-        let json = desk.json(&options, 0);
-        let levels = json["joints"][0]["levels"].as_array().unwrap().clone();
-        levels.iter().map(number).collect::<Vec<f64>>()
-    };
-    // The input begins at rest.
-    let avoided = levels("--dead-band avoid");
-    assert!(avoided.iter().all(|level| level.abs() < 1e-9 || level.abs() > 0.3), "{avoided:?}");
-    assert!(levels("--dead-band cross").contains(&0.25));
-    assert!(!levels("--dead-band=-0.6,0.6").contains(&0.5));
-}
-
-#[test]
 fn holds_are_longer_than_the_response_or_that_is_said() {
     let desk = desk();
     let joint = &desk.json("design --model boom.toml", 0)["joints"][0];
@@ -461,9 +445,6 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
         ("--hold 2,1", "expected two numbers, the lower one first"),
         ("--hold 0.001,2", "less than a sample of 0.01 s"),
         ("--output-range=-1,1", "give --model or a log"),
-        ("--dead-band avoid", "no model has it"),
-        ("--model plain.toml --dead-band avoid", "the model has none"),
-        ("--levels=-1,1 --dead-band=-2,2", "fewer than two levels are left"),
         ("--hold 5,6 --duration 3", "too short for a rest and a hold of 5 s"),
         ("--model boom.toml --joint bucket", "not in the model file, which has boom"),
         ("--separate dead_band --model boom.toml", "expected two effects"),

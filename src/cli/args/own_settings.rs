@@ -64,13 +64,14 @@ impl OwnSettings {
         Ok(own)
     }
 
-    /// The settings of `joint`, where `asked` are those of all joints.
+    /// What is asked for of `joint`, where `asked` is for all of them.
     pub(crate) fn of_joint(&self, joint: &Joint, asked: &Settings) -> Settings {
         let own = self.joints.get(&joint.name).map_or(&[][..], Vec::as_slice);
-        let set = |settings: Settings, (set, text): &(Set, String)| {
-            set(text, settings.clone()).unwrap_or(settings)
-        };
-        own.iter().fold(asked.clone(), set).in_samples(&joint.trials)
+        let mut settings = asked.clone();
+        for (set, text) in own {
+            settings = set(text, settings.clone()).unwrap_or(settings);
+        }
+        settings.in_samples(&joint.trials)
     }
 
     /// A note on each joint that has settings and is in no log.

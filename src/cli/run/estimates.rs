@@ -1,7 +1,7 @@
 //! Delays of joints: those that have one, and what is said of them.
 
 use crate::cli::failure::{read_failures, said};
-use crate::delay::{Condition, Decision, EstimateError, Verdict, delay_beyond_holds};
+use crate::delay::{Condition, Decision, EstimateError, Verdict};
 use crate::experiment::{Experiment, Joint, Trial, coarse_resolution, saturations, spike_count};
 use crate::numerics::{quantile, to_digits};
 use crate::report::EstimatedJoint;
@@ -61,7 +61,6 @@ fn notes_on(estimated: EstimatedJoint<'_>) -> Vec<String> {
     // What is said of two lines is not said of an onset.
     if estimate.dead_time.is_none() && !estimate.settings.method.spec().has_intervals {
         notes.extend(unsmoothed(joint, estimate));
-        notes.extend(later_than_the_next_step(joint));
     }
     if estimate.dead_time.is_none() {
         notes.extend(as_long_as_allowed(joint, estimate));
@@ -79,19 +78,6 @@ fn notes_on(estimated: EstimatedJoint<'_>) -> Vec<String> {
 
 fn decisions(estimate: &JointEstimate) -> impl Iterator<Item = &Decision> {
     estimate.estimated().flat_map(|trial| &trial.decisions)
-}
-
-/// A line where the delay is longer than most holds.
-fn later_than_the_next_step(joint: &Joint) -> Option<String> {
-    delay_beyond_holds(&joint.trials).map(|delay_s| {
-        format!(
-            "over the whole record the output follows the input about {} s late, which is longer \
-             than most levels are held, so the listed delays are those of reactions to earlier \
-             steps. Fit a model to find the delay (`tauscope compare`), or hold the levels for \
-             longer",
-            number(delay_s),
-        )
-    })
 }
 
 /// A line on delays that `--max-delay` may have cut short.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::curve::Curve;
 use super::response::{AHEAD, Lags, NUMERATORS, Numerators};
 use crate::experiment::Trial;
-use crate::numerics::{Autoregression, NormalEquations, residuals_of};
+use crate::numerics::{NormalEquations, autoregression, residuals_of};
 
 /// Shortest period that is worked at: faster logs are averaged over as many samples. A dead
 /// time is found between samples, so that this is no limit to it.
@@ -125,8 +125,8 @@ pub(super) fn changes(values: &[f64]) -> Vec<f64> {
 
 /// What is new in a signal of such autocovariances: `w_k = e_k − Σ a_i e_(k−i)`, as a filter.
 pub(super) fn whitening(covariances: &[f64], samples: usize) -> Vec<f64> {
-    let memory = Autoregression::of(covariances, samples);
-    std::iter::once(1.0).chain(memory.coefficients.iter().map(|a| -a)).collect()
+    let memory = autoregression(covariances, samples);
+    std::iter::once(1.0).chain(memory.iter().map(|a| -a)).collect()
 }
 
 /// `values` after a filter; the first was held before.

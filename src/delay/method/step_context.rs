@@ -131,7 +131,7 @@ impl StepContext<'_> {
             }
             // M_i < 2: no pair of lines.
             Condition::TooShort => {
-                let rows = decision.segment.len() / settings.beta;
+                let rows = decision.segment.len() / settings.beta.max(1);
                 let outcome = Outcome::from(best.is_some() || decision.fine.is_some());
                 (Some(rows as f64), Some(2.0), outcome)
             }

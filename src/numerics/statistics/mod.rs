@@ -12,4 +12,4 @@ pub(crate) use quantile::{
 };
 pub use quantile::{median, quantile};
 pub(crate) use rank::holm;
-pub use rank::{RankTest, mann_whitney, ranks, spearman};
+pub use rank::{RankTest, ranks, spearman};

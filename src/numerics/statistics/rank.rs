@@ -4,7 +4,6 @@
 //! that is not a number must be left out by the caller.
 
 use statrs::function::beta::checked_beta_reg;
-use statrs::function::erf::erfc;
 
 use crate::numerics::moments::dot;
 
@@ -14,16 +13,13 @@ const MIN_PAIRS: usize = 4;
 /// Most pairs whose orders are all tried: `9! = 362 880` of them take a millisecond.
 const EXACT_PAIRS: usize = 9;
 
-/// Most values in both groups for which all groupings are counted.
-const EXACT_GROUPED: usize = 40;
-
 /// Rounding of a rank sum, as a part of it.
 const ROUNDING: f64 = 1e-9;
 
 /// A statistic and how likely one at least as far out is by chance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RankTest {
-    /// Spearman's ρ, or the `U` of the first group.
+    /// Spearman's ρ.
     pub statistic: f64,
     /// Two-sided: the share of equally likely orders that are at least as far out.
     pub p_value: f64,
@@ -133,90 +129,6 @@ fn student_p(rho: f64, n: usize) -> Option<f64> {
     checked_beta_reg((n as f64 - 2.0) / 2.0, 0.5, rest).ok()
 }
 
-/// The Mann-Whitney test of whether one group lies above the other.
-///
-/// ```text
-/// U = R - n₁ (n₁ + 1) / 2,     mean n₁ n₂ / 2
-/// ```
-///
-/// with `R` the sum of the ranks of `first` among all. Up to forty values in both groups
-/// the p-value is exact, ties included: the share of the ways to choose `n₁` of the ranks
-/// whose `U` is as far from its mean. Above, `U` is taken as normal, with its variance
-/// corrected for ties and half a step off for continuity.
-///
-/// `None` when a group is empty or all values are equal.
-///
-/// # References
-/// H. B. Mann, D. R. Whitney, Ann. Math. Statist. 18 (1947), 50-60; E. L. Lehmann,
-/// "Nonparametrics" (1975), chapter 1 (ties).
-pub fn mann_whitney(first: &[f64], second: &[f64]) -> Option<RankTest> {
-    if first.is_empty() || second.is_empty() {
-        return None;
-    }
-    let all = [first, second].concat();
-    let ranks = ranks(&all);
-    if ranks.iter().all(|rank| (rank - ranks[0]).abs() < ROUNDING) {
-        return None;
-    }
-    let n = first.len() as f64;
-    let sum: f64 = ranks.iter().take(first.len()).sum();
-    let p_value = if all.len() <= EXACT_GROUPED {
-        all_groupings(&ranks, first.len(), sum)
-    } else {
-        normal_p(&ranks, first.len(), sum)
-    };
-    Some(RankTest { statistic: sum - n * (n + 1.0) / 2.0, p_value })
-}
-
-/// The share of the ways to choose `size` of `ranks` whose sum is as far from its mean as
-/// `sum`.
-///
-/// Ways are counted rank by rank: `ways[k][s]` choose `k` ranks of sum `s / 2`. Ranks with
-/// ties are whole or half numbers, so twice a rank is an index.
-fn all_groupings(ranks: &[f64], size: usize, sum: f64) -> f64 {
-    let doubled: Vec<usize> = ranks.iter().map(|rank| whole(2.0 * rank)).collect();
-    let largest: usize = doubled.iter().sum();
-    let mut ways = vec![vec![0.0; largest + 1]; size + 1];
-    ways[0][0] = 1.0;
-    for &rank in &doubled {
-        // From the largest down, so that no rank is chosen twice.
-        for chosen in (1..=size).rev() {
-            let (fewer, more) = ways.split_at_mut(chosen);
-            let from = &fewer[chosen - 1][..=largest - rank];
-            more[0][rank..].iter_mut().zip(from).for_each(|(to, from)| *to += from);
-        }
-    }
-    let mean = 2.0 * mean_sum(ranks.len(), size);
-    let limit = (2.0 * sum - mean).abs() - ROUNDING * mean;
-    let sums = || ways[size].iter().zip(0..);
-    let far = sums().filter(|(_, s)| (f64::from(*s) - mean).abs() >= limit);
-    let far: f64 = far.map(|(ways, _)| ways).sum();
-    far / sums().map(|(ways, _)| ways).sum::<f64>()
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 81")]
-fn whole(value: f64) -> usize {
-    value.round() as usize
-}
-
-/// The mean of the sum of `size` of the ranks `1 … n`.
-fn mean_sum(n: usize, size: usize) -> f64 {
-    size as f64 * (n as f64 + 1.0) / 2.0
-}
-
-/// Two-sided p-value of a normal rank sum: choosing `n₁` of `n` values without putting
-/// back, its variance is `n₁ n₂ / (n (n - 1)) · Σ (rank - mean)²`, ties included.
-fn normal_p(ranks: &[f64], size: usize, sum: f64) -> f64 {
-    let n = ranks.len() as f64;
-    let mean = f64::midpoint(1.0, n);
-    let squares: f64 = ranks.iter().map(|rank| (rank - mean) * (rank - mean)).sum();
-    let groups = size as f64 * (n - size as f64);
-    let deviation = (groups * squares / (n * (n - 1.0))).sqrt();
-    // Half a step off, for continuity.
-    let distance = (sum - mean_sum(ranks.len(), size)).abs() - 0.5;
-    erfc(distance.max(0.0) / deviation / std::f64::consts::SQRT_2)
-}
-
 /// Holm's correction: p-values that may each be held against the level of all together.
 ///
 /// The `k`-th smallest of `m` is multiplied by `m - k + 1`, and none comes out below one
@@ -257,8 +169,6 @@ mod tests {
         assert_eq!(spearman(&[1.0; 5], &[1.0, 2.0, 3.0, 4.0, 5.0]), None);
         assert_eq!(spearman(&[1.0, 2.0, 3.0], &[1.0, 2.0, 3.0]), None);
         assert_eq!(spearman(&[1.0; 4], &[1.0; 5]), None);
-        assert_eq!(mann_whitney(&[1.0, 1.0], &[1.0]), None);
-        assert_eq!(mann_whitney(&[], &[1.0]), None);
     }
 
     #[test]

@@ -6,7 +6,6 @@ use clap::Args as ClapArgs;
 
 use crate::cli::args::number::{self, at_least_one};
 use crate::cli::args::{ReadingArgs, RunArgs};
-use crate::design::Band;
 use crate::experiment::format_names;
 use crate::numerics::to_decimals;
 
@@ -74,16 +73,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X", value_parser = number)]
     pub(super) start: Option<f64>,
 
-    /// `cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a
-    /// band that must contain no level
-    #[arg(long, value_name = "cross|avoid|LO,HI", value_parser = band, allow_hyphen_values = true)]
-    pub(super) dead_band: Option<Band>,
-
     /// Two effects to distinguish. The model has one of them, or a log is given
-    #[arg(
-        long, value_name = "EFFECT,EFFECT", value_delimiter = ',',
-        conflicts_with_all = ["levels", "dead_band"]
-    )]
+    #[arg(long, value_name = "EFFECT,EFFECT", value_delimiter = ',', conflicts_with = "levels")]
     pub(super) separate: Vec<String>,
 
     /// The probability of success that is wanted
@@ -181,17 +172,6 @@ fn pair(text: &str) -> Option<(f64, f64)> {
     (low <= high).then_some((low, high))
 }
 
-pub(crate) fn band(text: &str) -> Result<Band, String> {
-    match text {
-        "cross" => Ok(Band::Cross),
-        "avoid" => Ok(Band::Avoid),
-        _ => {
-            let given = pair(text).map(|(low, high)| Band::Given(low, high));
-            given.ok_or_else(|| "expected cross, avoid, or two ends, as in -0.4,0.4".to_owned())
-        }
-    }
-}
-
 pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
     finite(text).filter(|x| *x > 0.0).ok_or_else(|| "expected a number above zero".to_owned())
 }
@@ -231,8 +211,5 @@ mod tests {
     fn pairs_ascend() {
         assert_eq!(ascending("0.9,2"), Ok((0.9, 2.0)));
         assert!(ascending("2,0.9").is_err() && ascending("2").is_err());
-        assert_eq!(band("-0.4,0.4"), Ok(Band::Given(-0.4, 0.4)));
-        assert_eq!(band("avoid"), Ok(Band::Avoid));
-        assert!(band("across").is_err_and(|why| why.contains("avoid")));
     }
 }

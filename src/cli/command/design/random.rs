@@ -1,7 +1,7 @@
 //! Random steps for each joint.
 
 use crate::batch::Threads;
-use crate::design::{Band, Logged, Plan, PlanRequest, TestRig, Uncertain, plan, reach, response_s};
+use crate::design::{Logged, Plan, PlanRequest, TestRig, Uncertain, plan, reach, response_s};
 use crate::experiment::Joint;
 use crate::report::design::{Basis, DesignedJoint};
 use crate::report::design_words::{
@@ -72,14 +72,9 @@ fn steps_of(
 /// What is asked for, in differences to `rest`.
 fn request(args: &Args, rest: f64) -> PlanRequest {
     let levels = args.levels.as_ref();
-    let about = |band| match band {
-        Band::Given(lower, upper) => Band::Given(lower - rest, upper - rest),
-        of_model => of_model,
-    };
     PlanRequest {
         levels: levels.map(|Levels(levels)| levels.iter().map(|u| u - rest).collect()),
         largest: args.largest,
-        band: args.dead_band.map(about),
         hold_s: args.hold,
         duration_s: args.duration,
         trials: args.trials,

@@ -92,8 +92,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         if args.passband.is_some() { (grid, Vec::new()) } else { fitting(&grid, trials()) };
     let runs = (joints.len() * grid.runs().len()) as u64;
     let bar = Bar::new(verbosity, "sweeping", "runs", runs);
-    let of_joint =
-        |joint: &Joint| grid.with_settings(|settings| session.own().of_joint(joint, settings));
+    let own = session.own();
+    let of_joint = |joint: &Joint| grid.with_settings(|settings| own.of_joint(joint, settings));
     let work = || sweep_joints(joints, of_joint, args.tolerance, || bar.step(), &Threads);
     let results = session.in_threads(work)?;
     drop(bar);
