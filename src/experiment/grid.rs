@@ -85,7 +85,8 @@ pub(super) struct Piece {
 }
 
 impl Grid {
-    /// Lays the grid over rows at `times`, in seconds, where these are uniform or another period is asked for.
+    /// Lays the grid over rows at `times`, in seconds, where these are uniform but for rows that are lost
+    /// and may be filled, or another period is asked for.
     pub(super) fn lay(times: &[f64], repair: Repair) -> Result<Self, ReadError> {
         let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         if let Some(row) = steps.iter().position(|&step| step <= 0.0 || step.is_nan()) {
@@ -98,22 +99,13 @@ impl Grid {
             let part = Part::resampled(rows, times.to_vec(), longest_gap_s);
             return Self::of_parts(period, vec![part]);
         }
-        if let Some(row) = steps.iter().position(|step| (step - median).abs() > UNIFORMITY * median)
-        {
-            let (step, period) = (steps[row], as_written(median, DIGITS));
-            let text = format!(
-                "this sample comes {step} s after the one before, but the period is {period} s (median)"
-            );
-            let kind = ReadErrorKind::NotUniform { step, period };
-            return Err(ReadError::new(kind, text).at_index(row + 1));
-        }
+        let places = place_rows(&steps, median, repair)?;
         let start_s = times.first().copied().unwrap_or_default();
         let span = times.last().copied().unwrap_or_default() - start_s;
-        let period = span / steps.len() as f64;
+        let period = span / places.last().copied().unwrap_or(1) as f64;
         let period =
             SamplePeriod::from_seconds(as_written(period, DIGITS)).ok_or_else(single_row)?;
         let longest_gap_s = repair.longest_gap_s(period.seconds());
-        let places = rows.clone();
         Self::of_parts(period, vec![Part::at_places(start_s, rows, &places, longest_gap_s)])
     }
 
@@ -278,6 +270,37 @@ impl Signals {
             covariates: self.covariates.iter().map(|signal| of(signal)).collect(),
         }
     }
+}
+
+/// Places on the grid that are still distinct as floating-point numbers.
+const MOST_PLACES: f64 = 1e12;
+
+/// The place of each row on a grid of `period`, from the steps between rows.
+fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, ReadError> {
+    let mut places = Vec::with_capacity(steps.len() + 1);
+    places.push(0);
+    let mut place = 0;
+    for (index, &step) in steps.iter().enumerate() {
+        let periods = (step / period).round().max(1.0);
+        let uniform = (step - periods * period).abs() <= UNIFORMITY * period;
+        // Over a long pause the clock may drift by more than a part of one period.
+        let pause = periods >= 1.0 / UNIFORMITY;
+        let countable = periods < MOST_PLACES;
+        let lost_rows = repair.fill_s.is_some() && (uniform || pause) && countable;
+        if !(lost_rows || uniform && periods < 1.5) {
+            let period = as_written(period, DIGITS);
+            let text = format!(
+                "this sample comes {step} s after the one before, but the period is {period} s (median)"
+            );
+            let kind = ReadErrorKind::NotUniform { step, period };
+            return Err(ReadError::new(kind, text).at_index(index + 1));
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
+        let periods = periods as usize;
+        place = periods.saturating_add(place);
+        places.push(place);
+    }
+    Ok(places)
 }
 
 /// Replaces each NaN by the number before it, the first ones by the first number.

@@ -36,8 +36,7 @@ pub(super) fn grids(
     }
     match fault {
         None => return Ok((uniform.into_iter().flatten().collect(), Vec::new())),
-        Some(fault) if !is_mended(&fault.1) => return Err(fault),
-        Some(fault) if repair.as_it_stands && repair.fill_s.is_none() => return Err(fault),
+        Some(fault) if repair.as_it_stands || !is_mended(&fault.1) => return Err(fault),
         Some(_) => {}
     }
     let mut clocks = Vec::new();

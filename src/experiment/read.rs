@@ -368,6 +368,11 @@ fn laid_out_foreign(
 ) -> Result<(Layout, Experiment), ReadError> {
     let unusable = match place.file.map_or(Ok(None), ColumnMap::kept_beside) {
         Ok(Some((file, kept))) => match laid_out_as_kept(head, &file, kept, options) {
+            // It was kept for another log of the folder.
+            Err(error) if matches!(error.kind, ReadErrorKind::MissingColumn) => {
+                let (file, column) = (file.display(), error.column().unwrap_or_default());
+                Some(format!("`{file}` names the column `{column}`, which this log lacks"))
+            }
             Err(error) => {
                 let error = error.in_file(place.file.unwrap_or(&file));
                 Some(format!("`{}`: {error}", file.display()))
