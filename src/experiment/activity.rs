@@ -1,8 +1,5 @@
 //! How much the other joints of a log do: what a shared pump feels.
 
-use std::collections::{HashMap, HashSet};
-use std::sync::OnceLock;
-
 use super::joint::Joint;
 use super::trial::Trial;
 
@@ -15,53 +12,18 @@ pub struct Other<'a> {
     pub delay_s: f64,
 }
 
-/// The joints that share a supply.
-///
-/// What all of them do together is added up once for each list of times that several of them have,
-/// and what a joint does itself is taken off: the work grows with the joints, not with their square.
-/// The sums are of whole steps of an activity, which are exact in any order, so that nothing is
-/// left of a joint where the others are at rest.
+/// The joints that share a supply, each with the largest magnitude of its input.
 #[derive(Debug)]
-pub struct Supply<'a> {
-    drawn: Vec<Draw<'a>>,
-    /// Steps of a joint that is driven as hard as ever: a power of two, for up to a thousand joints
-    /// finer than what a double near 1 is rounded by.
-    steps: f64,
-    sums: HashMap<Clock<'a>, OnceLock<Vec<u64>>>,
-}
-
-/// The times of the samples of a trial.
-type Clock<'a> = (&'a str, [u64; 3], usize);
-
-/// What a joint draws from the supply.
-#[derive(Debug)]
-struct Draw<'a> {
-    other: Other<'a>,
-    /// The largest magnitude of its input.
-    most: f64,
-    /// Its trials by their labels, and by the labels of what they are parts of.
-    by_label: HashMap<&'a str, Vec<&'a Trial>>,
-    by_whole: HashMap<&'a str, Vec<&'a Trial>>,
-}
-
-/// Steps that the activities of all joints may sum up to.
-const ALL_STEPS: u64 = 1 << 63;
+pub struct Supply<'a>(Vec<(Other<'a>, f64)>);
 
 impl<'a> Supply<'a> {
     /// All `joints` that share it.
     pub fn of(joints: impl IntoIterator<Item = Other<'a>>) -> Self {
-        let drawn: Vec<Draw<'a>> = joints.into_iter().map(Draw::of).collect();
-        let mut sums = HashMap::new();
-        let mut met = HashSet::new();
-        for trial in drawn.iter().flat_map(|draw| &draw.other.joint.trials) {
-            let clock = clock(trial);
-            // Of times that one joint has alone the sum would be used once.
-            if !met.insert(clock) {
-                sums.entry(clock).or_default();
-            }
-        }
-        let joints = drawn.len().next_power_of_two() as u64;
-        Self { drawn, steps: (ALL_STEPS / joints) as f64, sums }
+        let most = |joint: &Joint| {
+            let inputs = joint.trials.iter().flat_map(Trial::input);
+            inputs.fold(0.0, |most: f64, input| most.max(input.abs()))
+        };
+        Self(joints.into_iter().map(|other| (other, most(other.joint))).collect())
     }
 
     /// The activity of all joints but the one with this index, for each of its trials a value per
@@ -72,85 +34,35 @@ impl<'a> Supply<'a> {
     /// over all its trials. Trials belong together by their labels, samples by their times. Where a
     /// joint was not logged it counts as at rest. Without other joints the lists are empty.
     pub fn beside(&self, index: usize) -> Vec<Vec<f64>> {
-        let Some(own) = self.drawn.get(index) else { return Vec::new() };
-        let trials = &own.other.joint.trials;
-        let others = self.drawn.len() - 1;
-        if others == 0 {
-            return vec![Vec::new(); trials.len()];
-        }
+        let Some((own, _)) = self.0.get(index) else { return Vec::new() };
         let of_trial = |trial: &Trial| {
-            let mut own_steps = vec![0; trial.len()];
-            own.add_to(&mut own_steps, trial, self.steps);
-            let beside =
-                |(all, own): (&u64, &u64)| (all - own) as f64 / (self.steps * others as f64);
-            match self.sums.get(&clock(trial)) {
-                Some(sum) => {
-                    let sum = sum.get_or_init(|| self.sum(trial));
-                    sum.iter().zip(&own_steps).map(beside).collect()
+            let count = self.0.len() - 1;
+            let mut sum = vec![0.0; if count > 0 { trial.len() } else { 0 }];
+            let others = self.0.iter().enumerate().filter(|(other, _)| *other != index);
+            for (_, (other, most)) in others.filter(|(_, (_, most))| *most > 0.0) {
+                let parts = at_the_time_of(trial.label(), &other.joint.trials);
+                for (sum, sample) in sum.iter_mut().zip(1..) {
+                    let time_s = trial.logged_time_s(sample) - other.delay_s;
+                    let input: f64 = parts.iter().map(|part| held(part, time_s).abs()).sum();
+                    // Trials of one label may overlap; a joint draws no more than all it can.
+                    *sum += (input / most).min(1.0) / count as f64;
                 }
-                None => self.sum(trial).iter().zip(&own_steps).map(beside).collect(),
             }
+            sum
         };
-        trials.iter().map(of_trial).collect()
-    }
-
-    /// What all joints draw at the times of `trial`, in steps.
-    fn sum(&self, trial: &Trial) -> Vec<u64> {
-        let mut sum = vec![0; trial.len()];
-        for draw in &self.drawn {
-            draw.add_to(&mut sum, trial, self.steps);
-        }
-        sum
+        own.joint.trials.iter().map(of_trial).collect()
     }
 }
 
-/// The times of the samples of `trial`, and its label: what is drawn at them is the same for all
-/// trials that have both.
-fn clock(trial: &Trial) -> Clock<'_> {
-    let numbers = [trial.origin_s(), trial.time_s(1), trial.period().seconds()];
-    (trial.label(), numbers.map(f64::to_bits), trial.len())
-}
-
-impl<'a> Draw<'a> {
-    fn of(other: Other<'a>) -> Self {
-        let trials = &other.joint.trials;
-        let inputs = trials.iter().flat_map(Trial::input);
-        let most = inputs.fold(0.0, |most: f64, input| most.max(input.abs()));
-        let (mut by_label, mut by_whole) = (HashMap::new(), HashMap::new());
-        for trial in trials {
-            by_label.entry(trial.label()).or_insert_with(Vec::new).push(trial);
-            by_whole.entry(Trial::whole_label(trial.label())).or_insert_with(Vec::new).push(trial);
-        }
-        Self { other, most, by_label, by_whole }
+/// Those of `trials` that may run at the same time as one labelled `label`: those with this label; else the parts
+/// of the same trial, which were split where one joint has a gap.
+fn at_the_time_of<'a>(label: &str, trials: &'a [Trial]) -> Vec<&'a Trial> {
+    let same: Vec<&Trial> = trials.iter().filter(|trial| trial.label() == label).collect();
+    if !same.is_empty() {
+        return same;
     }
-
-    /// Its trials that may run at the same time as one labelled `label`: the one with this
-    /// label; else the parts of the same trial, which were split where one joint has a gap.
-    fn at_the_time_of(&self, label: &str) -> &[&'a Trial] {
-        let parts = || self.by_whole.get(Trial::whole_label(label));
-        self.by_label.get(label).or_else(parts).map_or(&[], Vec::as_slice)
-    }
-
-    /// Adds what it draws at the times of `trial` to `sum`, in steps.
-    fn add_to(&self, sum: &mut [u64], trial: &Trial, steps: f64) {
-        if self.most <= 0.0 {
-            return;
-        }
-        let parts = self.at_the_time_of(trial.label());
-        for (value, sample) in sum.iter_mut().zip(1..) {
-            let time_s = trial.logged_time_s(sample) - self.other.delay_s;
-            let input: f64 = parts.iter().map(|part| held(part, time_s).abs()).sum();
-            // Trials of one label may overlap; a joint draws no more than all it can.
-            let share = (input / self.most).min(1.0);
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a part of the steps of all"
-            )]
-            let drawn = (share * steps) as u64;
-            *value += drawn;
-        }
-    }
+    let whole = Trial::whole_label(label);
+    trials.iter().filter(|trial| Trial::whole_label(trial.label()) == whole).collect()
 }
 
 /// The input of `trial` at a time, held from its last sample; zero before and after it.

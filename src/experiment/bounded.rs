@@ -6,54 +6,35 @@ use std::path::Path;
 
 use super::format::text_of;
 
-/// Bytes that nobody writes by hand.
-const MOST: u64 = 64 << 20;
+/// Bytes that neither a person writes by hand nor a program about the steps of an experiment.
+const MOST: u64 = 256 << 20;
 
-/// Bytes that no program writes about the steps of an experiment.
-const MOST_OF_RESULTS: u64 = 256 << 20;
-
-/// The text of a file that somebody wrote, as `std::fs::read_to_string` gives it, which reads a
+/// The text of a file that somebody wrote, or this program, as `std::fs::read_to_string` gives it, which reads a
 /// device without end for ever.
 ///
 /// # Errors
-/// What the system says; [`ErrorKind::InvalidData`] for what is longer than 64 MB, or is not UTF-8.
+/// What the system says; [`ErrorKind::InvalidData`] for what is longer than 256 MB, or is not UTF-8.
 pub(crate) fn read_text(path: &Path) -> std::io::Result<String> {
-    read_text_to(path, MOST)
+    String::from_utf8(read(path)?).map_err(|error| Error::new(ErrorKind::InvalidData, error))
 }
 
 /// The text of a table that somebody filled in, as a spreadsheet program writes it: UTF-8, UTF-16 or
 /// Windows-1252.
 ///
 /// # Errors
-/// What the system says; [`ErrorKind::InvalidData`] for what is longer than 64 MB, or is no text.
+/// As [`read_text`].
 pub(crate) fn read_sheet(path: &Path) -> std::io::Result<String> {
+    text_of(read(path)?).ok_or_else(|| Error::new(ErrorKind::InvalidData, "it is no text"))
+}
+
+fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(MOST + 1).read_to_end(&mut bytes)?;
-    check_length(bytes.len(), MOST)?;
-    text_of(bytes).ok_or_else(|| Error::new(ErrorKind::InvalidData, "it is no text"))
-}
-
-/// The text of a file that this program wrote, or another one in its form, as [`read_text`] gives it.
-///
-/// # Errors
-/// What the system says; [`ErrorKind::InvalidData`] for what is longer than 256 MB, or is not UTF-8.
-pub(crate) fn read_result(path: &Path) -> std::io::Result<String> {
-    read_text_to(path, MOST_OF_RESULTS)
-}
-
-fn read_text_to(path: &Path, most: u64) -> std::io::Result<String> {
-    let mut text = String::new();
-    File::open(path)?.take(most + 1).read_to_string(&mut text)?;
-    check_length(text.len(), most)?;
-    Ok(text)
-}
-
-fn check_length(bytes: usize, most: u64) -> std::io::Result<()> {
-    if bytes as u64 <= most {
-        return Ok(());
+    if bytes.len() as u64 > MOST {
+        let reason = format!("it has more than {} MB, which no file of this kind has", MOST >> 20);
+        return Err(Error::new(ErrorKind::InvalidData, reason));
     }
-    let reason = format!("it has more than {} MB, which no file of this kind has", most >> 20);
-    Err(Error::new(ErrorKind::InvalidData, reason))
+    Ok(bytes)
 }
 
 #[cfg(test)]
@@ -65,8 +46,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.toml");
         std::fs::write(&path, "a = 1\n").unwrap();
-        assert_eq!(read_text_to(&path, 6).unwrap(), "a = 1\n");
-        assert_eq!(read_text_to(&path, 5).unwrap_err().kind(), ErrorKind::InvalidData);
+        assert_eq!(read_text(&path).unwrap(), "a = 1\n");
         std::fs::write(&path, b"\xff").unwrap();
         assert_eq!(read_text(&path).unwrap_err().kind(), ErrorKind::InvalidData);
         assert_eq!(read_text(folder.path()).unwrap_err().kind(), ErrorKind::IsADirectory);
@@ -75,7 +55,7 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn a_device_without_end_is_refused() {
-        let error = read_text_to(Path::new("/dev/zero"), 1 << 20).unwrap_err();
-        assert!(error.to_string().contains("more than 1 MB"), "{error}");
+        let error = read_text(Path::new("/dev/zero")).unwrap_err();
+        assert!(error.to_string().contains("more than 256 MB"), "{error}");
     }
 }

@@ -175,14 +175,16 @@ impl ColumnMap {
     /// The mapping as the text of a file, which [`Self::read`] reads.
     pub fn to_toml(&self) -> String {
         let mut joints: BTreeMap<String, MapJoint> = BTreeMap::new();
-        for joint in &self.joints {
-            let JointColumns { name, input, output, input_unit, output_unit, covariates } =
-                joint.clone();
-            let (input, output) = (Some(input), Some(output));
-            let covariates = covariates.into_iter().collect();
-            let estimate = BTreeMap::new();
-            let joint = MapJoint { input, output, input_unit, output_unit, covariates, estimate };
-            joints.insert(name, joint);
+        for joint in self.joints.iter().cloned() {
+            let columns = MapJoint {
+                input: Some(joint.input),
+                output: Some(joint.output),
+                input_unit: joint.input_unit,
+                output_unit: joint.output_unit,
+                covariates: joint.covariates.into_iter().collect(),
+                estimate: BTreeMap::new(),
+            };
+            joints.insert(joint.name, columns);
         }
         for (name, settings) in &self.estimate {
             let settings = settings.iter().map(|(name, text)| (name.clone(), text.clone().into()));
@@ -199,33 +201,25 @@ impl ColumnMap {
     }
 }
 
-#[derive(Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 struct MapFile {
-    #[serde(skip_serializing_if = "Option::is_none")]
     time: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     trial: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     sample_period: Option<f64>,
-    #[serde(default)]
     joint: BTreeMap<String, MapJoint>,
 }
 
 #[derive(Default, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 struct MapJoint {
-    #[serde(skip_serializing_if = "Option::is_none")]
     input: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     output: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     input_unit: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     output_unit: Option<String>,
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     covariates: BTreeMap<String, String>,
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     estimate: BTreeMap<String, toml::Value>,
 }
 

@@ -54,12 +54,10 @@ pub fn conditions(trials: &[Trial]) -> Vec<String> {
             }
         }
     }
-    let mut found: Vec<(&str, &[usize])> = Vec::new();
+    let mut found: Vec<(&str, &Vec<usize>)> = Vec::new();
     for (word, with) in &labelled {
-        let with = with.as_slice();
-        let says_the_same = found.iter().any(|(_, other)| *other == with);
-        let is_condition = is_balanced(with.len(), trials.len()) && !says_the_same;
-        if is_condition && crosses_input(trials, with) {
+        let is_new = found.iter().all(|(_, other)| *other != with);
+        if is_new && is_balanced(with.len(), trials.len()) && crosses_input(trials, with) {
             found.push((word, with));
         }
     }
@@ -82,11 +80,10 @@ fn is_balanced(with: usize, all: usize) -> bool {
 /// Whether most trials have one of the other kind that is driven alike; those `with` a word are one
 /// kind.
 fn crosses_input(trials: &[Trial], with: &[usize]) -> bool {
-    let mut kinds = vec![false; trials.len()];
-    for index in with {
-        kinds[*index] = true;
-    }
-    let drives: Vec<(Drive, bool)> = trials.iter().map(Drive::of).zip(kinds).collect();
+    let drives: Vec<(Drive, bool)> = (0..)
+        .zip(trials)
+        .map(|(index, trial)| (Drive::of(trial), with.binary_search(&index).is_ok()))
+        .collect();
     let has_twin = |(own, kind): &&(Drive, bool)| {
         drives.iter().any(|(other, other_kind)| kind != other_kind && own.is_like(other))
     };

@@ -78,6 +78,11 @@ impl ReadError {
         Self { kind, path, row: 0, column: None, is_column_in_text: false, text }
     }
 
+    /// Something in it is none that can be read or computed with.
+    pub(super) fn content(text: impl Into<String>) -> Self {
+        Self::new(ReadErrorKind::Content, text)
+    }
+
     /// A file cannot be read as `format`, and why.
     pub(super) fn format(format: &str, reason: impl fmt::Display, remedy: &str) -> Self {
         Self::new(ReadErrorKind::Format, format!("cannot be read as {format}: {reason}; {remedy}"))
@@ -93,15 +98,12 @@ impl ReadError {
         Self::new(ReadErrorKind::Empty, "there is a header but no sample below it")
     }
 
-    /// Two columns that are needed differ in length.
-    pub(super) fn unequal_columns(
-        (column, found): (String, usize),
-        (other, expected): (String, usize),
-    ) -> Self {
+    /// A column that is needed has another length than the times.
+    pub(super) fn unequal_columns(column: String, found: usize, rows: usize) -> Self {
         let text = format!(
-            "column `{column}` has {found} values but `{other}` has {expected}; choose columns of one length"
+            "column `{column}` has {found} values but the log has {rows} rows; choose columns of one length"
         );
-        Self::new(ReadErrorKind::Content, text).about(column)
+        Self::content(text).about(column)
     }
 
     /// It is about this row: the line of the file, counted from 1, as an editor shows it; where a file

@@ -56,8 +56,8 @@ pub(super) struct Grid {
 /// Rows of a trial that follow one another, in the order of their time.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
-    /// The rows, where they are not simply those of the trial.
-    rows: Option<Vec<usize>>,
+    /// The rows of the trial that it consists of.
+    rows: Vec<usize>,
     /// Where each lies: in samples of a grid that begins at so many seconds, else in seconds.
     at: Vec<f64>,
     on_grid_from_s: Option<f64>,
@@ -93,9 +93,11 @@ impl Grid {
             return Err(not_increasing(times, row + 1));
         }
         let median = median(&steps).ok_or_else(single_row)?;
+        let rows: Vec<usize> = (0..times.len()).collect();
         if let Some(period) = repair.resample {
             let longest_gap_s = repair.longest_gap_s(period.seconds().max(median));
-            return Self::of_parts(period, vec![Part::resampled(times.to_vec(), longest_gap_s)]);
+            let part = Part::resampled(rows, times.to_vec(), longest_gap_s);
+            return Self::of_parts(period, vec![part]);
         }
         let places = place_rows(&steps, median, repair)?;
         let start_s = times.first().copied().unwrap_or_default();
@@ -104,7 +106,7 @@ impl Grid {
         let period =
             SamplePeriod::from_seconds(as_written(period, DIGITS)).ok_or_else(single_row)?;
         let longest_gap_s = repair.longest_gap_s(period.seconds());
-        Self::of_parts(period, vec![Part::at_places(start_s, &places, longest_gap_s)])
+        Self::of_parts(period, vec![Part::at_places(start_s, rows, &places, longest_gap_s)])
     }
 
     /// The grid of some `parts`.
@@ -143,26 +145,25 @@ impl Grid {
 }
 
 impl Part {
-    /// Rows in these `places` of a grid that begins at `start_s`.
-    pub(super) fn at_places(start_s: f64, places: &[usize], longest_gap_s: f64) -> Self {
+    /// These `rows` of the trial in these `places` of a grid that begins at `start_s`.
+    pub(super) fn at_places(
+        start_s: f64,
+        rows: Vec<usize>,
+        places: &[usize],
+        longest_gap_s: f64,
+    ) -> Self {
         let at = places.iter().map(|place| *place as f64).collect();
-        Self { rows: None, at, on_grid_from_s: Some(start_s), longest_gap_s }
+        Self { rows, at, on_grid_from_s: Some(start_s), longest_gap_s }
     }
 
-    /// Rows at these times, which increase, under a grid that lies anew over them.
-    pub(super) fn resampled(times: Vec<f64>, longest_gap_s: f64) -> Self {
-        Self { rows: None, at: times, on_grid_from_s: None, longest_gap_s }
-    }
-
-    /// This part, which consists of these rows of the trial.
-    pub(super) fn of_rows(self, rows: Vec<usize>) -> Self {
-        Self { rows: Some(rows), ..self }
+    /// These `rows` of the trial at these times, which increase, under a grid that lies anew over them.
+    pub(super) fn resampled(rows: Vec<usize>, times: Vec<f64>, longest_gap_s: f64) -> Self {
+        Self { rows, at: times, on_grid_from_s: None, longest_gap_s }
     }
 
     /// The row of the trial with this index among its own.
     fn row(&self, index: usize) -> usize {
-        let row = self.rows.as_ref().map(|rows| rows.get(index));
-        row.map_or(index, |row| row.copied().unwrap_or(usize::MAX))
+        self.rows.get(index).copied().unwrap_or(usize::MAX)
     }
 
     fn at(&self, index: usize) -> f64 {

@@ -24,7 +24,7 @@ const ROUND_RELATIVE: f64 = 0.03;
 pub(super) fn grids(
     trials: &[&[f64]],
     repair: Repair,
-    number: &dyn Fn(usize, usize) -> u64,
+    number: Number<'_>,
 ) -> Result<(Vec<Grid>, Vec<String>), (usize, ReadError)> {
     let mut uniform = Vec::new();
     let mut fault = None;
@@ -55,9 +55,7 @@ pub(super) fn grids(
     let is_uniform = uniform.iter().map(Option::is_some);
     let laid = clocks.into_iter().zip(periods).zip(is_uniform);
     let laid = laid.map(|((clock, period), is_uniform)| Laid { clock, period, is_uniform });
-    let is_resampled = repair.resample.is_some();
-    let findings = Findings { trials: laid.collect(), number, is_resampled };
-    Ok((grids, findings.lines()))
+    Ok((grids, lines(&laid.collect::<Vec<_>>(), repair.resample.is_some(), number)))
 }
 
 /// The period of each trial's grid: trials of one rate share their mean, each counting by its rows, as a round
@@ -111,7 +109,7 @@ fn grid(clock: &Clock, times: &[f64], period: f64, repair: Repair) -> Result<Gri
     let part = |run: &Run| {
         if is_even {
             let start_s = run.start_s(times, period);
-            Part::at_places(start_s, &run.places, longest_gap_s).of_rows(run.rows.clone())
+            Part::at_places(start_s, run.rows.clone(), &run.places, longest_gap_s)
         } else {
             interpolated(run, times, longest_gap_s)
         }
@@ -136,7 +134,7 @@ fn interpolated(run: &Run, times: &[f64], longest_gap_s: f64) -> Part {
     // What the run holds together, the grid does.
     let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
     let longest_gap_s = steps.fold(longest_gap_s, f64::max);
-    Part::resampled(times, longest_gap_s).of_rows(rows)
+    Part::resampled(rows, times, longest_gap_s)
 }
 
 /// The clock of a trial, and the period of its grid.
@@ -148,6 +146,11 @@ struct Laid {
 }
 
 impl Laid {
+    /// Whether its sampling is worth a word.
+    fn is_odd(&self) -> bool {
+        !self.is_uniform && !self.is_only_cut()
+    }
+
     /// Whether nothing is to be said of the clock but where it is cut.
     fn is_only_cut(&self) -> bool {
         /// Jitter, in periods, that is rounding.
@@ -161,123 +164,106 @@ impl Laid {
     }
 }
 
-/// What was found in the clocks of a log.
-struct Findings<'a> {
-    trials: Vec<Laid>,
-    /// What messages call a row of a trial.
-    number: &'a dyn Fn(usize, usize) -> u64,
-    is_resampled: bool,
-}
+/// What messages call a row of a trial.
+type Number<'a> = &'a dyn Fn(usize, usize) -> u64;
 
-/// How many rows of a kind there are, and the first.
+/// How many rows of a kind a clock has, and the first.
 type Count = fn(&Clock) -> Option<(usize, usize)>;
 
-impl Findings<'_> {
-    fn lines(&self) -> Vec<String> {
-        const KINDS: [(Count, &str); 3] = [
-            (
-                |clock| clock.found.twice,
-                "at the same time as the row before; one of the two is left out",
-            ),
-            (|clock| clock.found.disordered, "out of order and sorted by time"),
-            (|clock| clock.found.alone, "alone between gaps and left out"),
-        ];
-        let mut lines = self.on_periods();
-        lines.extend(self.on_gaps());
-        for (count, says) in KINDS {
-            if let Some((count, row)) = self.first(count) {
-                let rows = if count == 1 { "row is" } else { "rows are" };
-                lines.push(format!("{count} {rows} {says} (first at row {row})"));
-            }
-        }
-        if let Some((count, row)) = self.first(|clock| clock.found.restarts) {
-            let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
-            lines.push(format!(
-                "the clock starts anew {times} (first at row {row}): a new part begins there"
-            ));
-        }
-        lines
-    }
-
-    /// Rows of a kind in all trials, and the number of the first.
-    fn first(&self, what: Count) -> Option<(usize, u64)> {
-        let found = self.trials.iter().enumerate();
-        let mut found = found.filter_map(|(trial, laid)| Some((trial, what(&laid.clock)?)));
+/// A line on each thing that was found in the clocks of a log.
+fn lines(trials: &[Laid], is_resampled: bool, number: Number<'_>) -> Vec<String> {
+    const KINDS: [(Count, &str); 3] = [
+        (
+            |clock| clock.found.twice,
+            "at the same time as the row before; one of the two is left out",
+        ),
+        (|clock| clock.found.disordered, "out of order and sorted by time"),
+        (|clock| clock.found.alone, "alone between gaps and left out"),
+    ];
+    let all = |count: Count| {
+        let found = trials.iter().enumerate();
+        let mut found = found.filter_map(|(trial, laid)| Some((trial, count(&laid.clock)?)));
         let (trial, (count, row)) = found.next()?;
-        let count = found.fold(count, |count, (_, (more, _))| count + more);
-        Some((count, (self.number)(trial, row)))
-    }
-
-    /// A line on each rate and kind of clock.
-    fn on_periods(&self) -> Vec<String> {
-        let mut kinds: Vec<((Evenness, f64), Vec<usize>)> = Vec::new();
-        for (trial, laid) in self.trials.iter().enumerate() {
-            if laid.is_uniform || laid.is_only_cut() {
-                continue;
-            }
-            let kind = (laid.clock.evenness, laid.period);
-            match kinds.iter_mut().find(|(known, _)| *known == kind) {
-                Some((_, trials)) => trials.push(trial),
-                None => kinds.push((kind, vec![trial])),
-            }
+        Some((count + found.map(|(_, (more, _))| more).sum::<usize>(), number(trial, row)))
+    };
+    let mut lines = on_periods(trials, is_resampled, number);
+    lines.extend(on_gaps(trials, number));
+    for (count, says) in KINDS {
+        if let Some((count, row)) = all(count) {
+            let rows = if count == 1 { "row is" } else { "rows are" };
+            lines.push(format!("{count} {rows} {says} (first at row {row})"));
         }
-        let of = |((evenness, period), trials): ((Evenness, f64), Vec<usize>)| {
-            let whose = match self.trials.len() {
-                1 => String::new(),
-                all => format!("{} of {all} trials: ", trials.len()),
-            };
-            whose + &self.on_period(evenness, period, &trials)
-        };
-        kinds.into_iter().map(of).collect()
     }
+    if let Some((count, row)) = all(|clock| clock.found.restarts) {
+        let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
+        lines.push(format!(
+            "the clock starts anew {times} (first at row {row}): a new part begins there"
+        ));
+    }
+    lines
+}
 
-    /// What clocks of one kind are like, by the worst of them.
-    fn on_period(&self, evenness: Evenness, period: f64, trials: &[usize]) -> String {
+/// A line on each rate and kind of clock, by the worst of its trials.
+fn on_periods(trials: &[Laid], is_resampled: bool, number: Number<'_>) -> Vec<String> {
+    let mut kinds: Vec<((Evenness, f64), Vec<(usize, &Clock)>)> = Vec::new();
+    for (trial, Laid { clock, period, .. }) in trials.iter().enumerate().filter(|(_, t)| t.is_odd())
+    {
+        let kind = (clock.evenness, *period);
+        match kinds.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, of_kind)) => of_kind.push((trial, clock)),
+            None => kinds.push((kind, vec![(trial, clock)])),
+        }
+    }
+    let mut lines = Vec::new();
+    for ((evenness, period), of_kind) in kinds {
+        let whose = match trials.len() {
+            1 => String::new(),
+            all => format!("{} of {all} trials: ", of_kind.len()),
+        };
         let grid = duration(period);
-        if let Evenness::Rounded { to_s } = evenness {
+        let is_worse =
+            |a: &&(usize, &Clock), b: &&(usize, &Clock)| a.1.largest.0.total_cmp(&b.1.largest.0);
+        let Some((trial, worst)) = of_kind.iter().max_by(is_worse) else { continue };
+        let (largest, row) = worst.largest;
+        lines.push(if let Evenness::Rounded { to_s } = evenness {
             let to = duration(to_s);
-            return format!(
-                "the times are rounded to {to}: samples are placed evenly, {grid} apart"
-            );
-        }
-        let what = if !self.is_resampled && evenness == Evenness::Jitters {
-            "samples are placed on a grid of"
+            format!("{whose}the times are rounded to {to}: samples are placed evenly, {grid} apart")
         } else {
-            "the output is interpolated and the input held on a grid of"
-        };
-        let clocks = trials.iter().map(|trial| (*trial, &self.trials[*trial].clock));
-        let worst = clocks.max_by(|(_, a), (_, b)| a.largest.0.total_cmp(&b.largest.0));
-        let Some((trial, clock)) = worst else { return format!("{what} {grid}") };
-        let (largest, row) = clock.largest;
-        format!(
-            "the clock jitters by {} % of its period of {} (standard deviation), \
-             largest {} % at row {}: {what} {grid}",
-            two_digits(100.0 * clock.jitter),
-            duration(clock.period),
-            two_digits(100.0 * largest),
-            (self.number)(trial, row),
-        )
-    }
-
-    /// Rows that are lost or come more slowly; other uneven samples are interpolated anyhow.
-    fn on_gaps(&self) -> Option<String> {
-        let gaps = self.trials.iter().enumerate().filter_map(|(trial, laid)| {
-            let is_even = laid.clock.evenness != Evenness::Uneven;
-            let gaps = laid.clock.gaps.filter(|_| is_even || laid.is_only_cut())?;
-            Some((trial, gaps))
+            let what = if !is_resampled && evenness == Evenness::Jitters {
+                "samples are placed"
+            } else {
+                "the output is interpolated and the input held"
+            };
+            format!(
+                "{whose}the clock jitters by {} % of its period of {} (standard deviation), \
+                 largest {} % at row {}: {what} on a grid of {grid}",
+                two_digits(100.0 * worst.jitter),
+                duration(worst.period),
+                two_digits(100.0 * largest),
+                number(*trial, row),
+            )
         });
-        let gaps: Vec<(usize, (usize, usize, usize))> = gaps.collect();
-        let (trial, (_, _, row)) = *gaps.first()?;
-        let row = (self.number)(trial, row);
-        let many: usize = gaps.iter().map(|(_, (many, ..))| many).sum();
-        let longest = gaps.iter().map(|(_, (_, periods, _))| *periods).max()?;
-        let gaps = if many == 1 { "gap" } else { "gaps" };
-        Some(format!(
-            "{many} {gaps} of up to {longest} periods (first before row {row}), where rows are \
-             lost or the logger is slower: they are filled, the output interpolated and the input \
-             held"
-        ))
     }
+    lines
+}
+
+/// Rows that are lost or come more slowly; other uneven samples are interpolated anyhow.
+fn on_gaps(trials: &[Laid], number: Number<'_>) -> Option<String> {
+    let gaps = trials.iter().enumerate().filter_map(|(trial, laid)| {
+        let is_even = laid.clock.evenness != Evenness::Uneven;
+        let gaps = laid.clock.gaps.filter(|_| is_even || laid.is_only_cut())?;
+        Some((trial, gaps))
+    });
+    let gaps: Vec<(usize, (usize, usize, usize))> = gaps.collect();
+    let (trial, (_, _, row)) = *gaps.first()?;
+    let row = number(trial, row);
+    let many: usize = gaps.iter().map(|(_, (many, ..))| many).sum();
+    let longest = gaps.iter().map(|(_, (_, periods, _))| *periods).max()?;
+    let gaps = if many == 1 { "gap" } else { "gaps" };
+    Some(format!(
+        "{many} {gaps} of up to {longest} periods (first before row {row}), where rows are lost or the logger \
+         is slower: they are filled, the output interpolated and the input held"
+    ))
 }
 
 /// A length of time for people: `10 ms`, `7.753 ms`, `1 s`.

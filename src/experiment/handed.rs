@@ -3,14 +3,12 @@
 use std::path::Path;
 use std::rc::Rc;
 
-use sha2::{Digest as _, Sha256};
-
 use super::error::ReadError;
 use super::joint::Joint;
 use super::layout::unknown_joint;
 use super::memory::Budget;
 use super::read::{Experiment, Failure, Place, ReadOptions, read_log};
-use super::source::{Source, hashed};
+use super::source::{Source, Sum};
 use super::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
 
 /// A log in memory: columns of equal length, with the names that a file would have.
@@ -41,14 +39,6 @@ pub enum HandedValues {
 }
 
 impl HandedValues {
-    fn len(&self) -> usize {
-        match self {
-            Self::Numbers(numbers) => numbers.len(),
-            Self::Texts(texts) => texts.len(),
-        }
-    }
-
-    /// What is missing in it stays so; rows are counted from 1.
     fn column(&self) -> Column {
         match self {
             Self::Numbers(numbers) => Column::of(numbers.clone()),
@@ -56,13 +46,11 @@ impl HandedValues {
         }
     }
 
-    fn text(&self, row: usize) -> String {
+    fn labels(&self) -> Vec<String> {
+        let label = |number: &f64| if number.is_nan() { String::new() } else { number.to_string() };
         match self {
-            Self::Numbers(numbers) => {
-                let number = numbers.get(row).filter(|number| !number.is_nan());
-                number.map(f64::to_string).unwrap_or_default()
-            }
-            Self::Texts(texts) => texts.get(row).cloned().unwrap_or_default(),
+            Self::Numbers(numbers) => numbers.iter().map(label).collect(),
+            Self::Texts(texts) => texts.clone(),
         }
     }
 }
@@ -125,30 +113,17 @@ impl Experiment {
 
 /// What stands for the file: the hash of all numbers.
 fn source(path: &Path, joints: &[Joint]) -> Source {
-    let trials = joints.iter().flat_map(|joint| &joint.trials);
-    let mut hash = Digested::default();
-    trials.flat_map(|trial| [trial.input(), trial.output()]).for_each(|values| hash.take(values));
-    hashed(path, hash.hasher, hash.bytes)
-}
-
-/// The hash of what was taken in, and how many bytes that were.
-#[derive(Default)]
-struct Digested {
-    hasher: Sha256,
-    bytes: u64,
-}
-
-impl Digested {
-    /// Takes in numbers as they lie in memory.
-    fn take(&mut self, values: &[f64]) {
-        /// Numbers that are turned into bytes at once.
-        const AT_ONCE: usize = 512;
-        for part in values.chunks(AT_ONCE) {
-            let bytes: Vec<u8> = part.iter().flat_map(|value| value.to_le_bytes()).collect();
-            self.hasher.update(&bytes);
-        }
-        self.bytes += size_of_val(values) as u64;
+    let mut sum = Sum::default();
+    for trial in joints.iter().flat_map(|joint| &joint.trials) {
+        add(&mut sum, trial.input());
+        add(&mut sum, trial.output());
     }
+    sum.source(path)
+}
+
+/// Adds numbers as they lie in memory.
+fn add(sum: &mut Sum, values: &[f64]) {
+    values.iter().for_each(|value| sum.add(&value.to_le_bytes()));
 }
 
 /// Opens a log in memory.
@@ -166,34 +141,23 @@ struct Unread(Rc<HandedLog>);
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         let values = |place: &usize| self.0.columns.get(*place).map(|column| &column.values);
-        let trial = wanted.label.and_then(|label| values(&label));
-        let labels =
-            trial.into_iter().flat_map(|values| (0..wanted.rows).map(|row| values.text(row)));
-        let labels = Labels::of(labels, wanted.budget)?;
+        let labels = wanted.label.and_then(|label| values(&label)).map(HandedValues::labels);
+        let labels = Labels::of(labels.unwrap_or_default(), wanted.budget)?;
         let columns = wanted.numeric.iter().filter_map(values).map(HandedValues::column).collect();
-        Ok(Table::counted(wanted.rows, columns, labels))
-    }
-
-    fn rows_of(&self, column: usize) -> Option<usize> {
-        self.0.columns.get(column).map(|column| column.values.len())
+        Ok(Table::counted(wanted, columns, labels))
     }
 }
 
 fn source_of(log: &HandedLog) -> Source {
-    let mut hash = Digested::default();
-    for column in &log.columns {
-        hash.hasher.update(column.name.as_bytes());
-        match &column.values {
-            HandedValues::Numbers(numbers) => hash.take(numbers),
-            HandedValues::Texts(texts) => {
-                for text in texts {
-                    hash.hasher.update(text.as_bytes());
-                    hash.bytes += text.len() as u64;
-                }
-            }
+    let mut sum = Sum::default();
+    for HandedColumn { name, values } in &log.columns {
+        sum.add(name.as_bytes());
+        match values {
+            HandedValues::Numbers(numbers) => add(&mut sum, numbers),
+            HandedValues::Texts(texts) => texts.iter().for_each(|text| sum.add(text.as_bytes())),
         }
     }
-    hashed(Path::new(&log.name), hash.hasher, hash.bytes)
+    sum.source(Path::new(&log.name))
 }
 
 #[cfg(test)]

@@ -99,11 +99,8 @@ impl Layout {
             others: Vec::new(),
             incomplete: Vec::new(),
         };
-        if map.joints.is_empty() {
-            layout.add_joints(&columns, &native_joints(head)?)?;
-        } else {
-            layout.add_joints(&columns, &map.joints)?;
-        }
+        let native = if map.joints.is_empty() { native_joints(head)? } else { Vec::new() };
+        layout.add_joints(&columns, if map.joints.is_empty() { &native } else { &map.joints })?;
         Ok(layout)
     }
 
@@ -122,18 +119,11 @@ impl Layout {
             return vec![self];
         }
         let of = |clock: usize| {
-            let of_clock = |joints: &[JointLayout]| {
-                let joints = joints.iter().filter(|joint| joint.output.clock == clock);
-                joints.cloned().collect::<Vec<_>>()
-            };
-            let (joints, others) = (of_clock(&self.joints), of_clock(&self.others));
-            Self {
-                time_again: self.time_again.clone(),
-                joints,
-                others,
-                incomplete: Vec::new(),
-                ..self
-            }
+            let is_of = |joint: &&JointLayout| joint.output.clock == clock;
+            let joints = self.joints.iter().filter(is_of).cloned().collect();
+            let others = self.others.iter().filter(is_of).cloned().collect();
+            let time_again = self.time_again.clone();
+            Self { time_again, joints, others, incomplete: Vec::new(), ..self }
         };
         clocks.into_iter().map(of).collect()
     }
@@ -156,35 +146,6 @@ impl Layout {
             }
         }
         unknown
-    }
-
-    /// Takes out the joints of which a column has other `rows` than the times, or than the first joint where
-    /// there are none: they come back as errors.
-    pub(super) fn without_unequal(
-        &mut self,
-        head: &Head,
-        rows: impl Fn(usize) -> Option<usize>,
-    ) -> Vec<(String, ReadError)> {
-        let of_joints = self.joints.iter().flat_map(JointLayout::columns);
-        let columns: Vec<usize> = self.time_column().into_iter().chain(of_joints).collect();
-        let known = |column: &usize| Some((*column, rows(*column)?));
-        let Some((other, expected)) = columns.iter().find_map(known) else {
-            return Vec::new();
-        };
-        let unequal = |joint: &JointLayout| {
-            joint.columns().find(|column| rows(*column).is_some_and(|rows| rows != expected))
-        };
-        self.others.retain(|joint| unequal(joint).is_none());
-        let (whole, short): (Vec<_>, Vec<_>) = std::mem::take(&mut self.joints)
-            .into_iter()
-            .partition(|joint| unequal(joint).is_none());
-        self.joints = whole;
-        let error = |joint: JointLayout| {
-            let column = unequal(&joint)?;
-            let (other, found) = ((head.text(other), expected), (head.text(column), rows(column)?));
-            Some((joint.name, ReadError::unequal_columns(found, other)))
-        };
-        short.into_iter().filter_map(error).collect()
     }
 
     /// Indices of all columns that hold numbers, each once.
@@ -213,7 +174,7 @@ impl Layout {
         names.sort();
         if let Some([name, _]) = names.array_windows().find(|[one, other]| one == other) {
             let text = format!("two joints are named `{name}`; give each its own name");
-            return Err(ReadError::new(ReadErrorKind::Content, text));
+            return Err(ReadError::content(text));
         }
         for joint in joints {
             match joint_layout(columns, joint) {
@@ -233,17 +194,14 @@ pub(super) fn unknown_joint(joint: &str, names: &[String]) -> ReadError {
     ReadError::new(ReadErrorKind::NoSuchJoint, text)
 }
 
-/// Joint and signal of a native column: `boom.output` is `("boom", "output")`.
-fn native_name(header: &Header) -> Option<(&str, &str)> {
-    header.name.rsplit_once('.').filter(|(joint, signal)| !joint.is_empty() && !signal.is_empty())
-}
-
 /// The joints whose columns have native names, each with its further signals.
 fn native_joints(head: &Head) -> Result<Vec<JointColumns>, ReadError> {
     let mut names: Vec<&str> = Vec::new();
     let mut seen = HashSet::new();
     let mut covariates: HashMap<&str, Vec<(String, String)>> = HashMap::new();
-    for (name, signal) in head.headers.iter().filter_map(native_name) {
+    // `boom.output` is the signal `output` of the joint `boom`.
+    let parted = head.headers.iter().filter_map(|header| header.name.rsplit_once('.'));
+    for (name, signal) in parted.filter(|(name, signal)| !name.is_empty() && !signal.is_empty()) {
         if !["input", "output"].contains(&signal) {
             let column = (signal.to_owned(), format!("{name}.{signal}"));
             covariates.entry(name).or_default().push(column);
@@ -278,7 +236,7 @@ fn joint_layout(columns: &Columns<'_>, joint: &JointColumns) -> Result<JointLayo
             "joint `{}` has column `{column}` for its input and for its output; give each its own",
             joint.name
         );
-        return Err(ReadError::new(ReadErrorKind::Content, text).about(column));
+        return Err(ReadError::content(text).about(column));
     }
     Ok(JointLayout {
         name: joint.name.clone(),
@@ -321,10 +279,10 @@ fn find_time(
         return times(head, column, unit.as_deref());
     }
     // A period that was asked for stands above a time column: the user knows why.
-    match (period, find_any(head, &[SAMPLE_NAME])) {
-        (Some(period), Some(column)) => return Ok(TimeSource::SampleNumbers(column, period)),
-        (Some(period), None) => return Ok(TimeSource::Rows(period)),
-        (None, _) => {}
+    if let Some(period) = period {
+        let numbers =
+            find_any(head, &[SAMPLE_NAME]).map(|column| TimeSource::SampleNumbers(column, period));
+        return Ok(numbers.unwrap_or(TimeSource::Rows(period)));
     }
     if let Some(column) = find_time_column(head) {
         return times(head, column, None);
@@ -363,12 +321,10 @@ impl<'a> Columns<'a> {
             |header| Some(&header.text),
         ];
         for name in kinds {
-            let mut named = HashMap::new();
+            let mut named: HashMap<&str, (usize, bool)> = HashMap::new();
             for (index, header) in head.headers.iter().enumerate() {
-                if let Some(name) = name(header) {
-                    let several = |(_, several): &mut (usize, bool)| *several = true;
-                    named.entry(name).and_modify(several).or_insert((index, false));
-                }
+                let Some(name) = name(header) else { continue };
+                named.entry(name).and_modify(|found| found.1 = true).or_insert((index, false));
             }
             by_name.extend(named);
         }

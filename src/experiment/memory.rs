@@ -82,9 +82,7 @@ impl Budget {
 
     /// Takes `bytes`, before they are allocated.
     pub(super) fn take(&self, bytes: u64) -> Result<(), ReadError> {
-        self.check(bytes)?;
-        self.taken.set(self.taken.get() + bytes);
-        Ok(())
+        self.check(bytes).map(|()| self.taken.set(self.taken.get() + bytes))
     }
 
     /// Takes the memory of `count` values of `size` bytes each.

@@ -35,7 +35,7 @@ mod trial;
 mod unit;
 
 pub use activity::{Other, Supply};
-pub(crate) use bounded::{read_result, read_sheet, read_text};
+pub(crate) use bounded::{read_sheet, read_text};
 pub(crate) use clock::is_period;
 pub(crate) use columns::KEPT;
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::clock::is_period;
-use super::columns::{ColumnMap, JointColumns};
+use super::columns::ColumnMap;
 use super::error::{ReadError, ReadErrorKind};
 use super::format::{self, is_named_like_a_log};
 use super::grid::Repair;
@@ -138,10 +138,8 @@ impl Experiment {
         self.notes.extend(log.notes.into_iter().map(whose));
         let contradictions = add_joints(&mut self.joints, log.joints);
         let failures = log.failures.into_iter().chain(contradictions);
-        self.failures.extend(failures.map(|Failure { joint, error }| {
-            let error = error.in_file(path);
-            Failure { joint, error }
-        }));
+        let in_file = |failure: Failure| Failure { error: failure.error.in_file(path), ..failure };
+        self.failures.extend(failures.map(in_file));
         // One whose units differ from log to log still has an input.
         add_joints(&mut self.others, log.others);
     }
@@ -179,7 +177,7 @@ fn merge(known: &mut Joint, joint: Joint) -> Result<(), ReadError> {
         let (name, found, expected) = (&joint.name, describe(&joint), describe(known));
         let text =
             format!("joint `{name}` is in [{found}] here but in [{expected}] in an earlier log");
-        return Err(ReadError::new(ReadErrorKind::Content, text));
+        return Err(ReadError::content(text));
     }
     // The clocks of logs that both count from 1970 are one.
     let origin_s = known.trials.first().map_or(0.0, Trial::origin_s);
@@ -216,9 +214,13 @@ fn unique_stem(path: &Path, taken: &[String]) -> String {
 pub fn expand_folders(paths: &[PathBuf]) -> (Vec<PathBuf>, Vec<Failure>) {
     let (mut files, mut failures) = (Vec::new(), Vec::new());
     for path in paths {
-        match logs_in(path) {
-            Ok(logs) => files.extend(logs),
-            Err(error) => failures.push(Failure { joint: None, error: error.in_file(path) }),
+        match logs_in(path).map_err(ReadError::from) {
+            _ if !path.is_dir() => files.push(path.clone()),
+            Ok(logs) if !logs.is_empty() => files.extend(logs),
+            found => {
+                let error = found.err().unwrap_or_else(|| no_log(path)).in_file(path);
+                failures.push(Failure { joint: None, error });
+            }
         }
     }
     if !files.iter().all(|file| is_truth(file)) {
@@ -227,51 +229,42 @@ pub fn expand_folders(paths: &[PathBuf]) -> (Vec<PathBuf>, Vec<Failure>) {
     (files, failures)
 }
 
-fn logs_in(path: &Path) -> Result<Vec<PathBuf>, ReadError> {
-    if !path.is_dir() {
-        return Ok(vec![path.to_owned()]);
-    }
-    let mut logs = Vec::new();
-    for entry in path.read_dir()? {
-        logs.push(entry?.path());
-    }
+/// The logs in a folder, sorted.
+fn logs_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let paths = folder.read_dir()?.map(|entry| Ok(entry?.path()));
+    let mut logs = paths.collect::<std::io::Result<Vec<PathBuf>>>()?;
     logs.retain(|file| is_log(file));
     logs.sort();
-    if !logs.is_empty() {
-        return Ok(logs);
-    }
-    let inner = folders_with_logs(path);
-    let text = match inner.first() {
-        Some(first) => format!("but in folders within it; name those, as `{}`", first.display()),
-        None => format!("logs end in {}", format::endings()),
+    Ok(logs)
+}
+
+/// That a folder holds no log.
+fn no_log(folder: &Path) -> ReadError {
+    let text = match folders_with_logs(folder).first() {
+        Some(first) => format!(", but in folders within it; name those, as `{}`", first.display()),
+        None => format!("; logs end in {}", format::endings()),
     };
-    let mark = if inner.is_empty() { ';' } else { ',' };
-    Err(ReadError::new(ReadErrorKind::Empty, format!("no log in this folder{mark} {text}")))
+    ReadError::new(ReadErrorKind::Empty, format!("no log in this folder{text}"))
 }
 
 /// A note on each of the folders in `paths` that has logs in folders of its own, which
 /// [`expand_folders`] leaves out.
 pub(crate) fn notes_on_subfolders(paths: &[PathBuf]) -> Vec<String> {
-    let note = |path: &PathBuf| {
-        if logs_in(path).is_err() {
-            return None;
+    let mut notes = Vec::new();
+    for path in paths.iter().filter(|path| logs_in(path).is_ok_and(|logs| !logs.is_empty())) {
+        if let Some(first) = folders_with_logs(path).first() {
+            let (path, first) = (path.display(), first.display());
+            notes.push(format!(
+                "{path}: logs in folders within it are left out; name them to read them, as `{first}`"
+            ));
         }
-        let inner = folders_with_logs(path);
-        let first = inner.first()?.display();
-        Some(format!(
-            "{}: logs in folders within it are left out; name them to read them, as `{first}`",
-            path.display()
-        ))
-    };
-    paths.iter().filter_map(note).collect()
+    }
+    notes
 }
 
 /// The folders in `path` that hold logs, sorted; none where it cannot be listed.
 fn folders_with_logs(path: &Path) -> Vec<PathBuf> {
-    let holds_logs = |inner: &PathBuf| {
-        let mut entries = inner.read_dir().into_iter().flatten().flatten();
-        inner.is_dir() && entries.any(|entry| is_log(&entry.path()))
-    };
+    let holds_logs = |inner: &PathBuf| logs_in(inner).is_ok_and(|logs| !logs.is_empty());
     let entries = path.read_dir().into_iter().flatten().flatten().map(|entry| entry.path());
     let mut inner: Vec<PathBuf> = entries.filter(holds_logs).collect();
     inner.sort();
@@ -310,12 +303,10 @@ pub(super) fn read_log(
     budget: &Budget,
 ) -> Result<Experiment, ReadError> {
     let table = (place.open)()?;
-    let (mut layout, mut found) = match laid_out(&table.head, options) {
+    let (layout, mut found) = match laid_out(&table.head, options) {
         Err(error) if error.has_no_joints() => laid_out_foreign(&table.head, place, options)?,
         found => found?,
     };
-    let unequal = layout.without_unequal(&table.head, |column| table.rows_of(column));
-    found.failures.extend(unequal.into_iter().map(failed));
     let mut next = Some(table);
     let mut failed_clocks = Vec::new();
     for layout in layout.by_clock() {
@@ -331,16 +322,16 @@ pub(super) fn read_log(
     // An error in one time column fails the joints that use it; joints with another one are read.
     for (joints, error) in failed_clocks {
         let Some((first, others)) = joints.split_first() else { return Err(error) };
-        let as_first = |joint: &JointLayout| {
+        found.failures.push(failed((first.name.clone(), error)));
+        for joint in others {
             let text = format!(
-                "it is left out, too, because it has the same time column as joint `{}`, whose \
-                 rows cannot be read",
+                "it is left out, too, because it has the same time column as joint `{}`, whose rows cannot be \
+                 read",
                 first.name
             );
-            failed((joint.name.clone(), ReadError::new(ReadErrorKind::Content, text)))
-        };
-        found.failures.push(failed((first.name.clone(), error)));
-        found.failures.extend(others.iter().map(as_first));
+            let error = ReadError::content(text);
+            found.failures.push(failed((joint.name.clone(), error)));
+        }
     }
     Ok(found)
 }
@@ -357,11 +348,10 @@ fn laid_out(head: &Head, options: &ReadOptions) -> Result<(Layout, Experiment), 
     let incomplete = std::mem::take(&mut layout.incomplete);
     let mut found = Experiment::default();
     found.failures.extend(incomplete.into_iter().chain(unknown).map(failed));
-    let unused = period.filter(|_| options.columns.time.is_none()).and(find_time_column(head));
-    if let Some(time) = unused.and_then(|column| head.headers.get(column)) {
-        let name = &time.name;
-        let note = format!("the times in `{name}` are not used: a sample period was given");
-        found.notes.push(note);
+    let is_period_given = period.is_some() && options.columns.time.is_none();
+    if let Some(unused) = find_time_column(head).filter(|_| is_period_given) {
+        let name = head.headers.get(unused).map_or("", |header| &header.name);
+        found.notes.push(format!("the times in `{name}` are not used: a sample period was given"));
     }
     let signals = layout.numeric_columns();
     let note = layout.time.column().and_then(|column| note_on_times(head, column, &signals));
@@ -384,8 +374,8 @@ fn laid_out_foreign(
                 Some(format!("`{file}` names the column `{column}`, which this log lacks"))
             }
             Err(error) => {
-                let log = place.file.unwrap_or(&file);
-                Some(format!("`{}`: {}", file.display(), error.in_file(log)))
+                let error = error.in_file(place.file.unwrap_or(&file));
+                Some(format!("`{}`: {error}", file.display()))
             }
             laid_out => return laid_out,
         },
@@ -445,17 +435,15 @@ fn laid_out_by_names(
     if survey.is_sure {
         options.columns.joints.clone_from(&survey.map.joints);
     }
-    let suggested = |mut error: ReadError| {
+    let (layout, mut found) = laid_out(head, &options).map_err(|mut error| {
         if let ReadErrorKind::NoJoints(likely) = &mut error.kind {
             **likely = (survey.map.time.clone(), survey.named_joints());
         }
         error
-    };
-    let (layout, mut found) = laid_out(head, &options).map_err(suggested)?;
-    let joint = |joint: &JointColumns| {
-        format!("{} (input `{}`, output `{}`)", joint.name, joint.input, joint.output)
-    };
-    let joints: Vec<String> = options.columns.joints.iter().map(joint).collect();
+    })?;
+    let joints = options.columns.named_joints().into_iter();
+    let joints = joints.map(|[name, u, y]| format!("{name} (input `{u}`, output `{y}`)"));
+    let joints: Vec<String> = joints.collect();
     found.notes.push(format!("joints by the names of the columns: {}", joints.join(", ")));
     let further = survey.further_inputs.iter().filter(|_| survey.is_sure);
     found.notes.extend(further.map(|(joint, column)| {
@@ -487,8 +475,8 @@ impl Experiment {
             return Ok(());
         }
         let numeric = layout.numeric_columns();
-        let (trial, time) = (layout.trial, layout.time_column());
-        let mut table = table.read(&numeric, trial, time, layout.clock(), repair)?;
+        let columns = [layout.trial, layout.time_column()];
+        let mut table = table.read(&numeric, columns, layout.clock(), repair)?;
         if table.source.is_none() {
             table.source = Some((place.source)()?);
         }
@@ -522,6 +510,6 @@ fn sample_period(map: &ColumnMap) -> Result<Option<SamplePeriod>, ReadError> {
     let period = Some(seconds).filter(|seconds| is_period(*seconds));
     period.and_then(SamplePeriod::from_seconds).map(Some).ok_or_else(|| {
         let text = format!("a sample period of {seconds} s is not one from 1e-9 to 1e8 s");
-        ReadError::new(ReadErrorKind::Content, text)
+        ReadError::content(text)
     })
 }

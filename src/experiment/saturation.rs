@@ -48,17 +48,13 @@ pub(crate) fn saturations(trials: &[Trial]) -> Vec<Saturation> {
     let others = || pairs().filter(|pair| !(is_at(low, pair[1]) || is_at(high, pair[1])));
     let still = others().filter(|pair| is_at(pair[0], pair[1])).count() as f64;
     let count = least_change(others()).unwrap_or(f64::MAX);
-    let has_noise = high > low
-        && still <= STILL * others().count() as f64
-        && noise(trials, |value| is_at(low, value) || is_at(high, value)) >= COUNTS * count;
-    if has_noise { found } else { Vec::new() }
-}
-
-/// The standard deviation of the noise of outputs where none of three neighbours `is_at` an end: that of
-/// their second differences, in which a joint that moves evenly has no part.
-fn noise(trials: &[Trial], is_at: impl Fn(f64) -> bool) -> f64 {
+    // In second differences, a joint that moves evenly has no part.
     let triples = trials.iter().flat_map(|trial| trial.output().windows(3));
-    noise_of_bends(triples.filter(|three| !three.iter().any(|value| is_at(*value))))
+    let noise =
+        noise_of_bends(triples.filter(|t| !t.iter().any(|y| is_at(low, *y) || is_at(high, *y))));
+    let has_noise =
+        high > low && still <= STILL * others().count() as f64 && noise >= COUNTS * count;
+    if has_noise { found } else { Vec::new() }
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! Where a log was read: its file, with the hash of its bytes.
 
+use std::cell::RefCell;
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use sha2::{Digest as _, Sha256};
 
@@ -21,39 +23,49 @@ pub struct Source {
 
 /// Reads a file to its end for its hash and its length.
 pub(super) fn source_of(path: &Path) -> Result<Source, ReadError> {
-    Hashing::new(BufReader::new(File::open(path)?)).finish(path)
+    let (mut file, sum) = Hashing::new(BufReader::new(File::open(path)?));
+    io::copy(&mut file, &mut io::sink())?;
+    Ok(sum.take().source(path))
 }
 
-/// A file of which `hasher` has seen all `bytes`.
-pub(super) fn hashed(path: &Path, hasher: Sha256, bytes: u64) -> Source {
-    let sha256 = base16ct::lower::encode_string(&hasher.finalize());
-    Source { path: path.to_owned(), sha256, bytes }
+/// The hash of some bytes, and how many there are.
+#[derive(Default)]
+pub(super) struct Sum {
+    hasher: Sha256,
+    bytes: u64,
+}
+
+impl Sum {
+    pub(super) fn add(&mut self, bytes: &[u8]) {
+        self.hasher.update(bytes);
+        self.bytes += bytes.len() as u64;
+    }
+
+    /// The log at `path`, of which these are all bytes.
+    pub(super) fn source(self, path: &Path) -> Source {
+        let sha256 = base16ct::lower::encode_string(&self.hasher.finalize());
+        Source { path: path.to_owned(), sha256, bytes: self.bytes }
+    }
 }
 
 /// Passes bytes on and hashes them on the way, so that a log is read once.
 pub(super) struct Hashing<R> {
     inner: R,
-    hasher: Sha256,
-    bytes: u64,
+    sum: Rc<RefCell<Sum>>,
 }
 
 impl<R: Read> Hashing<R> {
-    pub(super) fn new(inner: R) -> Self {
-        Self { inner, hasher: Sha256::new(), bytes: 0 }
-    }
-
-    /// Reads what is left and gives the hash of all of it.
-    pub(super) fn finish(mut self, path: &Path) -> Result<Source, ReadError> {
-        io::copy(&mut self, &mut io::sink())?;
-        Ok(hashed(path, self.hasher, self.bytes))
+    /// The bytes of `inner`, and the sum of those that have passed.
+    pub(super) fn new(inner: R) -> (Self, Rc<RefCell<Sum>>) {
+        let sum = Rc::<RefCell<Sum>>::default();
+        (Self { inner, sum: Rc::clone(&sum) }, sum)
     }
 }
 
 impl<R: Read> Read for Hashing<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
-        self.hasher.update(buffer.get(..count).unwrap_or_default());
-        self.bytes += count as u64;
+        self.sum.borrow_mut().add(buffer.get(..count).unwrap_or_default());
         Ok(count)
     }
 }

@@ -42,9 +42,7 @@ impl Spikes {
         let without: Vec<_> = trials.iter().zip(&self.0).map(without).collect();
         let of = |(trial, without): (&Trial, &Vec<Range<usize>>)| {
             let mut weights = vec![1.0; trial.len()];
-            for range in without {
-                weights[range.clone()].fill(0.0);
-            }
+            without.iter().for_each(|range| weights[range.clone()].fill(0.0));
             weights
         };
         let any = without.iter().any(|ranges| !ranges.is_empty());
@@ -66,9 +64,8 @@ impl Spikes {
 
 /// Samples of `trial` that are spikes.
 pub(crate) fn spike_count(trial: &Trial) -> usize {
-    let spikes = spikes(trial.output(), noise(std::slice::from_ref(trial)));
-    let samples: BTreeSet<usize> = spikes.into_iter().flatten().collect();
-    samples.len()
+    let Spikes(spikes) = Spikes::of(std::slice::from_ref(trial));
+    spikes.into_iter().flatten().flatten().collect::<BTreeSet<usize>>().len()
 }
 
 /// The output of `trial` with lines in the place of its spikes; none where it has no spike.
@@ -104,17 +101,10 @@ fn noise(trials: &[Trial]) -> f64 {
     let samples: usize = trials.iter().map(|trial| trial.output().len()).sum();
     let every = samples.div_ceil(ENOUGH).max(1);
     let triples = trials.iter().flat_map(|trial| trial.output().windows(3).step_by(every));
-    let second = triples.map(|triple| match triple {
-        [a, b, c] => a - 2.0 * b + c,
-        _ => 0.0,
-    });
-    let second: Vec<f64> = second.collect();
+    let second: Vec<f64> = triples.map(|three| three[0] - 2.0 * three[1] + three[2]).collect();
     let pairs = trials.iter().flat_map(|trial| trial.output().windows(2).step_by(every));
-    let steps = pairs.map(|pair| match pair {
-        [a, b] => (b - a).abs(),
-        _ => 0.0,
-    });
-    let steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
+    let steps = pairs.map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
+    let steps: Vec<f64> = steps.collect();
     let step = quantile(&steps, SMALL).unwrap_or(0.0);
     (robust_scale(&second) / SECOND_ORDER.sqrt()).max(step)
 }

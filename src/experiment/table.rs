@@ -8,7 +8,7 @@ use std::fmt;
 
 use super::error::{ReadError, ReadErrorKind};
 use super::grid::Repair;
-use super::memory::{Budget, NUMBER_SIZE};
+use super::memory::Budget;
 use super::names::{listed, on_one_line, shown};
 use super::source::Source;
 use super::unit;
@@ -61,12 +61,9 @@ impl Head {
     /// Refuses columns whose names are none: each page, table and path of an output would bear them.
     pub(super) fn check_names(
         &self,
-        mut columns: impl Iterator<Item = usize>,
+        columns: impl Iterator<Item = usize>,
     ) -> Result<(), ReadError> {
-        columns.try_for_each(|column| {
-            let name = self.headers.get(column).map_or("", |header| header.text.as_str());
-            check_name(name, self.header_row)
-        })
+        columns.map(|column| check_name(&self.text(column), self.header_row)).collect()
     }
 
     /// Refuses a table without a header.
@@ -77,13 +74,13 @@ impl Head {
         }
         let text = "the first row has numbers instead of names of columns; write a header above it, as in \
                     `time_s,boom.input,boom.output`";
-        Err(ReadError::new(ReadErrorKind::Content, text).in_row(self.header_row))
+        Err(ReadError::content(text).in_row(self.header_row))
     }
 
     /// That two columns are named so.
     pub(super) fn two_columns(&self, name: &str) -> ReadError {
         let text = format!("two columns are named `{name}`; rename one of them");
-        ReadError::new(ReadErrorKind::Content, text).in_row(self.header_row).about(name)
+        ReadError::content(text).in_row(self.header_row).about(name)
     }
 
     /// A column's header as it stands in the file.
@@ -94,12 +91,11 @@ impl Head {
     /// The names of all columns, for messages.
     pub(super) fn names(&self) -> String {
         let names = listed(self.headers.iter().map(|header| header.text.as_str()));
-        let unread = listed(self.unread.iter().map(String::as_str));
-        if unread.is_empty() {
-            names
-        } else {
-            format!("{names}; topics that cannot be read: {unread}")
+        if self.unread.is_empty() {
+            return names;
         }
+        let unread = listed(self.unread.iter().map(String::as_str));
+        format!("{names}; topics that cannot be read: {unread}")
     }
 }
 
@@ -116,7 +112,7 @@ fn check_name(name: &str, row: u64) -> Result<(), ReadError> {
     let text = format!(
         "the name `{start}` is longer than {LONGEST_NAME} bytes, the most of a name; shorten it"
     );
-    Err(ReadError::new(ReadErrorKind::Content, text).in_row(row))
+    Err(ReadError::content(text).in_row(row))
 }
 
 /// The columns of a log, and what is in them still unread.
@@ -137,11 +133,6 @@ pub(super) trait Rows {
     /// What is wrong with the file or a row. A bad cell spoils its column only: see
     /// [`Column::error`].
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError>;
-
-    /// The rows of the column at this place, where columns may differ in length.
-    fn rows_of(&self, _column: usize) -> Option<usize> {
-        None
-    }
 }
 
 /// What is to be read of a file.
@@ -156,8 +147,6 @@ pub(super) struct Wanted<'a> {
     /// The clock whose rows are wanted.
     #[cfg_attr(not(feature = "mcap"), expect(dead_code, reason = "for other formats"))]
     pub(super) clock: usize,
-    /// The rows of these columns, where they say so before they are read.
-    pub(super) rows: usize,
     /// What memory is left for them.
     pub(super) budget: &'a Budget,
     /// Whether a last line that has no end is left out, since the log may still grow.
@@ -169,38 +158,24 @@ impl OpenTable {
         Self { head, rows, budget }
     }
 
-    /// The rows of the column at this place, where columns may differ in length.
-    pub(super) fn rows_of(&self, column: usize) -> Option<usize> {
-        self.rows.rows_of(column)
-    }
-
-    /// Reads the columns `numeric` as numbers and `label` as text, in the rows of `clock`.
+    /// Reads the columns `numeric` as numbers, `time` among them, and `label` as text, in the rows of `clock`.
     pub(super) fn read(
         self,
         numeric: &[usize],
-        label: Option<usize>,
-        time: Option<usize>,
+        [label, time]: [Option<usize>; 2],
         clock: usize,
         repair: Repair,
     ) -> Result<Table, ReadError> {
         let Self { head, rows, budget } = self;
-        let known = |column: &usize| Some((*column, rows.rows_of(*column)?));
-        let mut lengths = numeric.iter().chain(&label).filter_map(known);
-        let first = lengths.next();
-        if let Some((other, expected)) = first
-            && let Some((odd, found)) = lengths.find(|(_, found)| *found != expected)
-        {
-            let name = |column: usize| head.headers.get(column).map(|header| header.name.clone());
-            let name = |column| name(column).unwrap_or_default();
-            return Err(ReadError::unequal_columns((name(odd), found), (name(other), expected)));
-        }
-        let count = first.map_or(0, |(_, rows)| rows);
-        budget.take_values(count, numeric.len() * NUMBER_SIZE)?;
         let (head, budget, grows) = (&head, &budget, repair.as_it_stands);
-        let wanted = Wanted { head, numeric, label, time, clock, rows: count, budget, grows };
-        let table = rows.read(&wanted)?;
+        let table = rows.read(&Wanted { head, numeric, label, time, clock, budget, grows })?;
         if table.rows.is_empty() {
             return Err(ReadError::header_only());
+        }
+        let labels = table.trials.last().map_or(table.rows.len(), |last| last.end);
+        if labels != table.rows.len() {
+            let label = head.text(label.unwrap_or_default());
+            return Err(ReadError::unequal_columns(label, labels, table.rows.len()));
         }
         Ok(table)
     }
@@ -234,9 +209,14 @@ impl Table {
         }
     }
 
-    /// The rows of a file that has no lines, counted from 1.
-    pub(super) fn counted(rows: usize, columns: Vec<Column>, labels: Labels) -> Self {
-        let rows = (1..).take(rows).collect();
+    /// The rows of a file that has no lines, counted from 1: as many as the times are, else as its longest column
+    /// has.
+    pub(super) fn counted(wanted: &Wanted<'_>, columns: Vec<Column>, labels: Labels) -> Self {
+        let time = wanted.numeric.iter().position(|column| Some(*column) == wanted.time);
+        let times = time.and_then(|time| columns.get(time)).filter(|times| times.error.is_none());
+        let lengths = columns.iter().map(|column| column.values.len());
+        let longest = lengths.chain([labels.rows]).max().unwrap_or_default();
+        let rows = (1..).take(times.map_or(longest, |times| times.values.len())).collect();
         Self { source: None, rows, columns, trials: labels.runs, notes: Vec::new() }
     }
 }
@@ -255,8 +235,6 @@ pub(super) struct Column {
     pub(super) values: Vec<f64>,
     /// Whether they are dates or times of day, in seconds whatever the unit of the column.
     pub(super) are_dates: bool,
-    /// Whether their type is that of times of day.
-    pub(super) are_of_day: bool,
     /// The first bad cell and its row. The values end before it.
     pub(super) error: Option<(u64, BadCell)>,
 }
@@ -272,11 +250,8 @@ impl Column {
         let mut column = Self { values, ..Self::default() };
         let is_bad = |value: &f64| value.is_infinite() || value.abs() > LARGEST;
         if let Some(row) = column.values.iter().position(is_bad) {
-            let value = column.values.get(row).copied().unwrap_or(f64::NAN);
-            let bad =
-                if value.is_infinite() { BadCell::Infinite } else { BadCell::TooLarge(value) };
+            column.error = Some((row as u64 + 1, BadCell::TooLarge(column.values[row])));
             column.values.truncate(row);
-            column.error = Some((row as u64 + 1, bad));
         }
         column
     }
@@ -296,10 +271,8 @@ impl Column {
     pub(super) fn push(&mut self, cell: Result<f64, BadCell>, row: u64) {
         match cell {
             _ if self.error.is_some() => {}
-            Ok(value) if value.abs() > LARGEST => {
-                self.error = Some((row, BadCell::TooLarge(value)));
-            }
-            Ok(value) => self.values.push(value),
+            Ok(value) if value.abs() <= LARGEST || value.is_nan() => self.values.push(value),
+            Ok(value) => self.error = Some((row, BadCell::TooLarge(value))),
             Err(bad) => self.error = Some((row, bad)),
         }
     }
@@ -315,7 +288,6 @@ pub(super) enum BadCell {
     DecimalMark(String),
     /// A number whose comma or point may stand between thousands, in a column of whole numbers.
     Thousands(String),
-    Infinite,
     /// Its squares, and sums of products of them, are beyond double precision.
     TooLarge(f64),
 }
@@ -350,7 +322,7 @@ impl fmt::Display for BadCell {
                  between thousands",
                 shown(text)
             ),
-            Self::Infinite => {
+            Self::TooLarge(value) if value.is_infinite() => {
                 f.write_str("the value is infinite; remove the row or mend the value")
             }
             Self::TooLarge(value) => write!(
@@ -429,7 +401,7 @@ mod tests {
     fn values_end_before_one_that_is_infinite() {
         let column = Column::of(vec![1.0, f64::NAN, f64::INFINITY, 2.0]);
         assert_eq!(column.values.len(), 2);
-        assert_eq!(column.error, Some((3, BadCell::Infinite)));
+        assert_eq!(column.error, Some((3, BadCell::TooLarge(f64::INFINITY))));
     }
 
     #[test]

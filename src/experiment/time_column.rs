@@ -1,6 +1,6 @@
 //! Which column holds the times of a log, and in what unit.
 
-use super::error::{ReadError, ReadErrorKind};
+use super::error::ReadError;
 use super::table::{Head, Header};
 use super::unit;
 use crate::units::SamplePeriod;
@@ -65,7 +65,7 @@ pub(super) fn times(
         let text = format!(
             "time in [{unit}] is not known; expected [s], [ms], [us], [ns], [min] or no unit"
         );
-        ReadError::new(ReadErrorKind::Content, text).in_row(head.header_row).in_column(name)
+        ReadError::content(text).in_row(head.header_row).in_column(name)
     };
     // `[hh:mm:ss]` is how a time is written, and no unit.
     if unit.to_lowercase().contains("mm:ss") {
@@ -119,13 +119,13 @@ pub(super) fn note_on_times(head: &Head, column: usize, uses: &[usize]) -> Optio
     let mut names: Vec<String> = others.map(|(other, header)| named(other, header)).collect();
     let header = head.headers.get(column)?;
     let used = format!("the times are those in {}", named(column, header));
+    if names.is_empty() {
+        return (header.name == "T").then_some(used);
+    }
     let are = if names.len() == 1 { "is" } else { "are" };
     if names.len() > MOST {
         names.truncate(MOST);
         names.push("…".to_owned());
-    }
-    if names.is_empty() {
-        return (header.name == "T").then_some(used);
     }
     Some(format!("{used}; {} {are} not used", names.join(", ")))
 }

@@ -69,8 +69,8 @@ impl Trial {
         if input.is_empty() {
             return Err(TrialError::Empty { label });
         }
-        let finite = |(u, y): (&f64, &f64)| u.is_finite() && y.is_finite();
-        if let Some(index) = input.iter().zip(&output).position(|pair| !finite(pair)) {
+        let is_odd = |(u, y): (&f64, &f64)| !u.is_finite() || !y.is_finite();
+        if let Some(index) = input.iter().zip(&output).position(is_odd) {
             return Err(TrialError::NotFinite { label, sample: index + 1 });
         }
         Ok(Self {

@@ -62,13 +62,11 @@ pub(super) fn time_in(text: &str) -> Option<f64> {
 /// `t/min`, `timeMin`. Days are none: a tag may be a label.
 pub(super) fn time_within(header: &str) -> Option<f64> {
     let mut words = String::new();
-    let mut is_before_capital = false;
     for letter in header.chars() {
-        if is_before_capital && letter.is_uppercase() || !letter.is_alphabetic() {
+        if words.ends_with(char::is_lowercase) && letter.is_uppercase() {
             words.push(' ');
         }
-        is_before_capital = letter.is_lowercase();
-        words.extend(letter.is_alphabetic().then_some(letter));
+        words.push(if letter.is_alphabetic() { letter } else { ' ' });
     }
     // As a unit, `seconds since 1970` ends with its first word.
     let words = words.to_lowercase().replace("since", " ");

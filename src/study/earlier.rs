@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::difference::{JointResult, OtherResult, StepResult, verdict_of};
 use super::sheet::{FileError, table_reader};
-use crate::experiment::read_result;
+use crate::experiment::read_text;
 use crate::numerics::Line;
 
 /// The schema of an estimate.
@@ -81,7 +81,7 @@ impl OtherResult {
     /// # Errors
     /// [`FileError`] for what cannot be opened, and for what is one of both and cannot be understood.
     pub fn read(path: &Path) -> Result<Option<Self>, FileError> {
-        match read_result(path) {
+        match read_text(path) {
             Ok(text) => Self::parse(text.trim_start_matches('\u{feff}'), path),
             // A log may be long, and may be no text.
             Err(error) if error.kind() == ErrorKind::InvalidData => Ok(None),

@@ -298,7 +298,6 @@ const PLACES: [(&str, &[&str]); 22] = [
     ("hdf5_pure", &["src/experiment/format/mat"]),
     ("minijinja", &["src/export", "src/report/lookup.rs"]),
     ("zip", &["src/export/fmu.rs", "src/experiment/format/xlsx.rs"]),
-    ("mcap", &["src/experiment/format"]),
     ("re_cdr", &["src/experiment/format/mcap"]),
     ("re_ros_msg", &["src/experiment/format/mcap"]),
 ];

@@ -281,7 +281,7 @@ fn a_model_larger_than_any_is_refused_and_one_without_end() {
     for (model, expected) in [
         (effects.as_path(), "300 effects; at most 60 are allowed"),
         (&long, "4030 characters of expressions; at most 4000 are allowed"),
-        (endless, if cfg!(unix) { "64 MB" } else { "300" }),
+        (endless, if cfg!(unix) { "256 MB" } else { "300" }),
     ] {
         let model = model.to_str().unwrap();
         let ended = tauscope(&["compare", log.to_str().unwrap(), "--model", model]);

@@ -10,7 +10,7 @@ pub(in crate::experiment) fn not_increasing(times: &[f64], row: usize) -> ReadEr
         "time goes from {before} s to {time} s, but must increase; remove the row if it is a copy, or mark a \
          new trial in a `trial` column"
     );
-    ReadError::new(ReadErrorKind::Content, text).at_index(row)
+    ReadError::content(text).at_index(row)
 }
 
 /// From so few rows no period follows; the name of the trial comes before it.

@@ -38,12 +38,9 @@ pub(super) fn parse_cell(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
         let is_thousands = delimiter == b',' && are_thousands(text);
         (!is_thousands).then(|| text.replace(',', ".").parse::<f64>().ok())?
     };
-    match number.or_else(with_comma) {
-        Some(value) if value.is_infinite() => Err(BadCell::Infinite),
-        Some(value) => Ok(value),
-        None if text.is_some_and(is_infinite) => Err(BadCell::Infinite),
-        None => Err(BadCell::Text(String::from_utf8_lossy(cell).into_owned())),
-    }
+    let infinite = || text.filter(|text| is_infinite(text)).map(|_| f64::INFINITY);
+    let found = number.or_else(with_comma).or_else(infinite);
+    found.ok_or_else(|| BadCell::Text(String::from_utf8_lossy(cell).into_owned()))
 }
 
 /// Whether a cell is infinite as the C library of Windows writes it.
@@ -171,8 +168,8 @@ mod tests {
         assert_eq!(parse(b"-1.5e3"), Ok(-1500.0));
         assert!(parse(b"").unwrap().is_nan());
         assert!(parse(b"NaN").unwrap().is_nan());
-        assert_eq!(parse(b"inf"), Err(BadCell::Infinite));
-        assert_eq!(parse(b"1e999"), Err(BadCell::Infinite));
+        assert_eq!(parse(b"inf"), Ok(f64::INFINITY));
+        assert_eq!(parse(b"1e999"), Ok(f64::INFINITY));
         for word in [
             "NA",
             "n/a",
@@ -193,7 +190,7 @@ mod tests {
             assert!(parse(word.as_bytes()).unwrap().is_nan(), "{word}");
         }
         assert_eq!(parse(b"#1"), Err(BadCell::Text("#1".to_owned())));
-        assert_eq!(parse(b"1.#INF"), Err(BadCell::Infinite));
+        assert_eq!(parse(b"1.#INF"), Ok(f64::INFINITY));
         assert_eq!(parse_cell(b"-1,5", b';'), Ok(-1.5));
         assert_eq!(parse_cell(b"1,200", b';'), Ok(1.2));
         for (text, number) in [("1,5", 1.5), ("0,125", 0.125), ("-0,5e2", -50.0)] {

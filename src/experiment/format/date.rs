@@ -78,12 +78,13 @@ pub(super) fn seconds_of_compact_date(text: &str) -> Option<f64> {
 
 /// `10:00:01.250`, with the milliseconds after a point that some loggers write after a colon.
 fn with_point(text: &str) -> String {
-    let parts = text.rsplit_once(':').filter(|(before, _)| before.matches(':').count() == 2);
-    let digits = |behind: &str| behind.bytes().take_while(u8::is_ascii_digit).count();
-    match parts {
-        Some((before, millis)) if digits(millis) == 3 => format!("{before}.{millis}"),
-        _ => text.to_owned(),
+    if let Some((before, millis)) = text.rsplit_once(':')
+        && before.matches(':').count() == 2
+        && millis.bytes().take_while(u8::is_ascii_digit).count() == 3
+    {
+        return format!("{before}.{millis}");
     }
+    text.to_owned()
 }
 
 /// Seconds of a time that has passed: `1 days 02:03:04.5` as pandas writes it, `26:03:04.5`, or `03:04.5`,
@@ -97,12 +98,9 @@ fn passed(text: &str) -> Option<f64> {
         None => (0, text),
     };
     let (before, seconds) = clock.rsplit_once(':')?;
-    let (hours, minutes) = match before.split_once(':') {
-        Some(parts) => parts,
-        // `12:30` may be hours and minutes.
-        None if seconds.contains('.') => ("0", before),
-        None => return None,
-    };
+    // `12:30` may be hours and minutes.
+    let short = || seconds.contains('.').then_some(("0", before));
+    let (hours, minutes) = before.split_once(':').or_else(short)?;
     let number = |digits: &str| {
         let is_number = digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
         is_number.then(|| digits.parse::<f64>().ok())?

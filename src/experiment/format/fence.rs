@@ -34,10 +34,6 @@ impl Rows for Fenced {
         let Self { format, rows } = *self;
         fenced(format, || rows.read(wanted))
     }
-
-    fn rows_of(&self, column: usize) -> Option<usize> {
-        self.rows.rows_of(column)
-    }
 }
 
 /// Does `work`, of which nothing is left where it panics.

@@ -21,7 +21,7 @@ use parquet::basic::Compression;
 use parquet::file::metadata::RowGroupMetaData;
 
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::Budget;
+use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::table::{Column, Head, Header, Labels, Opened, Rows, Table, Wanted};
 
 /// Rows that are read at once, at most.
@@ -54,12 +54,9 @@ pub(super) fn open(path: &Path, _: &Budget) -> Result<Opened, ReadError> {
     if !metadata.metadata().row_groups().iter().all(|group| lies_within(group, size)) {
         return Err(damaged("a column lies outside of the file"));
     }
-    let mut types = Vec::new();
-    for field in metadata.schema().flattened_fields() {
-        if !field.data_type().is_nested() {
-            types.push(field.data_type().clone());
-        }
-    }
+    let fields = metadata.schema().flattened_fields().into_iter();
+    let types: Vec<DataType> = fields.map(|field| field.data_type().clone()).collect();
+    let types: Vec<DataType> = types.into_iter().filter(|kind| !kind.is_nested()).collect();
     let columns = metadata.parquet_schema().columns();
     let headers = columns.iter().zip(&types);
     let headers = headers.map(|(column, kind)| header(&column.path().string(), kind)).collect();
@@ -103,33 +100,31 @@ fn header(name: &str, kind: &DataType) -> Header {
 
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+        wanted.budget.take_values(self.rows(), wanted.numeric.len() * NUMBER_SIZE)?;
         let mut columns = Vec::new();
         for index in wanted.numeric {
             columns.push(self.numbers(*index, wanted)?);
         }
-        let mut labels = Labels::default();
+        let (mut labels, mut row) = (Labels::default(), 0);
         if let Some(index) = wanted.label {
-            let mut row = 0;
             self.each_batch(index, wanted, &mut |batch, missing| {
-                let texts = texts(batch).map_err(damaged)?;
-                for (text, missing) in texts.iter().zip(missing) {
+                for (text, missing) in texts(batch).map_err(damaged)?.iter().zip(missing) {
                     row += 1;
-                    let label = if *missing { "" } else { text };
-                    labels.push(label, row, wanted.budget)?;
+                    labels.push(if *missing { "" } else { text }, row, wanted.budget)?;
                 }
                 Ok(())
             })?;
         }
-        Ok(Table::counted(wanted.rows, columns, labels))
-    }
-
-    fn rows_of(&self, _: usize) -> Option<usize> {
-        let counts = self.groups().iter().map(|group| usize::try_from(group.num_rows()));
-        Some(counts.fold(0, |all: usize, count| all.saturating_add(count.unwrap_or(0))))
+        Ok(Table::counted(wanted, columns, labels))
     }
 }
 
 impl Unread {
+    fn rows(&self) -> usize {
+        let counts = self.groups().iter().map(|group| usize::try_from(group.num_rows()));
+        counts.fold(0, |all: usize, count| all.saturating_add(count.unwrap_or(0)))
+    }
+
     fn groups(&self) -> &[RowGroupMetaData] {
         self.metadata.metadata().row_groups()
     }
@@ -141,7 +136,6 @@ impl Unread {
         if let Some(found) = if lists { Some("lists".to_owned()) } else { not_numbers(kind) } {
             return Ok(Column::not_numbers(&found));
         }
-        let are_of_day = matches!(kind, DataType::Time32(_) | DataType::Time64(_));
         let mut values = Vec::new();
         self.each_batch(index, wanted, &mut |batch, missing| {
             let numbers = floats(batch).map_err(damaged)?;
@@ -151,7 +145,7 @@ impl Unread {
             );
             Ok(())
         })?;
-        Ok(Column { are_of_day, ..Column::of(values) })
+        Ok(Column::of(values))
     }
 
     /// Hands on the values of a column in order, some thousand at a time, and which of them are missing
@@ -159,7 +153,7 @@ impl Unread {
     fn each_batch(
         &self,
         index: usize,
-        Wanted { rows, budget, .. }: &Wanted<'_>,
+        Wanted { budget, .. }: &Wanted<'_>,
         take: &mut Take<'_>,
     ) -> Result<(), ReadError> {
         let largest = self.largest_part(index)?;
@@ -175,7 +169,8 @@ impl Unread {
                 .with_batch_size(usize::try_from(batch).unwrap_or(1))
                 .build()
                 .map_err(damaged)?;
-        let mut left = *rows;
+        let rows = self.rows();
+        let mut left = rows;
         for batch in batches {
             let batch = batch.map_err(damaged)?;
             let mut column = batch.column(0).clone();
@@ -203,13 +198,9 @@ impl Unread {
         let mut largest = 0;
         for group in self.groups() {
             let column = group.column(index);
-            let codec = match column.compression() {
-                Compression::BROTLI(_) => "brotli",
-                Compression::LZO => "LZO",
-                _ => "",
-            };
-            if !codec.is_empty() {
+            if let codec @ (Compression::BROTLI(_) | Compression::LZO) = column.compression() {
                 let name = column.column_path().string();
+                let codec = if codec == Compression::LZO { "LZO" } else { "brotli" };
                 let reason = format!("column `{name}` is compressed by {codec}, which is not read");
                 let remedy =
                     "write it with zstd or snappy: `pandas.to_parquet(OUT, compression=\"zstd\")`";
@@ -245,15 +236,14 @@ fn floats(values: &ArrayRef) -> Result<ArrayRef, ArrowError> {
 
 /// The label of each row; a number as it would stand in a text.
 fn texts(values: &ArrayRef) -> Result<Vec<String>, ArrowError> {
-    let mut labels = Vec::new();
-    if values.data_type().is_numeric() || *values.data_type() == DataType::Boolean {
-        for number in floats(values)?.as_primitive::<Float64Type>() {
-            labels.push(number.map(|number| number.to_string()).unwrap_or_default());
-        }
+    let labels = if values.data_type().is_numeric() || *values.data_type() == DataType::Boolean {
+        let numbers = floats(values)?;
+        let numbers = numbers.as_primitive::<Float64Type>().iter();
+        numbers.map(|number| number.map_or_else(String::new, |x| x.to_string())).collect()
     } else {
-        for text in cast(values, &DataType::Utf8)?.as_string::<i32>() {
-            labels.push(text.unwrap_or_default().trim().to_owned());
-        }
-    }
+        let texts = cast(values, &DataType::Utf8)?;
+        let texts = texts.as_string::<i32>().iter();
+        texts.map(|text| text.unwrap_or_default().trim().to_owned()).collect()
+    };
     Ok(labels)
 }

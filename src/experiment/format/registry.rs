@@ -176,16 +176,16 @@ fn open_any(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
     }
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let named = FORMATS.iter().find(|format| format.ends(&name));
-    match FORMATS.iter().find(|format| (format.starts)(&start)) {
-        Some(found) => match named.filter(|named| !(named.starts)(&start)) {
-            Some(named) if found.is_text() => {
-                let reason = "its first bytes are not those of this format";
-                Err(ReadError::format(named.name, reason, named.remedy))
-            }
-            // Text is read by code that does not panic: if it did, that would be a fault to see.
-            _ if found.is_text() => (found.open)(path, budget),
-            _ => fence::open(found.name, || (found.open)(path, budget)),
-        },
+    let binary = FORMATS.iter().find(|format| !format.is_text() && (format.starts)(&start));
+    if let Some(found) = binary {
+        return fence::open(found.name, || (found.open)(path, budget));
+    }
+    match named.filter(|named| !(named.starts)(&start)) {
+        Some(named) => {
+            let reason = "its first bytes are not those of this format";
+            Err(ReadError::format(named.name, reason, named.remedy))
+        }
+        // Text is read by code that does not panic: if it did, that would be a fault to see.
         None => csv::open(path, budget),
     }
 }

@@ -71,16 +71,14 @@ impl Found {
         let first = rows.iter().position(is_of_table)?;
         let (above, below) = rows.split_at_checked(first)?;
         let ends_blank = below.first()?.cells.iter().next_back().is_some_and(<[u8]>::is_empty);
-        let header = header_among(above, (width, ends_blank), mark);
-        let marked = || marked_header(lines.get(first.checked_sub(1)?)?, mark);
-        let (at, mark_at, has_header) = match header {
-            Some(at) => (at, 0, true),
-            None => match marked() {
-                Some((mark_at, cells)) => (first - 1, mark_at, cells == width),
-                // A header of another width is refused with its row.
-                None => (above.iter().rposition(Row::is_of_words).unwrap_or(first), 0, false),
-            },
+        let header = header_among(above, (width, ends_blank), mark).map(|at| (at, 0, true));
+        let marked = || {
+            let (mark_at, cells) = marked_header(lines.get(first.checked_sub(1)?)?, mark)?;
+            Some((first - 1, mark_at, cells == width))
         };
+        // A header of another width is refused with its row.
+        let words = || (above.iter().rposition(Row::is_of_words).unwrap_or(first), 0, false);
+        let (at, mark_at, has_header) = header.or_else(marked).unwrap_or_else(words);
         let before = lines.get(..at)?;
         if mark == BLANK && !(has_header && is_of_plain_words(lines.get(at)?, lines.get(first)?)) {
             return None;
@@ -94,9 +92,9 @@ impl Found {
 impl Row {
     fn of(line: &[u8], mark: u8) -> Self {
         let cells = if is_row(line) { split(line, mark) } else { csv::ByteRecord::new() };
-        let is_value = |cell: &&[u8]| match parse_time(cell.trim_ascii(), mark) {
-            Ok(Time::Number(value) | Time::Written(value)) => value.is_finite(),
-            Err(_) => false,
+        let is_value = |cell: &&[u8]| {
+            let time = parse_time(cell.trim_ascii(), mark);
+            matches!(time, Ok(Time::Number(value) | Time::Written(value)) if value.is_finite())
         };
         Self { numbers: cells.iter().filter(is_value).count(), cells }
     }

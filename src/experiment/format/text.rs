@@ -12,7 +12,7 @@ use flate2::read::MultiGzDecoder;
 
 use super::first_bytes::is_gzip;
 use crate::experiment::error::ReadError;
-use crate::experiment::source::{Hashing, Source};
+use crate::experiment::source::{Hashing, Source, Sum};
 
 /// Bytes that are looked at to find out how a text is written.
 const SNIFFED_BYTES: usize = 64 * 1024;
@@ -22,26 +22,16 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// The bytes of a text, without a byte order mark, and where they come from.
 pub(super) struct Bytes {
     text: Box<dyn Read>,
-    /// The file, whose bytes are hashed as they are read, as a pipe gives them once; none of a text that was
-    /// made of a workbook.
-    file: Option<Rc<RefCell<Hashing<File>>>>,
+    /// The sum of the bytes of the file, which a pipe gives once; none of a text that was made of a workbook.
+    sum: Option<Rc<RefCell<Sum>>>,
     path: PathBuf,
 }
 
-/// A file from which the layers above it read, and whose hash is asked for at the end.
-struct Shared(Rc<RefCell<Hashing<File>>>);
-
-impl Read for Shared {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        self.0.borrow_mut().read(buffer)
-    }
-}
-
 impl Bytes {
-    /// Opens the file, and its first bytes as text with a line feed at the end of each line.
+    /// Opens the file, and its first bytes as text.
     pub(super) fn open(path: &Path) -> Result<(Self, Vec<u8>), ReadError> {
-        let file = Rc::new(RefCell::new(Hashing::new(File::open(path)?)));
-        let (mut start, mut text) = looked_at(Shared(Rc::clone(&file)))?;
+        let (file, sum) = Hashing::new(File::open(path)?);
+        let (mut start, mut text) = looked_at(file)?;
         if is_gzip(&start) {
             let unpacked = looked_at(MultiGzDecoder::new(text));
             (start, text) = unpacked.map_err(|error| damaged(&error.to_string()))?;
@@ -55,22 +45,21 @@ impl Bytes {
             let decoded = builder.encoding(Some(encoding)).bom_override(true).build(text);
             (start, text) = looked_at(decoded)?;
         }
-        Ok((Self { text, file: Some(file), path: path.to_owned() }, with_line_feeds(start)))
+        Ok((Self { text, sum: Some(sum), path: path.to_owned() }, start))
     }
 
     /// A text that was made of a file of another kind.
     #[cfg(feature = "xlsx")]
     pub(super) fn made(text: Vec<u8>) -> (Self, Vec<u8>) {
         let start = text.get(..SNIFFED_BYTES).unwrap_or(&text).to_vec();
-        let bytes = Self { text: Box::new(Cursor::new(text)), file: None, path: PathBuf::new() };
+        let bytes = Self { text: Box::new(Cursor::new(text)), sum: None, path: PathBuf::new() };
         (bytes, start)
     }
 
     /// The file that was read, all of it.
-    pub(super) fn finish(self) -> Result<Option<Source>, ReadError> {
-        drop(self.text);
-        let file = self.file.and_then(Rc::into_inner);
-        file.map(|file| file.into_inner().finish(&self.path)).transpose()
+    pub(super) fn finish(mut self) -> Result<Option<Source>, ReadError> {
+        io::copy(&mut self.text, &mut io::sink())?;
+        Ok(self.sum.map(|sum| sum.take().source(&self.path)))
     }
 }
 
@@ -88,18 +77,6 @@ fn looked_at(mut bytes: impl Read + 'static) -> io::Result<(Vec<u8>, Box<dyn Rea
         start.drain(..BYTE_ORDER_MARK.len());
     }
     Ok((start.clone(), Box::new(Cursor::new(start).chain(bytes))))
-}
-
-/// A text with a line feed for each carriage return that ends a line alone, as on old computers.
-fn with_line_feeds(mut text: Vec<u8>) -> Vec<u8> {
-    for at in 1..text.len() {
-        if let Some([end @ b'\r', next]) = text.get_mut(at - 1..=at)
-            && !b"\r\n".contains(next)
-        {
-            *end = b'\n';
-        }
-    }
-    text
 }
 
 fn damaged(reason: &str) -> ReadError {

@@ -6,8 +6,8 @@ use std::io::{BufReader, Read as _};
 use std::path::Path;
 
 use calamine::{
-    Cell, CellErrorType, Data, ExcelDateTime, Range, Reader as _, SheetType, SheetVisible, Xlsx,
-    XlsxError, open_workbook,
+    Cell, Data, ExcelDateTime, Range, Reader as _, SheetType, SheetVisible, Xlsx, XlsxError,
+    open_workbook,
 };
 use zip::ZipArchive;
 
@@ -18,7 +18,7 @@ use super::text::Bytes;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::names::on_one_line;
-use crate::experiment::table::{BadCell, Opened, Rows, Table, Wanted};
+use crate::experiment::table::{Opened, Rows, Table, Wanted};
 use crate::experiment::time_column::find_time_column;
 use crate::numerics::to_decimals;
 
@@ -78,8 +78,8 @@ fn sheets(workbook: &Workbook) -> Vec<String> {
 /// Whether a cell may be one of a log: a number, a date, or a formula for one.
 fn is_value(cell: &Data) -> bool {
     match cell {
-        Data::Float(_) | Data::Int(_) | Data::DateTime(_) | Data::Error(UNKNOWN) => true,
-        Data::String(text) => parse_time(text.trim().as_bytes(), b';').is_ok(),
+        Data::Float(_) | Data::Int(_) | Data::DateTime(_) => true,
+        Data::String(text) => text == NO_VALUE || parse_time(text.trim().as_bytes(), b';').is_ok(),
         _ => false,
     }
 }
@@ -99,7 +99,7 @@ fn of_sheet(
 }
 
 /// Stands for the value of a formula that the program which wrote it did not work out.
-const UNKNOWN: CellErrorType = CellErrorType::GettingData;
+const NO_VALUE: &str = "a formula without a value: open and save";
 
 /// The rows of a sheet, and which one it is.
 struct OfSheet {
@@ -114,27 +114,11 @@ impl Rows for OfSheet {
         let Self { name, count, rows } = *self;
         let name = on_one_line(&name);
         let mut table = rows.read(wanted)?;
-        let unknown = UNKNOWN.to_string();
-        for column in &mut table.columns {
-            let Some((row, BadCell::Text(text))) = &column.error else { continue };
-            if *text == unknown {
-                // It is of the whole column.
-                column.error = Some((0, BadCell::Kind(unknown_value(&name, *row))));
-            }
-        }
         if count > 1 {
             table.notes.push(format!("the sheet `{name}` of {count} is read"));
         }
         Ok(table)
     }
-}
-
-/// What a column holds whose formula in this row has no value.
-fn unknown_value(sheet: &str, row: u64) -> String {
-    format!(
-        "formulas without values (the first in row {row} of the sheet `{sheet}`: open the file in a \
-         spreadsheet program and save it, so that values are stored)"
-    )
 }
 
 /// How many parts of the file may be sheets.
@@ -152,27 +136,19 @@ fn check_parts(path: &Path, budget: &Budget) -> Result<usize, ReadError> {
             (name.ends_with("sharedstrings.xml"), name.ends_with("styles.xml"));
         let is_sheet = name.contains("sheets/") && !name.contains("_rels/");
         let size = if is_sheet || is_texts { SHEET_SIZE } else { PART_SIZE };
-        let (mut piece, mut kept) = (vec![0; 1 << 16], Vec::new());
-        loop {
-            let read = part.read(&mut piece);
-            let bytes = read.map_err(|e| damaged(format!("its part `{name}`: {e}")))?;
-            if bytes == 0 {
-                break;
-            }
-            memory += bytes as u64 * size;
-            budget.check(memory)?;
-            if is_styles || is_texts {
-                kept.extend_from_slice(piece.get(..bytes).unwrap_or_default());
-            }
-        }
+        let mut inside = Vec::new();
+        let read = part.by_ref().take(budget.left() / size + 1).read_to_end(&mut inside);
+        read.map_err(|error| damaged(format!("its part `{name}`: {error}")))?;
+        memory += inside.len() as u64 * size;
+        budget.check(memory)?;
         sheets += usize::from(is_sheet);
         if is_texts {
             // They stay while cells are read that share them.
-            let count = stated_texts(&kept).max(count_of(&kept, b"<si"));
-            budget.take(count.saturating_mul(TEXT_SIZE).saturating_add(kept.len() as u64))?;
+            let count = stated_texts(&inside).max(count_of(&inside, b"<si"));
+            budget.take(count.saturating_mul(TEXT_SIZE).saturating_add(inside.len() as u64))?;
         }
         if is_styles {
-            budget.check(size_of_styles(&kept))?;
+            budget.check(size_of_styles(&inside))?;
         }
     }
     Ok(sheets)
@@ -186,7 +162,7 @@ fn cells(workbook: &mut Workbook, name: &str, budget: &Budget) -> Result<Range<D
     let (mut first, mut last) = ((u32::MAX, u32::MAX), (0, 0));
     while let Some(cell) = reader.next_cell_with_formula_metadata().map_err(damaged)? {
         let value = match Data::from(cell.value) {
-            Data::Empty if cell.formula.is_some() => Data::Error(UNKNOWN),
+            Data::Empty if cell.formula.is_some() => Data::String(NO_VALUE.to_owned()),
             Data::Empty => continue,
             value => value,
         };
@@ -280,11 +256,8 @@ fn days_of(time: &ExcelDateTime) -> f64 {
 fn cell(data: &Data) -> String {
     match data {
         Data::Empty => String::new(),
-        // As `5e-324` where zeros would be hundreds of digits.
-        Data::Float(value) if *value != 0.0 && !(1e-5..1e16).contains(&value.abs()) => {
-            format!("{value:e}")
-        }
-        Data::Float(value) => value.to_string(),
+        // Numbers of hundreds of digits have an exponent so.
+        Data::Float(value) => format!("{value:?}").trim_end_matches(".0").to_owned(),
         Data::Int(value) => value.to_string(),
         Data::Bool(value) => u8::from(*value).to_string(),
         Data::DateTime(time) => {

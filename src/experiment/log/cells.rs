@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use crate::experiment::error::{ReadError, ReadErrorKind};
+use crate::experiment::error::ReadError;
 use crate::experiment::grid::Repair;
 use crate::experiment::layout::{JointLayout, Layout};
 use crate::experiment::memory::Budget;
@@ -64,6 +64,11 @@ impl<'a> Log<'a> {
         self.trials.iter().map(|trial| trial.start..trial.end).collect()
     }
 
+    /// The numbers of a column that was read.
+    pub(super) fn values(&self, column: usize) -> &[f64] {
+        self.column(column).map_or(&[], |column| &column.values)
+    }
+
     /// The numbers in a column, trial by trial; none where it ends at a bad cell.
     pub(in crate::experiment) fn parts(&self, column: usize) -> Option<Vec<&[f64]>> {
         let values = &self.column(column)?.values;
@@ -105,25 +110,32 @@ impl<'a> Log<'a> {
         self.table.rows.get(index).map_or(0, |row| u64::from(*row))
     }
 
-    /// The first bad cell of a column.
+    /// The first bad cell of a column, or that it is not as long as the others.
     pub(super) fn bad_cell(&self, column: usize) -> Option<ReadError> {
-        let (row, bad) = self.column(column)?.error.as_ref()?;
-        let error = ReadError::new(ReadErrorKind::Content, bad.to_string());
-        Some(error.in_row(*row).in_column(self.header(column)))
+        let (values, rows) = (self.column(column)?, self.table.rows.len());
+        match &values.error {
+            Some((row, bad)) => {
+                let error = ReadError::content(bad.to_string());
+                Some(error.in_row(*row).in_column(self.header(column)))
+            }
+            None if values.values.len() == rows => None,
+            None => {
+                let name = self.head.text(column);
+                Some(ReadError::unequal_columns(name, values.values.len(), rows))
+            }
+        }
     }
 }
 
 /// The trials' rows, named: the whole file is trial `1` unless it says otherwise.
 fn named(table: &Table, stem: Option<&str>) -> Vec<TrialRows> {
-    let mut trials = table.trials.clone();
-    if trials.is_empty() {
+    if table.trials.is_empty() {
         let label = stem.unwrap_or("1").to_owned();
         return vec![TrialRows { label, start: 0, end: table.rows.len() }];
     }
-    for trial in &mut trials {
-        if let Some(stem) = stem {
-            trial.label = format!("{stem}/{}", trial.label);
-        }
+    let mut trials = table.trials.clone();
+    if let Some(stem) = stem {
+        trials.iter_mut().for_each(|trial| trial.label = format!("{stem}/{}", trial.label));
     }
     trials
 }

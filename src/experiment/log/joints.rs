@@ -6,7 +6,7 @@ use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::gaps::no_shorter;
 use crate::experiment::grid::{Grid, Piece, Repair, Signals};
 use crate::experiment::joint::{Joint, Signal};
-use crate::experiment::layout::JointLayout;
+use crate::experiment::layout::{JointLayout, SignalColumn};
 use crate::experiment::table::TrialRows;
 use crate::experiment::trial::Trial;
 
@@ -27,12 +27,11 @@ impl Log<'_> {
         let layout = &layout;
         self.check_one_series(layout.output.column)?;
         let (filled, mut notes) = self.missing(layout, grids)?;
-        let own = match filled.longest_s() {
-            None => None,
-            fill_s => Some(self.grids(Repair { fill_s, ..self.options })?.0),
-        };
+        let own = filled.longest_s().map(|fill_s| Repair { fill_s: Some(fill_s), ..self.options });
+        let own = own.map(|options| self.grids(options)).transpose()?;
+        let grids = own.as_ref().map_or(grids, |(own, _)| own);
         notes.extend(unread);
-        let (joint, split) = self.on_grids(layout, own.as_deref().unwrap_or(grids), filled)?;
+        let (joint, split) = self.on_grids(layout, grids, filled)?;
         notes.extend(shown(split));
         Ok((joint, notes))
     }
@@ -94,27 +93,23 @@ impl Log<'_> {
         let (label, count) = (&trial.label, pieces.len());
         let one = if count == 2 { "of" } else { "the longest of" };
         // Where the clock starts anew no time passes.
-        let gap = match longest.filter(|(seconds, _)| *seconds > 0.0) {
-            Some((seconds, row)) => {
-                format!(" ({one} {} s, before row {row})", no_shorter(seconds))
-            }
-            None => String::new(),
-        };
+        let gap = longest
+            .filter(|(seconds, _)| *seconds > 0.0)
+            .map(|(seconds, row)| format!(" ({one} {} s, before row {row})", no_shorter(seconds)));
+        let gap = gap.unwrap_or_default();
         format!("trial `{label}` is split in {count} at long gaps{gap}")
     }
 
     /// The joint without the further signals that have bad cells, and a line on each of these: what drives
     /// and what it does are there without them.
     fn with_readable_covariates(&self, layout: &JointLayout) -> (JointLayout, Vec<String>) {
-        let mut readable = layout.clone();
-        let mut notes = Vec::new();
-        readable.covariates.retain(|covariate| match self.bad_cell(covariate.column) {
-            Some(error) => {
-                let signal = &covariate.signal.name;
-                notes.push(format!("the signal `{signal}` is left out: {error}"));
-                false
-            }
-            None => true,
+        let (mut readable, mut notes) = (layout.clone(), Vec::new());
+        readable.covariates.retain(|SignalColumn { signal, column, .. }| {
+            let error = self.bad_cell(*column);
+            notes.extend(
+                error.iter().map(|e| format!("the signal `{}` is left out: {e}", signal.name)),
+            );
+            error.is_none()
         });
         (readable, notes)
     }
@@ -125,37 +120,34 @@ impl Log<'_> {
         if let Some(error) = needed.into_iter().find_map(|column| self.bad_cell(column)) {
             return Err(error);
         }
-        for index in needed {
-            let Some(column) = self.column(index) else { continue };
-            if column.values.iter().all(|value| value.is_nan()) {
+        let unusable = |index: usize| {
+            let column = self.column(index)?;
+            let error = if column.values.iter().all(|value| value.is_nan()) {
                 let text = "there is no number in it; choose another column";
-                return Err(
-                    ReadError::new(ReadErrorKind::Empty, text).in_column(self.header(index))
-                );
-            }
-            if let Some(largest) = column.too_small() {
+                ReadError::new(ReadErrorKind::Empty, text)
+            } else {
                 let text = format!(
-                    "its largest number, {largest:e}, is too small: its square is below double \
-                     precision; write it in a smaller unit"
+                    "its largest number, {:e}, is too small: its square is below double precision; write it \
+                     in a smaller unit",
+                    column.too_small()?
                 );
-                return Err(
-                    ReadError::new(ReadErrorKind::Content, text).in_column(self.header(index))
-                );
-            }
-        }
-        Ok(())
+                ReadError::content(text)
+            };
+            Some(error.in_column(self.header(index)))
+        };
+        needed.into_iter().find_map(unusable).map_or(Ok(()), Err)
     }
 
     fn signals(&self, layout: &JointLayout, rows: &TrialRows) -> Signals {
-        let column = |column: usize| self.column(column).map_or(&[][..], |column| &column.values);
-        let cut =
-            |place: usize| column(place).get(rows.start..rows.end).unwrap_or_default().to_vec();
+        let cut = |column: usize| {
+            let values = self.values(column).get(rows.start..rows.end);
+            values.unwrap_or_default().to_vec()
+        };
         // A logger that notes an input when it changes does not note it anew where a trial begins.
         let mut input = cut(layout.input.column);
         if let Some(first) = input.first_mut().filter(|first| first.is_nan()) {
-            let mut before =
-                column(layout.input.column).get(..rows.start).unwrap_or_default().iter().rev();
-            *first = before.find(|value| !value.is_nan()).copied().unwrap_or(f64::NAN);
+            let before = self.values(layout.input.column).get(..rows.start).unwrap_or_default();
+            *first = before.iter().rfind(|value| !value.is_nan()).copied().unwrap_or(f64::NAN);
         }
         Signals {
             input,

@@ -56,9 +56,8 @@ impl Log<'_> {
             return Ok((filled, vec![note]));
         }
         let mut notes = self.filled_notes(layout);
-        let is_asked = as_it_stands || fill_s.is_some();
-        let pause_s = self.pause_with_steps_s(layout, grids);
-        let Some(longest_s) = pause_s.filter(|_| !is_asked) else {
+        let may_fill = !as_it_stands && fill_s.is_none();
+        let Some(longest_s) = self.pause_with_steps_s(layout, grids).filter(|_| may_fill) else {
             return Ok((Filled::Gaps, notes));
         };
         notes.push(format!(
@@ -95,8 +94,9 @@ impl Log<'_> {
                 }
                 any_step |= is_step;
                 samples += seconds / period;
-                longest_s =
-                    if is_pause { longest_s.max(seconds + 2.0 * period) } else { longest_s };
+                if is_pause {
+                    longest_s = longest_s.max(seconds + 2.0 * period);
+                }
             }
         }
         let is_short = longest_s <= LONGEST_S && samples <= SAMPLES * output.len() as f64;
@@ -120,13 +120,11 @@ impl Log<'_> {
             values.iter().position(|value| value.is_nan()).map(|index| (index, column))
         };
         let needed = [layout.input.column, layout.output.column];
-        match needed.into_iter().filter_map(first_missing).min() {
-            Some((index, column)) => {
-                let error = ReadError::new(ReadErrorKind::Missing, "the cell is empty or NaN");
-                Err(error.in_row(self.row(index)).in_column(self.header(column)))
-            }
-            None => Ok(()),
-        }
+        let Some((index, column)) = needed.into_iter().filter_map(first_missing).min() else {
+            return Ok(());
+        };
+        let error = ReadError::new(ReadErrorKind::Missing, "the cell is empty or NaN");
+        Err(error.in_row(self.row(index)).in_column(self.header(column)))
     }
 
     /// How far apart outputs may be that are joined by a line, where so many rows have none that the sensor
@@ -160,8 +158,7 @@ impl Log<'_> {
 
     /// A line on cells that are missing in the input and the output of a joint.
     fn filled_notes(&self, layout: &JointLayout) -> Vec<String> {
-        let input = self.column(layout.input.column).map_or(&[][..], |column| &column.values);
-        let held = if input.first().is_some_and(|value| value.is_nan()) {
+        let held = if self.values(layout.input.column).first().is_some_and(|value| value.is_nan()) {
             "the last value is held; before the first value, the first one is used, so a step to \
              it is not known"
         } else {
@@ -169,20 +166,15 @@ impl Log<'_> {
         };
         let filled = "short gaps are filled by linear interpolation, longer ones split the trial";
         let note = |(column, what): (usize, &str)| {
-            let values = &self.column(column)?.values;
-            let missing = values.iter().filter(|value| value.is_nan()).count();
-            let first = values.iter().position(|value| value.is_nan())?;
-            let (column, row) = (self.header(column), self.row(first));
-            let cells = if missing == 1 { "cell is" } else { "cells are" };
-            Some(format!(
-                "{missing} {cells} empty or NaN in `{column}` (first at row \
-                 {row}): {what}"
-            ))
+            let missing =
+                self.values(column).iter().enumerate().filter(|(_, value)| value.is_nan());
+            let (first, _) = missing.clone().next()?;
+            let (count, name, row) = (missing.count(), self.header(column), self.row(first));
+            let cells = if count == 1 { "cell is" } else { "cells are" };
+            Some(format!("{count} {cells} empty or NaN in `{name}` (first at row {row}): {what}"))
         };
-        [(layout.output.column, filled), (layout.input.column, held)]
-            .into_iter()
-            .filter_map(note)
-            .collect()
+        let columns = [(layout.output.column, filled), (layout.input.column, held)];
+        columns.into_iter().filter_map(note).collect()
     }
 }
 

@@ -26,7 +26,7 @@ impl Log<'_> {
                 return Ok(());
             }
         };
-        let values = self.column(column).map_or(&[][..], |column| &column.values);
+        let values = self.values(column);
         self.check_one_unit(column, values)?;
         let are_dates = self.column(column).is_some_and(|column| column.are_dates);
         let counting = Counting::of(column, values, scale.filter(|_| !are_dates));
@@ -43,9 +43,8 @@ impl Log<'_> {
     pub(in crate::experiment) fn main_grids(&mut self) -> Result<Vec<Grid>, ReadError> {
         let (grids, notes) = self.grids(self.options)?;
         self.check_periods(&grids)?;
-        let notes = notes.into_iter().chain(self.origin_note()).chain(self.rate_note(&grids));
-        let notes: Vec<String> = notes.collect();
-        self.notes.extend(notes);
+        let (origin, rate) = (self.origin_note(), self.rate_note(&grids));
+        self.notes.extend(notes.into_iter().chain(origin).chain(rate));
         Ok(grids)
     }
 
@@ -151,10 +150,8 @@ impl Log<'_> {
                 && pairs.all(|(one, other)| one.to_bits() == other.to_bits())
         };
         let differs = |column: &&usize| !self.column(**column).is_some_and(is_same);
-        match self.layout.time_again.iter().find(differs) {
-            Some(column) => Err(self.head.two_columns(&self.header(*column))),
-            None => Ok(()),
-        }
+        let differs = self.layout.time_again.iter().find(differs);
+        differs.map_or(Ok(()), |column| Err(self.head.two_columns(&self.header(*column))))
     }
 
     /// Refuses times whose unit changes: what is after the change would be another experiment.
@@ -184,18 +181,14 @@ impl Log<'_> {
         if let Some(error) = self.bad_cell(column) {
             return Err(error);
         }
-        match times.iter().position(|time| time.is_nan()) {
-            Some(index) => {
-                let text = "the time is missing; remove the row or write it";
-                Err(self.clock_error(text, index).in_column(self.header(column)))
-            }
-            None => Ok(()),
-        }
+        let Some(index) = times.iter().position(|time| time.is_nan()) else { return Ok(()) };
+        let text = "the time is missing; remove the row or write it";
+        Err(self.clock_error(text, index).in_column(self.header(column)))
     }
 
     /// What is wrong with the clock at a row.
     fn clock_error(&self, text: impl Into<String>, index: usize) -> ReadError {
-        ReadError::new(ReadErrorKind::Content, text).in_row(self.row(index))
+        ReadError::content(text).in_row(self.row(index))
     }
 
     /// Refuses an output that has several series at each time, as in a table with a row for each joint: all
@@ -231,7 +224,7 @@ impl Log<'_> {
                  as in a table with a row for each joint; give each joint an input and an output \
                  column of its own"
             );
-            return Err(ReadError::new(ReadErrorKind::Content, text).about(column));
+            return Err(ReadError::content(text).about(column));
         }
         Ok(())
     }

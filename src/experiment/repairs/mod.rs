@@ -4,17 +4,15 @@
 //! stamps are read: in [`super::clock`].
 
 mod bursts;
-mod mended;
 mod rezeroed;
 mod same_time;
 mod slow_sensor;
 mod wrap;
 
 use super::error::ReadError;
+use super::layout::JointLayout;
 use super::log::Log;
 use super::table::TrialRows;
-use mended::mend_outputs;
-use wrap::Wrap;
 
 /// Mends everything in `log` that may be: the rows before their times, the times before the signals. What
 /// depends on rows that a growing log does not have yet is not mended in one.
@@ -28,7 +26,6 @@ pub(super) fn mend_all(log: &mut Log<'_>) -> Result<(), ReadError> {
         turn_newest_first(log);
     }
     log.read_times()?;
-    count_over_midnight(log);
     leave_out_single_rows(log);
     if is_whole {
         same_time::join(log);
@@ -46,6 +43,22 @@ pub(super) fn mend_all(log: &mut Log<'_>) -> Result<(), ReadError> {
     Ok(())
 }
 
+/// The values of an output as they are mended, and what is said of it.
+type Mended = (Vec<f64>, Option<String>);
+
+/// Mends each output that needs it.
+fn mend_outputs(log: &mut Log<'_>, mend: impl Fn(&Log<'_>, &JointLayout) -> Option<Mended>) {
+    for joint in log.with_own_outputs() {
+        let Some((values, note)) = mend(log, joint) else { continue };
+        if let Some(column) = log.column_mut(joint.output.column) {
+            column.values = values;
+        }
+        if let Some(note) = note {
+            log.note_on(joint, &note);
+        }
+    }
+}
+
 /// Stamps in two columns, whole seconds and what they leave over, as those of ROS are, become one. Where
 /// the second column holds more than parts of a second, each says the time by itself.
 fn join_stamps(log: &mut Log<'_>) {
@@ -54,7 +67,9 @@ fn join_stamps(log: &mut Log<'_>) {
     let Some((seconds, parts)) = log.column(whole).zip(log.column(rest)) else { return };
     let is_part = |part: &f64| part.is_nan() || (0.0..1.0).contains(&(unit_s * part));
     let is_whole = |value: &f64| value.is_nan() || value.fract() == 0.0;
-    let are_two = parts.values.iter().all(is_part) && seconds.values.iter().all(is_whole);
+    let are_two = parts.values.len() == seconds.values.len()
+        && parts.values.iter().all(is_part)
+        && seconds.values.iter().all(is_whole);
     let parts = parts.values.clone();
     if let Some(seconds) = log.column_mut(whole).filter(|_| are_two) {
         seconds.values.iter_mut().zip(parts).for_each(|(value, part)| *value += unit_s * part);
@@ -84,21 +99,6 @@ fn falls(times: &[f64]) -> bool {
     falling >= FEWEST && rising as f64 <= OUT_OF_ORDER * falling as f64
 }
 
-/// Counts times of day on over midnight, at which they begin anew.
-fn count_over_midnight(log: &mut Log<'_>) {
-    let column = log.layout.time.column().and_then(|column| log.column(column));
-    let are_of_day = column.is_some_and(|column| column.are_dates || column.are_of_day);
-    if are_of_day {
-        count_on(&mut log.times);
-    }
-}
-
-fn count_on(times: &mut [f64]) {
-    if times.iter().all(|time| (0.0..Wrap::DAY_S).contains(time)) {
-        Wrap::OF_CLOCK.unwrap(times);
-    }
-}
-
 /// Leaves out trials of one row, from which no period follows, as where a counter of trials is late by a
 /// row. Where all are of one row, that is an error of the log.
 fn leave_out_single_rows(log: &mut Log<'_>) {
@@ -109,38 +109,17 @@ fn leave_out_single_rows(log: &mut Log<'_>) {
     let (long, alone): (_, Vec<_>) = std::mem::take(&mut log.trials).into_iter().partition(is_long);
     log.trials = long;
     let Some(TrialRows { label, .. }) = alone.first() else { return };
-    log.notes.push(match alone.len() {
-        1 => format!("trial `{label}` has one row only and is left out"),
-        count => {
-            format!("{count} trials have one row only and are left out, the first is `{label}`")
-        }
+    let count = alone.len();
+    log.notes.push(if count == 1 {
+        format!("trial `{label}` has one row only and is left out")
+    } else {
+        format!("{count} trials have one row only and are left out, the first is `{label}`")
     });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn times_of_day_count_on_over_midnight() {
-        let mut times = [86_399.98, 86_399.99, 0.0, 0.01];
-        count_on(&mut times);
-        let in_ms = times.map(|time| (1e3 * time).round());
-        assert_eq!(
-            in_ms.map(|ms| format!("{ms}")),
-            ["86399980", "86399990", "86400000", "86400010"]
-        );
-        let mut unsorted = [86_399.98, 0.0, 86_399.99, 0.01];
-        count_on(&mut unsorted);
-        let in_ms = unsorted.map(|time| format!("{}", (1e3 * time).round()));
-        assert_eq!(in_ms, ["86399980", "86400000", "86399990", "86400010"]);
-        // A log that begins anew, and a time that has passed, of which hours are more than 24.
-        for times in [[50.0, 60.0, 40.0, 50.0], [86_399.0, 86_400.0, 0.0, 1.0]] {
-            let mut counted = times;
-            count_on(&mut counted);
-            assert_eq!(counted.map(f64::to_bits), times.map(f64::to_bits));
-        }
-    }
 
     #[test]
     fn times_that_fall_are_told_from_a_clock_that_restarts_or_stands_still() {

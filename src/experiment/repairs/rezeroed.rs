@@ -3,19 +3,26 @@
 //! An incremental encoder that is homed again goes on from another value: from one row to the next the
 //! output jumps as it never moves. What follows is taken back by the jump.
 
-use super::mended::Mended;
+use super::Mended;
 use crate::experiment::layout::JointLayout;
 use crate::experiment::log::Log;
 use crate::numerics::{median, to_digits};
 
-/// The output of a joint without its jumps where its zero is set anew.
+/// The output of a joint without its jumps where its zero is set anew. Rows after a gap lie as far apart as the joint
+/// moved there, and where the clock starts anew so does the record.
 pub(super) fn put_back(log: &Log<'_>, joint: &JointLayout) -> Option<Mended> {
-    let shifts = shifts(log, joint)?;
+    let (inputs, outputs) = (log.parts(joint.input.column)?, log.parts(joint.output.column)?);
+    let signals = inputs.into_iter().zip(&outputs).map(|(input, output)| [input, *output]);
+    let least = least_jump(&signals.collect::<Vec<_>>())?;
+    let mut trials = log.trials.iter().zip(outputs);
+    if !trials.all(|(rows, output)| are_near(log, rows.start, output, least)) {
+        return None;
+    }
     let mut values = log.column(joint.output.column)?.values.clone();
     let mut jumps = Vec::new();
     for rows in log.spans() {
         let part = values.get_mut(rows.clone())?;
-        jumps.extend(shifts.put_back(part).into_iter().map(|(row, by)| (rows.start + row, by)));
+        jumps.extend(taken_out(part, least).into_iter().map(|(row, by)| (rows.start + row, by)));
     }
     let (row, by) = jumps.first()?;
     let unit =
@@ -23,35 +30,23 @@ pub(super) fn put_back(log: &Log<'_>, joint: &JointLayout) -> Option<Mended> {
     let (row, by) = (log.row(*row), to_digits(*by, 3));
     let more = match jumps.len() {
         1 => String::new(),
-        2 => ", and once more".to_owned(),
         count => format!(", and {} times more", count - 1),
     };
     let note = format!(
         "the output jumps by {by}{unit} at row {row}{more}, much farther than between any other \
          rows: the sensor was probably re-zeroed, so later samples are shifted back by this amount"
     );
-    Some(Mended { values, note: Some(note) })
-}
-
-/// The jumps of the output of a joint. Rows after a gap lie as far apart as the joint moved there, and where the clock
-/// starts anew so does the record. Of what wraps it is not known.
-fn shifts(log: &Log<'_>, joint: &JointLayout) -> Option<Shifts> {
-    let (inputs, outputs) = (log.parts(joint.input.column)?, log.parts(joint.output.column)?);
-    let signals = inputs.into_iter().zip(&outputs).map(|(input, output)| [input, output]);
-    let shifts = Shifts::of(&signals.collect::<Vec<_>>())?;
-    let mut trials = log.trials.iter().zip(outputs);
-    trials.all(|(rows, output)| are_near(log, rows.start, output, shifts)).then_some(shifts)
+    Some((values, Some(note)))
 }
 
 /// Whether the rows on both sides of each jump in `output`, from the row `start` on, follow one another.
-fn are_near(log: &Log<'_>, start: usize, output: &[f64], shifts: Shifts) -> bool {
+fn are_near(log: &Log<'_>, start: usize, output: &[f64], least: f64) -> bool {
     /// Times the usual distance of rows that two are apart, at most.
     const NEAR: f64 = 1.5;
     let Some(times) = log.times.get(start..start + output.len()) else { return true };
     let apart: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let Some(usual) = median(&apart) else { return true };
-    let mut jumps = shifts.jumps(output);
-    jumps.all(|row| apart.get(row - 1).is_some_and(|by| (0.0..=NEAR * usual).contains(by)))
+    jumps(output, least).into_iter().all(|row| (0.0..=NEAR * usual).contains(&apart[row - 1]))
 }
 
 /// Jumps of a joint, at most.
@@ -68,66 +63,55 @@ const TIMES: f64 = 20.0;
 /// Rows between two jumps, at least: a spike of the sensor jumps to and fro.
 const APART: usize = 50;
 
-/// A change from row to row beyond which an output jumps, output units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Shifts {
-    least: f64,
+/// The change from row to row, output units, from which on the output of a joint jumps, with the inputs and
+/// outputs of its `trials`, not a number where they are missing; none where it does not.
+fn least_jump(trials: &[[&[f64]; 2]]) -> Option<f64> {
+    let changes = |of: usize| {
+        let pairs = trials.iter().flat_map(move |trial| trial[of].windows(2));
+        pairs.map(|pair| (pair[1] - pair[0]).abs())
+    };
+    // The largest first, one more than may be jumps.
+    let mut largest = [0.0_f64; MOST + 1];
+    for change in changes(1) {
+        let place = largest.partition_point(|known| *known >= change);
+        if change.is_finite() && place < largest.len() {
+            largest[place..].rotate_right(1);
+            largest[place] = change;
+        }
+    }
+    let is_far =
+        |jumps: &usize| largest[*jumps] > 0.0 && largest[jumps - 1] >= TIMES * largest[*jumps];
+    let count = (1..=MOST).find(is_far)?;
+    let steps = changes(0).filter(|change| *change > 0.0).count();
+    let is_held = STEPS * steps <= changes(0).count();
+    let most = if is_held { steps / STEPS } else { FEW };
+    let least = largest[count - 1];
+    let are_apart = trials.iter().all(|[_, output]| {
+        let jumps = jumps(output, least);
+        let inside = |row: &usize| *row >= APART && row + APART <= output.len();
+        jumps.iter().all(inside) && jumps.windows(2).all(|pair| pair[1] - pair[0] >= APART)
+    });
+    (count <= most && are_apart).then_some(least)
 }
 
-impl Shifts {
-    /// That of a joint with the inputs and outputs of its `trials`, not a number where they are missing;
-    /// none where its output does not jump.
-    fn of(trials: &[[&[f64]; 2]]) -> Option<Self> {
-        let changes = |of: usize| {
-            let pairs = trials.iter().flat_map(move |trial| trial[of].windows(2));
-            pairs.map(|pair| (pair[1] - pair[0]).abs())
-        };
-        // The largest first, one more than may be jumps.
-        let mut largest = [0.0_f64; MOST + 1];
-        for change in changes(1) {
-            let place = largest.partition_point(|known| *known >= change);
-            if change.is_finite() && place < largest.len() {
-                largest[place..].rotate_right(1);
-                largest[place] = change;
-            }
-        }
-        let is_far =
-            |jumps: &usize| largest[*jumps] > 0.0 && largest[jumps - 1] >= TIMES * largest[*jumps];
-        let jumps = (1..=MOST).find(is_far)?;
-        let steps = changes(0).filter(|change| *change > 0.0).count();
-        let is_held = STEPS * steps <= changes(0).count();
-        let most = if is_held { steps / STEPS } else { FEW };
-        let least = largest[jumps - 1];
-        let found = Self { least };
-        let are_apart = trials.iter().all(|[_, output]| {
-            let jumps: Vec<usize> = found.jumps(output).collect();
-            let inside = |row: &usize| *row >= APART && row + APART <= output.len();
-            jumps.iter().all(inside) && jumps.windows(2).all(|pair| pair[1] - pair[0] >= APART)
-        });
-        (jumps <= most && are_apart).then_some(found)
-    }
+/// The indices after the jumps of an output.
+fn jumps(output: &[f64], least: f64) -> Vec<usize> {
+    (1..output.len()).filter(|row| (output[*row] - output[row - 1]).abs() >= least).collect()
+}
 
-    /// The indices after the jumps of an output.
-    fn jumps(self, output: &[f64]) -> impl Iterator<Item = usize> {
-        let pairs = output.windows(2).zip(1..);
-        pairs.filter(move |(pair, _)| (pair[1] - pair[0]).abs() >= self.least).map(|(_, row)| row)
+/// Takes the jumps out of `output`: the change of the row before is taken for that of the jump's. The
+/// indices after them, with how far they go.
+fn taken_out(output: &mut [f64], least: f64) -> Vec<(usize, f64)> {
+    let size = |row: usize| {
+        let before = if row > 1 { output[row - 1] - output[row - 2] } else { 0.0 };
+        let before = if before.is_finite() { before } else { 0.0 };
+        (row, output[row] - output[row - 1] - before)
+    };
+    let jumps: Vec<(usize, f64)> = jumps(output, least).into_iter().map(size).collect();
+    for (row, size) in &jumps {
+        output[*row..].iter_mut().for_each(|value| *value -= size);
     }
-
-    /// Takes the jumps out of `output`: the change of the row before is taken for that of the jump's. The
-    /// indices after them, with how far they go.
-    fn put_back(self, output: &mut [f64]) -> Vec<(usize, f64)> {
-        let rows: Vec<usize> = self.jumps(output).collect();
-        let size = |row: usize| {
-            let before = if row > 1 { output[row - 1] - output[row - 2] } else { 0.0 };
-            let before = if before.is_finite() { before } else { 0.0 };
-            (row, output[row] - output[row - 1] - before)
-        };
-        let jumps: Vec<(usize, f64)> = rows.into_iter().map(size).collect();
-        for (row, size) in &jumps {
-            output[*row..].iter_mut().for_each(|value| *value -= size);
-        }
-        jumps
-    }
+    jumps
 }
 
 #[cfg(test)]
@@ -154,11 +138,12 @@ mod tests {
         let clean = output(|_| 0.0);
         let often = |k: usize| 40.0 * f64::from(u8::try_from(k / 700).unwrap());
         let mut homed = output(often);
-        assert_eq!(Shifts::of(&[[&input(), &homed]]).unwrap().put_back(&mut homed).len(), 5);
+        let least = least_jump(&[[&input(), &homed]]).unwrap();
+        assert_eq!(taken_out(&mut homed, least).len(), 5);
         for jump in [30.0, -1000.0] {
             let mut marred = output(|k| if k < 2000 { 0.0 } else { jump });
-            let found = Shifts::of(&[[&input(), &marred]]).unwrap();
-            let jumps = found.put_back(&mut marred);
+            let least = least_jump(&[[&input(), &marred]]).unwrap();
+            let jumps = taken_out(&mut marred, least);
             assert_eq!(jumps.len(), 1);
             assert_eq!(jumps[0].0, 2000);
             assert!(marred.iter().zip(&clean).all(|(a, b)| (a - b).abs() < 0.3), "{jumps:?}");
@@ -167,7 +152,7 @@ mod tests {
 
     #[test]
     fn motion_and_spikes_are_no_jumps() {
-        let of = |output: &[f64]| Shifts::of(&[[&input(), output]]);
+        let of = |output: &[f64]| least_jump(&[[&input(), output]]);
         assert_eq!(of(&output(|_| 0.0)), None);
         assert_eq!(of(&output(|k| if k == 2000 { 30.0 } else { 0.0 })), None, "a spike");
         assert_eq!(of(&output(|k| if k < 2000 { 0.0 } else { 0.5 })), None, "as far as it moves");
@@ -178,10 +163,10 @@ mod tests {
         let input: Vec<f64> = (0..1100).map(slow).collect();
         let follows: Vec<f64> =
             (0..1100).map(|k: usize| slow(k.saturating_sub(2)) + 0.01 * noise[k]).collect();
-        assert_eq!(Shifts::of(&[[&input, &follows]]), None);
+        assert_eq!(least_jump(&[[&input, &follows]]), None);
         // One step, and the answer to it.
         let step: Vec<f64> = (0..4000).map(|k| f64::from(u8::from(k > 2000))).collect();
         let answer: Vec<f64> = output(|k| if k < 2003 { 0.0 } else { 30.0 });
-        assert_eq!(Shifts::of(&[[&step, &answer]]), None);
+        assert_eq!(least_jump(&[[&step, &answer]]), None);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::mended::Mended;
+use super::Mended;
 use crate::experiment::layout::JointLayout;
 use crate::experiment::log::Log;
 use crate::numerics::quantile;
@@ -22,7 +22,7 @@ pub(super) fn first_readings(log: &Log<'_>, joint: &JointLayout) -> Option<Mende
     let note = format!(
         "each reading of the output is repeated in {rows} rows; only the first of them is used"
     );
-    Some(Mended { values, note: Some(note) })
+    Some((values, Some(note)))
 }
 
 /// Leaves the first row of each reading alone, and NaN in the others.

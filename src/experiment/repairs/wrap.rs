@@ -1,10 +1,10 @@
-//! Outputs that wrap, of sensors that begin anew after a turn; and clocks, which do after a day.
+//! Outputs that wrap, of sensors that begin anew after a turn.
 //!
 //! An absolute encoder on a slewing joint shows 179.9 deg and then −179.9: a turn of 360 deg in one
 //! sample, which no joint makes. Where all large jumps of an output are of a turn, they are taken
 //! out. Its unit says what a turn is, else the jumps themselves do.
 
-use super::mended::Mended;
+use super::Mended;
 use crate::experiment::layout::JointLayout;
 use crate::experiment::log::Log;
 use crate::numerics::{RunningLine, as_written, median, quantile, to_decimals};
@@ -18,8 +18,12 @@ pub(super) fn unwrap(log: &Log<'_>, joint: &JointLayout) -> Option<Mended> {
     for rows in log.spans() {
         count += values.get_mut(rows).map_or(0, |part| wrap.unwrap(part));
     }
-    let note = (count > 0).then(|| wrap.note(count, unit));
-    Some(Mended { values, note })
+    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+    let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
+    let turn = to_decimals(wrap.turn, 4);
+    let note = format!("the output wraps at a turn of {turn}{unit}, {times}: it is unwrapped");
+    let note = Some(note).filter(|_| count > 0);
+    Some((values, note))
 }
 
 /// A sensor that wraps after so much, output units.
@@ -38,12 +42,6 @@ const JUMP: f64 = 0.75;
 const BEYOND: f64 = 1.02;
 
 impl Wrap {
-    /// Seconds of a day.
-    pub(super) const DAY_S: f64 = 86_400.0;
-
-    /// A clock that shows times of day, seconds.
-    pub(super) const OF_CLOCK: Self = Self { turn: Self::DAY_S, outlier_step: f64::INFINITY };
-
     /// The turn of a sensor whose output is `trials`, not a number where it is missing, in `unit`;
     /// none where it does not begin anew.
     pub(super) fn of(trials: &[&[f64]], unit: Option<&str>) -> Option<Self> {
@@ -79,17 +77,17 @@ impl Wrap {
         largest < MOTION && (0.0..=TIMES * largest + BESIDES).contains(&most)
     }
 
-    /// Takes the turns out of `values`, which follow one another; how many there were. A sample amid
-    /// a turn, as filters leave it there, becomes one that is missing.
+    /// Takes the turns out of `values`, which follow one another; how many there were. An outlier near the end of a
+    /// turn, as noise there shows, goes to where its neighbours are.
     pub(super) fn unwrap(self, values: &mut [f64]) -> usize {
         let (mut turns, mut count, mut before) = (0.0, 0, f64::NAN);
         let outliers = outliers(values, self.outlier_step);
-        let mut outliers = outliers.iter().peekable();
         for (index, value) in values.iter_mut().enumerate().filter(|(_, value)| !value.is_nan()) {
-            if let Some(outlier) = outliers.next_if(|outlier| outlier.index == index) {
-                let before = before + turns * self.turn;
-                let shown = *value + turns * self.turn;
-                *value = if outlier.is_between { f64::NAN } else { self.at_the_end(shown, before) };
+            let turned = |turns: f64| turns * self.turn;
+            if outliers.binary_search(&index).is_ok() {
+                let near = |by: &f64| (*value + by - before).abs() < MOTION * self.turn;
+                let by = [-self.turn, self.turn].into_iter().find(near).unwrap_or(0.0);
+                *value += turned(turns) + by;
                 continue;
             }
             let step = *value - before;
@@ -98,53 +96,19 @@ impl Wrap {
                 count += 1;
             }
             before = *value;
-            *value += turns * self.turn;
+            *value += turned(turns);
         }
         count
     }
-
-    /// A sample that is `shown` far from the one `before`: a turn from there, where that is near, as noise
-    /// at the end of a turn shows its other end.
-    fn at_the_end(self, shown: f64, before: f64) -> f64 {
-        let turned = [shown - self.turn, shown + self.turn];
-        let near = |value: &f64| (value - before).abs() < MOTION * self.turn;
-        turned.into_iter().find(near).unwrap_or(shown)
-    }
-
-    /// What is said of a sensor that began anew `count` times.
-    pub(super) fn note(self, count: usize, unit: Option<&str>) -> String {
-        let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-        let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
-        format!(
-            "the output wraps at a turn of {}{unit}, {times}: it is unwrapped",
-            to_decimals(self.turn, 4)
-        )
-    }
-}
-
-/// A sample that is far from both its neighbours.
-struct Outlier {
-    index: usize,
-    /// Whether it lies between them.
-    is_between: bool,
 }
 
 /// The known ones of `values` that are more than `step` from those before and after.
-fn outliers(values: &[f64], step: f64) -> Vec<Outlier> {
-    if step.is_infinite() {
-        return Vec::new();
-    }
-    let known: Vec<(usize, f64)> =
-        values.iter().copied().enumerate().filter(|(_, value)| !value.is_nan()).collect();
-    let of = |triple: &[(usize, f64)]| match *triple {
-        [(_, before), (index, value), (_, behind)] => {
-            let (to, from) = (value - before, behind - value);
-            let is_outlier = to.abs() > step && from.abs() > step;
-            is_outlier.then_some(Outlier { index, is_between: to * from > 0.0 })
-        }
-        _ => None,
-    };
-    known.windows(3).filter_map(of).collect()
+fn outliers(values: &[f64], step: f64) -> Vec<usize> {
+    let known: Vec<usize> = (0..values.len()).filter(|index| !values[*index].is_nan()).collect();
+    let is_far = |a: usize, b: usize| (values[a] - values[b]).abs() > step;
+    let triples = known.windows(3);
+    let far = triples.filter(|three| is_far(three[0], three[1]) && is_far(three[1], three[2]));
+    far.map(|three| three[1]).collect()
 }
 
 /// The step above which a sample is an outlier: well above usual ones. Where such
@@ -172,10 +136,9 @@ fn outlier_step(trials: &[&[f64]]) -> f64 {
 /// The known values of a trial without its outliers.
 fn without_outliers(trial: &[f64], step: f64) -> Vec<f64> {
     let outliers = outliers(trial, step);
-    let is_one = |index: &usize| outliers.binary_search_by_key(index, |one| one.index).is_ok();
     let values = trial.iter().copied().enumerate();
-    let kept = values.filter(|(index, value)| !value.is_nan() && !is_one(index));
-    kept.map(|(_, value)| value).collect()
+    let kept = values.filter(|(index, _)| outliers.binary_search(index).is_err());
+    kept.map(|(_, value)| value).filter(|value| !value.is_nan()).collect()
 }
 
 /// Whether any sample jumps by a good part of the range, as all do that begin a turn: most outputs
@@ -256,27 +219,20 @@ fn turns_at_jumps(trial: &[f64], range: f64) -> Vec<f64> {
     let ends: Vec<usize> = [0].into_iter().chain(jumps).chain([trial.len()]).collect();
     let turn = |jumps: &[usize]| {
         let &[from, at, to] = jumps else { return None };
-        let jump = trial[at] - trial[at - 1];
         let before = &trial[from.max(at.saturating_sub(NEAR))..at];
         let behind = &trial[at..to.min(at + NEAR)];
-        let moved = |part: &[f64]| -jump.signum() * (part[part.len() - 1] - part[0]);
-        let moves = moved(before).min(moved(behind)) >= LEAST * range;
+        let direction = -(trial[at] - trial[at - 1]).signum();
+        let moved = |part: &[f64]| part[part.len() - 1] - part[0];
+        let moves = [before, behind].iter().all(|part| direction * moved(part) >= LEAST * range);
         // From the middle of what is before to that of what is after, by the slopes of both.
-        let (before, behind) = (line(before), line(behind));
-        let way = |(line, samples): &(RunningLine, usize)| 0.5 * line.slope() * *samples as f64;
-        let apart = behind.0.mean() - before.0.mean() - way(&before) - way(&behind);
-        moves.then(|| apart.abs())
+        let [(first, first_way), (second, second_way)] = [before, behind].map(|part| {
+            let mut line = RunningLine::default();
+            part.iter().for_each(|value| line.push(*value));
+            (line.mean(), 0.5 * line.slope() * part.len() as f64)
+        });
+        moves.then(|| (second - first - first_way - second_way).abs())
     };
     ends.windows(3).filter_map(turn).collect()
-}
-
-/// The line through samples, and how many there are.
-fn line(part: &[f64]) -> (RunningLine, usize) {
-    let mut line = RunningLine::default();
-    for value in part {
-        line.push(*value);
-    }
-    (line, part.len())
 }
 
 #[cfg(test)]
@@ -319,9 +275,7 @@ mod tests {
         assert!(wrap.unwrap(&mut seen) > 10);
         let offset = seen[0] - truth[0];
         let off = |k: &usize| (seen[*k] - truth[*k] - offset).abs();
-        let is_off = |k: &usize| off(k).is_nan() || off(k) > 1e-9;
-        assert_eq!((0..seen.len()).filter(is_off).collect::<Vec<_>>(), [50, jump]);
-        assert!(seen[jump].is_nan());
+        assert_eq!((0..seen.len()).filter(|k| off(k) > 1e-9).collect::<Vec<_>>(), [50, jump]);
     }
 
     #[test]

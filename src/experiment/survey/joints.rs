@@ -67,14 +67,11 @@ impl<'a> Columns<'a> {
     /// The columns that hold numbers which change.
     pub(super) fn of(head: &'a Head, signals: &'a [Option<Signal>]) -> Self {
         let moves = |signal: &Option<Signal>| signal.as_ref().is_some_and(|s| !s.is_constant());
-        let moving = (0..signals.len()).filter(|column| signals.get(*column).is_some_and(moves));
-        let moving: Vec<usize> = moving.collect();
+        let moving: Vec<usize> =
+            (0..signals.len()).filter(|column| moves(&signals[*column])).collect();
         let mut names: Vec<Option<Name>> = vec![None; head.headers.len()];
         for column in &moving {
-            if let (Some(name), Some(header)) = (names.get_mut(*column), head.headers.get(*column))
-            {
-                *name = Some(Name::of(header));
-            }
+            names[*column] = head.headers.get(*column).map(Name::of);
         }
         let mut all = names.iter().flatten();
         let mut common = all.next().map(Name::parts).unwrap_or_default();
@@ -103,10 +100,10 @@ impl Columns<'_> {
         // Of two with one name the first.
         let places: HashMap<&str, usize> =
             headers.clone().rev().map(|(place, header)| (header.name.as_str(), place)).collect();
+        let why = ["its name ends in .input", "its name ends in .output"].map(str::to_owned);
         let joint = |(input, header): (usize, &Header)| {
             let name = header.name.strip_suffix(".input")?.to_owned();
-            let output = *places.get(&*format!("{name}.output"))?;
-            let why = ["its name ends in .input", "its name ends in .output"].map(str::to_owned);
+            let (output, why) = (*places.get(&*format!("{name}.output"))?, why.clone());
             Some(FoundJoint { name, input, output, why, is_sure: true, instead: Vec::new() })
         };
         headers.filter_map(joint).collect()
@@ -146,22 +143,18 @@ impl Columns<'_> {
         let own = |column: usize| self.name(column).map(&own).unwrap_or_default();
         let mut with: HashMap<String, Vec<usize>> = HashMap::new();
         for output in outputs {
-            for word in own(*output) {
-                with.entry(word).or_default().push(*output);
-            }
+            own(*output).into_iter().for_each(|word| with.entry(word).or_default().push(*output));
         }
-        let (mut pairs, mut compared) = (Vec::new(), 0);
+        let mut pairs = Vec::new();
         for input in inputs {
             let words = own(*input);
-            let near: BTreeSet<usize> =
-                words.iter().filter_map(|word| with.get(word)).flatten().copied().collect();
-            compared += near.len();
-            if compared > MOST {
-                return Vec::new();
+            let near = words.iter().filter_map(|word| with.get(word)).flatten();
+            for output in near.collect::<BTreeSet<_>>() {
+                let shared = &words & &own(*output);
+                pairs.push(Pair { shared, ..Pair::alone(*input, *output) });
             }
-            for output in near {
-                let shared = &words & &own(output);
-                pairs.push(Pair { shared, ..Pair::alone(*input, output) });
+            if pairs.len() > MOST {
+                return Vec::new();
             }
         }
         self.each_column_once(pairs)
@@ -324,18 +317,15 @@ impl Columns<'_> {
 
     /// Why a pair is taken for a joint: of the input, and of the output.
     fn reasons(&self, pair: &Pair) -> [String; 2] {
-        let mut why =
-            [(pair.input, Side::Input), (pair.output, Side::Output)].map(|(column, side)| {
-                let by = self.name(column).filter(|name| name.side == Some(side)).map(|n| &*n.by);
-                let says = self.signal(column).map(Signal::says);
-                format!("{}{}", by.unwrap_or_default(), says.unwrap_or_default())
-            });
+        let sides = [(pair.input, Side::Input), (pair.output, Side::Output)];
+        let mut why = sides.map(|(column, side)| {
+            let by = self.name(column).filter(|name| name.side == Some(side)).map(|n| &*n.by);
+            let says = self.signal(column).map(Signal::says);
+            format!("{}{}", by.unwrap_or_default(), says.unwrap_or_default())
+        });
         if let Some(follows) = pair.follows {
-            let [_, output] = &mut why;
-            *output = format!(
-                "{output}; its rate of change follows the input (correlation \
-                 {follows:+.2})"
-            );
+            why[1] +=
+                &format!("; its rate of change follows the input (correlation {follows:+.2})");
         }
         why
     }
@@ -366,10 +356,8 @@ impl Columns<'_> {
         if !words.iter().all(|word| is_letter(word) || is_number(word)) {
             words.retain(|word| !is_letter(word));
         }
-        match &*words {
-            [] => "joint".to_owned(),
-            words => words.iter().map(|word| word.as_str()).collect::<Vec<_>>().join("_"),
-        }
+        let words: Vec<&str> = words.into_iter().map(String::as_str).collect();
+        if words.is_empty() { "joint".to_owned() } else { words.join("_") }
     }
 
     /// For each of `joints` the columns that are named like what drives it, too, and are no joint's.
@@ -381,14 +369,12 @@ impl Columns<'_> {
                 by_word.entry(word).or_insert(joint);
             }
         }
-        let mut found = Vec::new();
-        for input in self.free_inputs(&taken) {
+        let of_joint = |input: usize| {
             let words = self.own(input, joints.len());
-            if let Some(joint) = words.iter().find_map(|word| by_word.get(word)) {
-                found.push((joint.name.clone(), self.head.text(input)));
-            }
-        }
-        found
+            let joint = words.iter().find_map(|word| by_word.get(word))?;
+            Some((joint.name.clone(), self.head.text(input)))
+        };
+        self.free_inputs(&taken).filter_map(of_joint).collect()
     }
 
     fn name(&self, column: usize) -> Option<&Name> {

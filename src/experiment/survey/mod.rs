@@ -84,15 +84,16 @@ impl Survey {
         let head = table.head.clone();
         head.check_is_header()?;
         let (time, trial) = (find_time_column(&head), find_trial(&head));
-        // What is as long as the times are: gains and options stand beside them in a workspace.
-        let rows = time.and_then(|time| table.rows_of(time));
-        let is_as_long = |column: &usize| rows.is_none() || table.rows_of(*column) == rows;
-        let numeric = (0..head.headers.len()).filter(|i| Some(*i) != trial).filter(is_as_long);
-        let numeric: Vec<usize> = numeric.collect();
+        let numeric: Vec<usize> = (0..head.headers.len()).filter(|i| Some(*i) != trial).collect();
         let clock = head.headers.first().map_or(0, |header| header.clock);
-        let read = table.read(&numeric, trial, time, clock, Repair::default())?;
-        let read = read.columns.iter().zip(numeric);
-        Ok(Self::of_columns(&head, read.map(|(column, index)| (index, column))))
+        let read = table.read(&numeric, [None, time], clock, Repair::default())?;
+        // Gains and options stand beside the signals in a workspace.
+        let rows = time.map_or(0, |_| read.rows.len());
+        let is_as_long =
+            |column: &Column| rows == 0 || column.error.is_some() || column.values.len() == rows;
+        let columns =
+            numeric.into_iter().zip(&read.columns).filter(|(_, column)| is_as_long(column));
+        Ok(Self::of_columns(&head, columns))
     }
 
     /// Looks at columns with their indices in `head`.
@@ -109,17 +110,16 @@ impl Survey {
         let mut open = Vec::new();
         if time.is_none() {
             open.push(
-                "no column is a time: name one with `--time COLUMN`, or give `--sample-period SECONDS`"
-                    .to_owned(),
+                "no column is a time: name one with `--time COLUMN`, or give `--sample-period SECONDS`",
             );
         }
         if joints.is_empty() {
             open.push(
                 "neither names nor data show which columns are the input and the output of a joint: \
-                 name them with `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN`"
-                    .to_owned(),
+                 name them with `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN`",
             );
         }
+        let open = open.into_iter().map(str::to_owned).collect();
         let found: Vec<JointColumns> =
             joints.iter().map(|j| columns.joint_columns([j.input, j.output], &j.name)).collect();
         let map = |joints| ColumnMap {
@@ -188,12 +188,10 @@ impl Columns<'_> {
                 (Role::Time, format!("its name{}", if unit.is_some() { "" } else { guess }))
             } else if Some(column) == trial {
                 (Role::Trial, "its name".to_owned())
-            } else if let Some(role) = roles.remove(&column) {
-                role
             } else {
-                let signal = self.signals.get(column).and_then(Option::as_ref);
-                let says = signal.map(Signal::says);
-                (Role::Other, says.unwrap_or_else(|| "it does not hold numbers".to_owned()))
+                let says = self.signals.get(column).and_then(Option::as_ref).map(Signal::says);
+                let says = says.unwrap_or_else(|| "it does not hold numbers".to_owned());
+                roles.remove(&column).unwrap_or((Role::Other, says))
             };
             columns.push(SurveyedColumn { name: header.text.clone(), unit, role, why });
         }

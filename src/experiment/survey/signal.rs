@@ -35,11 +35,9 @@ impl Signal {
         }
         let pairs = if is_sparse { &known } else { &values }.windows(2);
         let pairs = pairs.filter(|pair| pair.iter().all(|value| !value.is_nan()));
-        #[expect(clippy::float_cmp, reason = "whether a value is held")]
-        let (all, changes) = pairs.fold((0_usize, 0_usize), |(all, changes), pair| {
-            (all + 1, changes + usize::from(pair[0] != pair[1]))
-        });
-        (all > 0).then(|| Self { values, changing: changes as f64 / all as f64 })
+        let changes = |pair: &&[f64]| (pair[1] - pair[0]).abs() > 0.0;
+        let (all, changed) = (pairs.clone().count(), pairs.filter(changes).count());
+        (all > 0).then(|| Self { values, changing: changed as f64 / all as f64 })
     }
 
     /// Numbers of which none can be read.

@@ -3,12 +3,11 @@
 use super::super::cell::{DecimalMarks, Time, parse_cell, parse_time};
 use super::super::spelling::{are_units, is_over_lines, is_remark};
 use super::lines::Place;
-use super::milliseconds::Milliseconds;
-use crate::experiment::error::{ReadError, ReadErrorKind};
+use crate::experiment::error::ReadError;
 use crate::experiment::memory::NUMBER_SIZE;
 use crate::experiment::names::shown;
 use crate::experiment::source::Source;
-use crate::experiment::table::{BadCell, Column, Header, Labels, Table, Wanted};
+use crate::experiment::table::{BadCell, Column, Labels, Table, Wanted};
 
 /// Rows of words that may stand below a table, and bytes that each may have.
 const MOST_REMARKS: usize = 20;
@@ -24,18 +23,12 @@ pub(super) struct Gathered<'w> {
     marks: DecimalMarks,
     /// Whether times are dates or times of day, as the first one shows.
     are_times_in_words: Option<bool>,
-    milliseconds: Milliseconds,
     rows: Vec<u32>,
     columns: Vec<Column>,
     labels: Labels,
     pub(super) notes: Vec<String>,
-    /// Rows of words and of zero bytes, which belong to the table if rows of numbers follow.
+    /// Rows of words, which belong to the table if rows of numbers follow.
     held_back: Vec<(csv::ByteRecord, Place)>,
-    /// Whether one among those of numbers says what the header or the rows of words below it say, where logs
-    /// were put after one another or a logger writes its header anew.
-    repeats_head: bool,
-    /// The rows of words below the header.
-    above: Vec<(csv::ByteRecord, Place)>,
     /// Cells of each row, which the first one shows.
     width: Option<usize>,
 }
@@ -48,45 +41,36 @@ impl<'w> Gathered<'w> {
             delimiter,
             marks: DecimalMarks::of(wanted.numeric.len(), delimiter),
             are_times_in_words: None,
-            milliseconds: Milliseconds::default(),
             rows: Vec::new(),
             columns,
             labels: Labels::default(),
             notes: Vec::new(),
             held_back: Vec::new(),
-            repeats_head: false,
-            above: Vec::new(),
             width: None,
         }
     }
 
     /// Says which rows below the header were left out that are no units.
-    pub(super) fn note_above(&mut self, above: Vec<(csv::ByteRecord, Place)>) {
+    pub(super) fn note_above(&mut self, above: &[(csv::ByteRecord, Place)]) {
         for (record, Place { row, .. }) in above.iter().filter(|(record, _)| !are_units(record)) {
             let says = says(record);
             self.notes.push(format!(
                 "row {row}, below the header, is left out: it holds no number and no time (`{says}`)"
             ));
         }
-        self.above = above;
     }
 
-    /// Takes a row, or holds it back where it may be words below the table, or what a power cut left. A row that
-    /// is wrong because it is cut off is left out.
+    /// Takes a row, or holds it back where it may be words below the table. A row that is wrong because it is cut
+    /// off is left out.
     pub(super) fn add(&mut self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
-        let is_odd = is_remark(record, self.delimiter) || has_zero_bytes(record);
         let is_held = record.as_slice().len() <= LONGEST_REMARK;
-        if is_odd && is_held && !self.rows.is_empty() && self.held_back.len() < MOST_REMARKS {
+        let may_be_last = is_held && !self.rows.is_empty() && self.held_back.len() < MOST_REMARKS;
+        if may_be_last && is_remark(record, self.delimiter) {
             self.held_back.push((record.clone(), place));
             return Ok(());
         }
         for (record, place) in std::mem::take(&mut self.held_back) {
-            if !self.repeats_head(&record) {
-                self.take(&record, place)?;
-            } else if !std::mem::replace(&mut self.repeats_head, true) {
-                let row = place.row;
-                self.notes.push(format!("row {row} repeats the header: such rows are left out"));
-            }
+            self.take(&record, place)?;
         }
         let taken = self.take(record, place);
         let is_short = record.len() < self.wanted.head.headers.len();
@@ -95,16 +79,6 @@ impl<'w> Gathered<'w> {
             return Ok(());
         }
         taken
-    }
-
-    /// Whether a row says what the header or a row of words below it says.
-    fn repeats_head(&self, record: &csv::ByteRecord) -> bool {
-        let headers = &self.wanted.head.headers;
-        let is_name = |(cell, header): (&[u8], &Header)| {
-            String::from_utf8_lossy(cell).trim() == header.text.trim()
-        };
-        let is_header = record.len() == headers.len() && record.iter().zip(headers).all(is_name);
-        is_header || self.above.iter().any(|(above, _)| above == record)
     }
 
     fn take(&mut self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
@@ -118,18 +92,16 @@ impl<'w> Gathered<'w> {
         wanted.budget.take_values(1, size)?;
         let index = self.rows.len();
         self.rows.push(u32::try_from(row).unwrap_or(u32::MAX));
-        let columns = self.columns.iter_mut().zip(wanted.numeric).enumerate();
-        for (place, (column, wanted_at)) in columns {
-            let cell = cell(*wanted_at);
-            let parsed = if wanted.time == Some(*wanted_at) {
+        for (at, (column, header)) in self.columns.iter_mut().zip(wanted.numeric).enumerate() {
+            let cell = cell(*header);
+            let parsed = if wanted.time == Some(*header) {
                 let time = time_in(cell, self.delimiter, &mut self.are_times_in_words);
                 column.are_dates = self.are_times_in_words == Some(true);
-                self.milliseconds.take(cell);
                 time
             } else {
                 parse_cell(cell, self.delimiter)
             };
-            column.push(self.marks.agreed(cell, parsed, place, (row, index)), row);
+            column.push(self.marks.agreed(cell, parsed, at, (row, index)), row);
         }
         if wanted.label.is_some() {
             self.labels.push(&String::from_utf8_lossy(label), row, wanted.budget)?;
@@ -141,23 +113,20 @@ impl<'w> Gathered<'w> {
     /// cell which the header does not have, or the other way round; such a mark makes no cell.
     fn check_width(&mut self, record: &csv::ByteRecord, place: Place) -> Result<(), ReadError> {
         let (headers, found) = (&self.wanted.head.headers, record.len());
-        let expected = headers.len();
-        let last = headers.last().map(|header| header.name.as_str());
+        let (expected, last) = (headers.len(), headers.last().map(|header| header.name.as_str()));
         let ends_blank = record.iter().next_back().is_some_and(|cell| cell.trim_ascii().is_empty());
-        let has_one_more = found == expected + 1 && ends_blank;
-        let has_one_less = found + 1 == expected && last == Some("");
-        let is_odd = has_one_more || has_one_less;
+        let is_odd =
+            found == expected + 1 && ends_blank || found + 1 == expected && last == Some("");
         let width = *self.width.get_or_insert(if is_odd { found } else { expected });
         let is_as_wide = found == width && (width != expected + 1 || ends_blank);
-        let lacks_comment = found + 1 == expected && last == Some(COMMENT);
-        if is_as_wide || lacks_comment {
+        if is_as_wide || found + 1 == expected && last == Some(COMMENT) {
             return Ok(());
         }
         let hint = if place.lines > 1 { "; is a quotation mark never closed?" } else { "" };
         let text = format!(
             "{found} cells, but the header has {width}; give every row a cell per column{hint}"
         );
-        Err(ReadError::new(ReadErrorKind::Content, text).in_row(place.row))
+        Err(ReadError::content(text).in_row(place.row))
     }
 
     /// Refuses a row one cell of which holds further rows: a quotation mark in it is never closed, or far
@@ -178,7 +147,7 @@ impl<'w> Gathered<'w> {
             "a cell that begins with a quotation mark goes over {lines} lines, which look like rows; \
              close it, or remove the mark"
         );
-        Err(ReadError::new(ReadErrorKind::Content, text).in_row(row))
+        Err(ReadError::content(text).in_row(row))
     }
 
     /// The table of all rows, which were read from this file. What was held back is no row of it.
@@ -190,36 +159,20 @@ impl<'w> Gathered<'w> {
                 column.error = Some((*row, BadCell::Thousands(cell.clone())));
             }
         }
-        let time = self.wanted.numeric.iter().position(|column| self.wanted.time == Some(*column));
-        let time = time.and_then(|time| self.columns.get_mut(time));
-        if time.is_some_and(|time| self.milliseconds.apply(&mut time.values)) {
-            let note =
-                "the decimals of the times are milliseconds without leading zeros: `.10` is 10 ms";
-            self.notes.push(note.to_owned());
-        }
         let Self { rows, columns, labels, notes, .. } = self;
         Table { source, rows, columns, trials: labels.runs, notes }
     }
 
     fn note_held_back(&mut self) {
-        let count = self.held_back.len();
-        let Some((first, place)) = self.held_back.first() else { return };
-        let what = if has_zero_bytes(first) {
-            "bytes of zero, as a power cut leaves them".to_owned()
-        } else {
-            format!("no number and no time (`{}`)", says(first))
-        };
-        let row = place.row;
-        self.notes.push(match count {
+        let Some((first, Place { row, .. })) = self.held_back.first() else { return };
+        let what = format!("no number and no time (`{}`)", says(first));
+        self.notes.push(match self.held_back.len() {
             1 => format!("the last row, {row}, is left out: it holds {what}"),
-            _ => format!("the last {count} rows, from {row} on, are left out: they hold {what}"),
+            count => {
+                format!("the last {count} rows, from {row} on, are left out: they hold {what}")
+            }
         });
     }
-}
-
-/// Whether a row holds what stands in a file whose last bytes were not written before the power went.
-fn has_zero_bytes(record: &csv::ByteRecord) -> bool {
-    record.as_slice().contains(&0)
 }
 
 /// The time in a cell, where it is written as the first one is: in words (`Some(true)`) or as a number.

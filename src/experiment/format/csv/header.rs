@@ -1,24 +1,13 @@
 //! The header of a table of text, and its units.
 
 use super::super::spelling::{are_units, bare_unit, is_remark};
-use crate::experiment::error::{ReadError, ReadErrorKind};
+use crate::experiment::error::ReadError;
 use crate::experiment::table::{Head, Header};
 use crate::experiment::time_column::find_time_column;
 use crate::experiment::unit::{is_time, is_unit};
 
 /// What a text is expected to be.
 const A_TABLE: &str = "a table of text";
-
-/// Refuses a header of more cells than a log has columns, which a row of commas is, too.
-pub(super) fn check_header_size(cells: usize) -> Result<(), ReadError> {
-    /// Ten times as many as a large plant has signals (chosen).
-    const MOST: usize = 1_000_000;
-    if cells > MOST {
-        let reason = format!("its header has {cells} cells; at most {MOST} are read");
-        return Err(ReadError::format(A_TABLE, reason, "leave out columns"));
-    }
-    Ok(())
-}
 
 /// A name without the quotation marks that a blank before them makes part of the cell, or single ones.
 fn unquoted(cell: &str) -> &str {
@@ -33,13 +22,13 @@ pub(super) fn check_last_name(
     first: &csv::ByteRecord,
     row: u64,
 ) -> Result<(), ReadError> {
-    let (cells, names) = (head.headers.len(), head.headers.len().saturating_sub(1));
-    let is_nameless = names > 0 && head.headers.last().is_some_and(|last| last.text.is_empty());
+    let Some((last, named)) = head.headers.split_last() else { return Ok(()) };
+    let names = named.len();
     let is_filled = first.get(names).is_some_and(|cell| !cell.trim_ascii().is_empty());
-    if !is_nameless || first.len() != cells || !is_filled {
+    if names == 0 || !last.text.is_empty() || first.len() != names + 1 || !is_filled {
         return Ok(());
     }
-    let header = head.header_row;
+    let (header, cells) = (head.header_row, first.len());
     let reason = format!(
         "row {header} has {names} names and a separator after the last, and row {row} has {cells} cells"
     );
@@ -75,17 +64,24 @@ pub(super) fn describes(
     true
 }
 
-/// What the header says, which stands on the line `header_row`.
+/// What the header says, which stands on the line `header_row`. Refuses one of more cells than a log has columns,
+/// which a row of commas is, too.
 pub(super) fn head(record: &csv::ByteRecord, header_row: u64) -> Result<Head, ReadError> {
-    let header = |(cell, column): (&[u8], usize)| {
-        let text = std::str::from_utf8(cell).ok().map(unquoted).map(Header::parse);
-        text.ok_or_else(|| {
+    /// Ten times as many as a large plant has signals (chosen).
+    const MOST: usize = 1_000_000;
+    if record.len() > MOST {
+        let reason = format!("its header has {} cells; at most {MOST} are read", record.len());
+        return Err(ReadError::format(A_TABLE, reason, "leave out columns"));
+    }
+    let mut headers = Vec::new();
+    for (cell, column) in record.iter().zip(1..) {
+        let Ok(text) = std::str::from_utf8(cell) else {
             let text = format!(
                 "the name of column {column} is not UTF-8 text; choose UTF-8 when saving it"
             );
-            ReadError::new(ReadErrorKind::Content, text).in_row(header_row)
-        })
-    };
-    let headers = record.iter().zip(1..).map(header).collect::<Result<_, _>>()?;
+            return Err(ReadError::content(text).in_row(header_row));
+        };
+        headers.push(Header::parse(unquoted(text)));
+    }
     Ok(Head { headers, header_row, unread: Vec::new() })
 }

@@ -1,12 +1,12 @@
 //! Rows of a text, and the lines of the file that they stand on.
 
-use std::io::{BufRead as _, BufReader};
+use std::io::{BufRead as _, BufReader, Read as _};
 
 use super::super::cell::is_missing;
 use super::super::line::part;
 use super::super::spelling::Spelling;
 use super::super::text::Bytes;
-use crate::experiment::error::{ReadError, ReadErrorKind};
+use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 
 /// Bytes of a row: what is longer is no table of text, or a quotation that is never closed.
@@ -30,11 +30,6 @@ pub(super) struct Records {
     text: Vec<u8>,
     /// Its cells.
     pub(super) record: csv::ByteRecord,
-    /// Cells of the header, once it has come.
-    pub(super) width: usize,
-    /// Comments below the header that have as many cells, with a number in the second one: how many, and the
-    /// first of them.
-    wide: (u64, u64),
 }
 
 /// Where a record is in the file.
@@ -59,8 +54,6 @@ impl Records {
             longest: LONGEST_ROW.min(budget.left() / ROW_SIZE),
             text: Vec::new(),
             record: csv::ByteRecord::new(),
-            width: 0,
-            wide: (0, 0),
         }
     }
 
@@ -79,7 +72,7 @@ impl Records {
                 break;
             }
         }
-        let is_open = !self.text.last().is_some_and(|byte| b"\r\n".contains(byte));
+        let is_open = !self.text.ends_with(b"\n");
         let lines = self.count + 1 - row;
         Ok((!self.text.is_empty()).then_some(Place { row, lines, is_open }))
     }
@@ -88,73 +81,34 @@ impl Records {
         self.bytes.into_inner()
     }
 
-    /// Adds the next line to those of the record at `row`, up to a line feed, or to a carriage return that
-    /// ends a line alone; whether there was one.
+    /// Adds the next line to those of the record at `row`; whether there was one.
     fn read_line(&mut self, row: u64) -> Result<bool, ReadError> {
-        let start = self.text.len();
-        loop {
-            let bytes = self.bytes.fill_buf()?;
-            let Some(next) = bytes.first() else { break };
-            let read = self.text.get(start..).unwrap_or_default();
-            if read.ends_with(b"\n") || read.ends_with(b"\r") && *next != b'\n' {
-                break;
-            }
-            let end = bytes.iter().position(|byte| *byte == b'\n' || *byte == b'\r');
-            let length = end.map_or(bytes.len(), |end| end + 1);
-            self.text.extend_from_slice(bytes.get(..length).unwrap_or_default());
-            self.bytes.consume(length);
-            if self.text.len() as u64 > self.longest || self.count >= row + MOST_LINES {
-                return Err(self.without_end(row));
-            }
+        let left = (self.longest + 1).saturating_sub(self.text.len() as u64);
+        let read = self.bytes.by_ref().take(left).read_until(b'\n', &mut self.text)?;
+        if self.text.len() as u64 > self.longest || self.count >= row + MOST_LINES {
+            return Err(self.without_end(row));
         }
-        Ok(self.text.len() > start)
+        Ok(read > 0)
     }
 
     fn without_end(&self, row: u64) -> ReadError {
-        let or_memory = if self.longest < LONGEST_ROW {
-            " A longer row needs a larger `--max-memory`."
-        } else {
-            ""
-        };
-        let text = format!(
+        let mut text = format!(
             "it does not end within {} bytes and {MOST_LINES} lines; is a quotation mark never closed? If so, \
-             close it, or remove the mark.{or_memory}",
+             close it, or remove the mark.",
             self.longest
         );
-        ReadError::new(ReadErrorKind::Content, text).in_row(row)
+        if self.longest < LONGEST_ROW {
+            text += " A longer row needs a larger `--max-memory`.";
+        }
+        ReadError::content(text).in_row(row)
     }
 
     /// Whether a line between records is blank or a comment. One that begins with a cell like `#N/A` is none.
-    fn is_left_out(&mut self) -> bool {
+    fn is_left_out(&self) -> bool {
         if !self.text.trim_ascii_start().starts_with(b"#") {
             return self.text.iter().all(|byte| b" \r\n".contains(byte));
         }
         let first = self.record.get(0).unwrap_or_default().trim_ascii();
-        if std::str::from_utf8(first).is_ok_and(is_missing) {
-            return false;
-        }
-        let is_name = first.get(1).is_some_and(u8::is_ascii_alphanumeric);
-        let second = self.record.get(1).unwrap_or_default().trim_ascii().first();
-        let is_number = second.is_some_and(|byte| byte.is_ascii_digit() || b"+-.".contains(byte));
-        if is_name && is_number && self.record.len() == self.width {
-            let (count, first) = self.wide;
-            self.wide = (count + 1, if count == 0 { self.count } else { first });
-        }
-        true
-    }
-
-    /// Says how many comments are as wide as the rows.
-    pub(super) fn on_wide_comments(&self) -> Option<String> {
-        match self.wide {
-            (0, _) => None,
-            (1, row) => Some(format!(
-                "row {row} begins with `#` and is left out as a comment, although it has as many \
-                 cells as the others"
-            )),
-            (count, row) => Some(format!(
-                "{count} rows begin with `#` and are left out as comments, although they have as \
-                 many cells as the others (first at row {row})"
-            )),
-        }
+        !std::str::from_utf8(first).is_ok_and(is_missing)
     }
 }

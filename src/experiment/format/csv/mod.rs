@@ -3,18 +3,17 @@
 mod gathered;
 mod header;
 mod lines;
-mod milliseconds;
 
 use std::io::{self, Read as _};
 use std::path::Path;
 
 use super::spelling::Spelling;
 use super::text::Bytes;
-use crate::experiment::error::{ReadError, ReadErrorKind};
+use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{Opened, Rows, Table, Wanted};
 use gathered::Gathered;
-use header::{check_header_size, check_last_name, describes, head};
+use header::{check_last_name, describes, head};
 use lines::{Place, Records};
 
 /// What follows the header, still unread.
@@ -41,17 +40,17 @@ pub(super) fn table(
     delimiter: Option<u8>,
     budget: &Budget,
 ) -> Result<Opened, ReadError> {
+    if start.contains(&b'\r') && !start.contains(&b'\n') {
+        let reason = "its lines end with carriage returns alone";
+        return Err(ReadError::format("a table of text", reason, "save it with line feeds"));
+    }
     let (spelling, is_text) = (Spelling::of(start, delimiter), delimiter.is_none());
     let (before, _) = spelling.preamble;
     io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink())?;
     let delimiter = spelling.delimiter;
     let mut records = Records::of(bytes, spelling, budget);
-    let Some(place) = records.next()? else {
-        return Err(ReadError::empty());
-    };
-    check_header_size(records.record.len())?;
+    let place = records.next()?.ok_or_else(ReadError::empty)?;
     let mut head = head(&records.record, place.row)?;
-    records.width = head.headers.len();
     let mut above = Vec::new();
     let mut first = records.next()?;
     while let Some(place) = first {
@@ -72,17 +71,11 @@ impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         let Self { mut records, delimiter, above, first } = *self;
         let mut gathered = Gathered::new(wanted, delimiter);
-        gathered.note_above(above);
+        gathered.note_above(&above);
         let mut next = first;
         while let Some(place) = next.filter(|place| !(place.is_open && wanted.grows)) {
             gathered.add(&records.record, place)?;
             next = records.next()?;
-        }
-        match records.on_wide_comments() {
-            Some(note) if first.is_none() => {
-                return Err(ReadError::new(ReadErrorKind::Empty, note));
-            }
-            note => gathered.notes.extend(note),
         }
         Ok(gathered.finish(records.into_bytes().finish()?))
     }
@@ -105,7 +98,7 @@ mod tests {
             let budget = Budget::new(MemoryLimit::default());
             let open = OpenTable::new(open(&path, &budget).unwrap(), budget);
             assert_eq!(open.head.header_row, 2, "{text:?}");
-            let table = open.read(&[0, 1], None, Some(0), 0, Repair::default()).unwrap();
+            let table = open.read(&[0, 1], [None, Some(0)], 0, Repair::default()).unwrap();
             assert_eq!(table.rows, [3, 6, 7], "{text:?}");
             assert_eq!(table.columns[1].error, Some((7, BadCell::Text("x".to_owned()))));
         }

@@ -17,8 +17,8 @@ use std::path::Path;
 
 use self::variable::{Content, Variable};
 use super::first_bytes::{is_matlab_73, start_of};
-use crate::experiment::error::{ReadError, ReadErrorKind};
-use crate::experiment::memory::Budget;
+use crate::experiment::error::ReadError;
+use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::table::{Column, Head, Labels, Opened, Rows, Table, Wanted};
 
 /// The variables with the place of each header: its variable, and the column of that.
@@ -63,14 +63,15 @@ fn check_kinds(variables: &[Variable]) -> Result<(), ReadError> {
 
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let columns = wanted.numeric.iter().map(|index| self.column(*index));
+        let columns = wanted.numeric.iter().map(|index| {
+            let (variable, _) = self.place(*index).unzip();
+            let rows = variable.map_or(0, |variable| variable.shape().0);
+            wanted.budget.take_values(rows, NUMBER_SIZE)?;
+            self.column(*index)
+        });
         let columns = columns.collect::<Result<_, _>>()?;
         let labels = wanted.label.map_or_else(|| Ok(Vec::new()), |index| self.labels(index))?;
-        Ok(Table::counted(wanted.rows, columns, Labels::of(labels, wanted.budget)?))
-    }
-
-    fn rows_of(&self, column: usize) -> Option<usize> {
-        self.place(column).map(|(variable, _)| variable.shape().0).filter(|rows| *rows > 0)
+        Ok(Table::counted(wanted, columns, Labels::of(labels, wanted.budget)?))
     }
 }
 
@@ -105,7 +106,7 @@ impl Unread {
                 "it holds {found}, not a label per row; save it as numbers or as a cell array of texts, \
                  or read all as one trial with `--trial none`"
             );
-            let error = ReadError::new(ReadErrorKind::Content, text);
+            let error = ReadError::content(text);
             return Err(error.in_column(&variable.name));
         }
         match &variable.content {

@@ -43,46 +43,14 @@ fn read(mut file: impl Read, budget: &Budget) -> Result<Vec<Variable>, ReadError
     let mut head = [0; 128];
     file.read_exact(&mut head).map_err(damaged)?;
     let like = Bytes { data: &[], big: head.ends_with(b"MI") };
-    let (mut found, mut number) = (Vec::new(), 1);
-    while next(&mut file, like, budget, &mut found)
+    let (mut listing, mut number) = (Listing::default(), 1);
+    while listing
+        .take(&mut file, like, budget)
         .map_err(|fault| fault.within(&format!("variable {number}")))?
     {
         number += 1;
     }
-    Ok(found)
-}
-
-/// Reads the next variable, where there is one, its numbers as `like` has them.
-fn next(
-    file: &mut impl Read,
-    like: Bytes<'_>,
-    budget: &Budget,
-    found: &mut Vec<Variable>,
-) -> Result<bool, ReadError> {
-    let (mut tag, mut data) = (Vec::new(), Vec::new());
-    file.take(8).read_to_end(&mut tag).map_err(damaged)?;
-    if tag.is_empty() {
-        return Ok(false);
-    }
-    let mut tag = Bytes { data: &tag, ..like };
-    let (mut kind, size) = (tag.u32()?, u64::from(tag.u32()?));
-    file.take(size).read_to_end(&mut data).map_err(damaged)?;
-    if (data.len() as u64) < size {
-        return fault("it is cut off by the end of the file");
-    }
-    let is_packed = kind == COMPRESSED;
-    if is_packed {
-        data = unpacked(&data, budget)?;
-    }
-    budget.take(COPIES.saturating_mul(data.len() as u64))?;
-    let mut data = Bytes { data: &data, ..like };
-    if is_packed {
-        (kind, data) = data.element()?;
-    }
-    if kind == MATRIX {
-        array(data, None, 0, found)?;
-    }
-    Ok(true)
+    Ok(listing.found)
 }
 
 /// The bytes that are packed, as they are found to be: what they say is not asked.
@@ -181,133 +149,161 @@ impl Bytes<'_> {
             _ => String::from_utf8_lossy(data.data).into_owned(),
         })
     }
-
-    /// The next element, which is an array within another.
-    fn array(
-        &mut self,
-        name: String,
-        depth: usize,
-        found: &mut Vec<Variable>,
-    ) -> Result<(), ReadError> {
-        match self.element()? {
-            (MATRIX, data) => array(data, Some(name), depth + 1, found),
-            _ => fault("an array is missing"),
-        }
-    }
 }
 
-/// Adds an array, and what lies in it, to those `found`. It is called `name`, or as it says itself.
-fn array(
-    mut data: Bytes<'_>,
-    name: Option<String>,
+/// A file whose variables are being listed.
+#[derive(Default)]
+struct Listing {
+    found: Vec<Variable>,
+    /// Arrays that the one which is being read lies in.
     depth: usize,
-    found: &mut Vec<Variable>,
-) -> Result<(), ReadError> {
-    if depth > DEEPEST {
-        return fault("structures are nested too deeply");
+}
+
+impl Listing {
+    /// Takes the next variable, where there is one, its numbers as `like` has them.
+    fn take(
+        &mut self,
+        file: &mut impl Read,
+        like: Bytes<'_>,
+        budget: &Budget,
+    ) -> Result<bool, ReadError> {
+        let (mut tag, mut data) = (Vec::new(), Vec::new());
+        file.take(8).read_to_end(&mut tag).map_err(damaged)?;
+        if tag.is_empty() {
+            return Ok(false);
+        }
+        let mut tag = Bytes { data: &tag, ..like };
+        let (mut kind, size) = (tag.u32()?, u64::from(tag.u32()?));
+        file.take(size).read_to_end(&mut data).map_err(damaged)?;
+        if (data.len() as u64) < size {
+            return fault("it is cut off by the end of the file");
+        }
+        let is_packed = kind == COMPRESSED;
+        if is_packed {
+            data = unpacked(&data, budget)?;
+        }
+        budget.take(COPIES.saturating_mul(data.len() as u64))?;
+        let mut data = Bytes { data: &data, ..like };
+        if is_packed {
+            (kind, data) = data.element()?;
+        }
+        if kind == MATRIX {
+            self.array(data, None)?;
+        }
+        Ok(true)
     }
-    let mut dims = vec![0, 0];
-    // An empty array may have no bytes.
-    let (name, content) = if data.data.is_empty() {
-        (name.unwrap_or_default(), Content::Numbers(Vec::new()))
-    } else {
+
+    /// Takes the next element of `data`, which is an array of this name within another.
+    fn inner(&mut self, data: &mut Bytes<'_>, name: String) -> Result<(), ReadError> {
+        let (MATRIX, data) = data.element()? else { return fault("an array is missing") };
+        if self.depth == DEEPEST {
+            return fault("structures are nested too deeply");
+        }
+        self.depth += 1;
+        self.array(data, Some(name))?;
+        self.depth -= 1;
+        Ok(())
+    }
+
+    /// Takes an array, and what lies in it. It is called `name`, or as it says itself.
+    fn array(&mut self, mut data: Bytes<'_>, name: Option<String>) -> Result<(), ReadError> {
+        // An empty array may have no bytes.
+        if data.data.is_empty() {
+            let (name, content) = (name.unwrap_or_default(), Content::Numbers(Vec::new()));
+            self.add(Variable { name, dims: vec![0, 0], content });
+            return Ok(());
+        }
         let flags = data.element()?.1.u32()?;
         // Objects have no lengths.
-        if flags & 0xff != OPAQUE {
-            dims = data.counts()?;
-        }
+        let dims = if flags & 0xff == OPAQUE { vec![0, 0] } else { data.counts()? };
         let own = data.text()?;
         let name = name.unwrap_or(own);
         if name.len() > LONGEST_NAME {
             return fault("its name is too long");
         }
-        let content = content(data, flags, &dims, &name, depth, found);
-        match content.map_err(|fault| fault.within(&format!("array `{name}`")))? {
-            Some(content) => (name, content),
-            None => return Ok(()),
+        let content = self.content(data, flags, &dims, &name);
+        if let Some(content) = content.map_err(|fault| fault.within(&format!("array `{name}`")))? {
+            self.add(Variable { name, dims, content });
         }
-    };
-    // What has no name belongs to MATLAB's objects.
-    if depth > 0 || !name.is_empty() {
-        found.push(Variable { name, dims, content });
+        Ok(())
     }
-    Ok(())
-}
 
-/// What is in an array; nothing is left where it is a structure, whose fields are `found`.
-fn content(
-    mut data: Bytes<'_>,
-    flags: u32,
-    dims: &[usize],
-    name: &str,
-    depth: usize,
-    found: &mut Vec<Variable>,
-) -> Result<Option<Content>, ReadError> {
-    let size = dims.iter().try_fold(1_usize, |size, length| size.checked_mul(*length));
-    let Some(size) = size else { return fault("it is larger than any memory") };
-    Ok(Some(match flags & 0xff {
-        CELL => {
-            let before = found.len();
-            for _ in 0..size {
-                data.array(String::new(), depth, found)?;
-            }
-            texts(found.split_off(before))
-        }
-        STRUCTURE => {
-            structures(data, size, name, depth, found)?;
-            return Ok(None);
-        }
-        CHARACTERS => {
-            let (text, rows) = (data.text()?, dims.first().copied().unwrap_or(1));
-            Content::Texts(rows_of(&text, rows))
-        }
-        SPARSE => Content::Other("a sparse matrix".to_owned()),
-        OPAQUE => {
-            data.element()?;
-            object(&data.text()?)
-        }
-        6..=15 => {
-            let values = data.numbers()?;
-            if values.len() != size {
-                let count = values.len();
-                return fault(&format!("it has {count} values but should have {size}"));
-            }
-            // Those that have no imaginary part at all are real.
-            let is_real = flags & COMPLEX == 0 || data.numbers()?.iter().all(|part| *part == 0.0);
-            if is_real {
-                Content::Numbers(values)
-            } else {
-                Content::Other("complex numbers".to_owned())
-            }
-        }
-        OLD_OBJECT => object(&data.text()?),
-        _ => Content::Other("a value of another kind".to_owned()),
-    }))
-}
-
-/// Adds the fields of an array of `size` structures.
-fn structures(
-    mut data: Bytes<'_>,
-    size: usize,
-    name: &str,
-    depth: usize,
-    found: &mut Vec<Variable>,
-) -> Result<(), ReadError> {
-    let length = data.counts()?.first().copied().unwrap_or_default().max(1);
-    let (_, names) = data.element()?;
-    let field = |bytes: &[u8]| {
-        let letters = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
-        String::from_utf8_lossy(letters).into_owned()
-    };
-    let fields: Vec<String> = names.data.chunks(length).map(field).collect();
-    let size = if fields.is_empty() { 0 } else { size };
-    for number in 1..=size {
-        let name = if size == 1 { name.to_owned() } else { format!("{name}({number})") };
-        for field in &fields {
-            data.array(format!("{name}.{field}"), depth, found)?;
-        }
+    /// What has no name belongs to MATLAB's objects.
+    fn add(&mut self, variable: Variable) {
+        self.found.extend((self.depth > 0 || !variable.name.is_empty()).then_some(variable));
     }
-    Ok(())
+
+    /// What is in an array; nothing is left where it is a structure, whose fields are found.
+    fn content(
+        &mut self,
+        mut data: Bytes<'_>,
+        flags: u32,
+        dims: &[usize],
+        name: &str,
+    ) -> Result<Option<Content>, ReadError> {
+        let size = dims.iter().try_fold(1_usize, |size, length| size.checked_mul(*length));
+        let Some(size) = size else { return fault("it is larger than any memory") };
+        Ok(Some(match flags & 0xff {
+            CELL => {
+                let before = self.found.len();
+                for _ in 0..size {
+                    self.inner(&mut data, String::new())?;
+                }
+                texts(self.found.split_off(before))
+            }
+            STRUCTURE => {
+                self.structures(data, size, name)?;
+                return Ok(None);
+            }
+            CHARACTERS => {
+                let (text, rows) = (data.text()?, dims.first().copied().unwrap_or(1));
+                Content::Texts(rows_of(&text, rows))
+            }
+            SPARSE => Content::Other("a sparse matrix".to_owned()),
+            OPAQUE => {
+                data.element()?;
+                object(&data.text()?)
+            }
+            6..=15 => {
+                let values = data.numbers()?;
+                if values.len() != size {
+                    let count = values.len();
+                    return fault(&format!("it has {count} values but should have {size}"));
+                }
+                // Those that have no imaginary part at all are real.
+                if flags & COMPLEX == 0 || data.numbers()?.iter().all(|part| *part == 0.0) {
+                    Content::Numbers(values)
+                } else {
+                    Content::Other("complex numbers".to_owned())
+                }
+            }
+            OLD_OBJECT => object(&data.text()?),
+            _ => Content::Other("a value of another kind".to_owned()),
+        }))
+    }
+
+    /// Takes the fields of an array of `size` structures.
+    fn structures(
+        &mut self,
+        mut data: Bytes<'_>,
+        size: usize,
+        name: &str,
+    ) -> Result<(), ReadError> {
+        let length = data.counts()?.first().copied().unwrap_or_default().max(1);
+        let (_, names) = data.element()?;
+        let fields = names.data.chunks(length).map(|bytes| {
+            let letters = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
+            String::from_utf8_lossy(letters).into_owned()
+        });
+        let fields: Vec<String> = fields.collect();
+        for number in 1..=if fields.is_empty() { 0 } else { size } {
+            let name = if size == 1 { name.to_owned() } else { format!("{name}({number})") };
+            for field in &fields {
+                self.inner(&mut data, format!("{name}.{field}"))?;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The rows of a matrix of characters, which stand column after column, without the blanks that make

@@ -50,9 +50,7 @@ pub(super) fn object(class: &str) -> Content {
         "Simulink.SimulationOutput" | "Simulink.SimulationData.Dataset" => {
             "save the `.Time` and `.Data` of each signal in it as arrays"
         }
-        "timetable" | "table" => {
-            "save its row times or its column of times, and each of its variables, as arrays"
-        }
+        "timetable" | "table" => "save its times, and each of its variables, as arrays",
         "iddata" => "save its `.SamplingInstants`, `.InputData` and `.OutputData` as arrays",
         _ => "save its parts as arrays",
     };

@@ -6,24 +6,17 @@ use std::fmt::Write as _;
 use super::message::{Fields, Value};
 use crate::experiment::error::ReadError;
 
-/// Hands each number in those fields of a message that are `wanted` to `visit` with its name, until that
-/// fails.
+/// Hands each number of a message to `visit` with its name, until that fails.
 pub(super) fn each_number(
     message: &Value<'_>,
-    wanted: impl Fn(&str) -> bool,
-    mut visit: impl FnMut(&str, f64) -> Result<(), ReadError>,
+    visit: &mut impl FnMut(&str, f64) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     let Value::Message(fields) = message else { return Ok(()) };
     let mut outer = vec![fields];
-    for (field, value) in fields.iter().filter(|(field, _)| wanted(field)) {
-        walk(value, &mut outer, &mut (*field).to_owned(), &mut visit)?;
+    for (field, value) in fields {
+        walk(value, &mut outer, &mut (*field).to_owned(), visit)?;
     }
     Ok(())
-}
-
-/// The field of a message in which the number of this name lies.
-pub(super) fn first_field(name: &str) -> &str {
-    name.split(['.', '[']).next().unwrap_or_default()
 }
 
 /// [`each_number`] of a value of this `name` that lies in the messages `outer`.
@@ -108,15 +101,11 @@ mod tests {
 
     fn numbers(message: &Value<'_>) -> Vec<(String, f64)> {
         let mut found = Vec::new();
-        each_number(
-            message,
-            |_| true,
-            |name, number| {
-                found.push((name.to_owned(), number));
-                Ok(())
-            },
-        )
-        .unwrap();
+        let mut visit = |name: &str, number| {
+            found.push((name.to_owned(), number));
+            Ok(())
+        };
+        each_number(message, &mut visit).unwrap();
         found
     }
 

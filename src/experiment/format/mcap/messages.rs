@@ -1,10 +1,10 @@
 //! The messages of the topics that are wanted, and their table: a row at each message of one topic, at
 //! which the others are held.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 
-use super::fields::{each_number, first_field};
-use super::message::Value;
+use super::stream::refused;
+use super::topics::{Clock, Topics};
 use crate::experiment::clock::between_restarts;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, NUMBER_SIZE};
@@ -23,11 +23,9 @@ const LONGEST: f64 = 3.0;
 /// What is wanted of a topic.
 #[derive(Debug, Default)]
 pub(super) struct Topic {
-    /// The columns of its numbers, and which of them bears which name.
-    pub(super) columns: Vec<usize>,
-    by_name: HashMap<String, usize>,
-    /// The fields of the messages in which these lie.
-    fields: HashSet<String>,
+    /// Its fields, and the column of each.
+    fields: Vec<usize>,
+    columns: Vec<usize>,
     /// Messages that have none of the numbers.
     pub(super) empty: usize,
     /// How long before their recording the messages are timed, at least, nanoseconds.
@@ -37,8 +35,8 @@ pub(super) struct Topic {
 /// What is wanted of a message.
 #[derive(Debug)]
 pub(super) struct Message {
-    /// How often the clock has started anew before it.
-    run: usize,
+    /// Its place in the file.
+    pub(super) place: usize,
     /// Nanoseconds.
     pub(super) time: i64,
     pub(super) topic: usize,
@@ -63,27 +61,15 @@ pub(super) struct Aligned {
     pub(super) columns: Vec<Vec<f64>>,
     /// Messages before the first ones of all other topics.
     pub(super) early: usize,
-    /// Runs of the clock in which the others say nothing.
-    pub(super) empty_runs: usize,
-}
-
-impl Message {
-    /// A message of the first run.
-    pub(super) fn of(topic: usize, time: i64, numbers: Vec<f64>) -> Self {
-        Self { run: 0, time, topic, numbers }
-    }
 }
 
 impl Messages {
-    /// The number of this name in the messages of `topic` is wanted, for the header with this index.
-    pub(super) fn want(&mut self, topic: usize, name: &str, header: usize) {
+    /// A field of a topic is wanted, for the header with this index.
+    pub(super) fn want(&mut self, topic: usize, field: usize, header: usize) {
         let topic = self.topics.entry(topic).or_default();
-        topic.fields.insert(first_field(name).to_owned());
-        topic.by_name.entry(name.to_owned()).or_insert_with(|| {
-            topic.columns.push(self.headers.len());
-            self.headers.push(header);
-            topic.columns.len() - 1
-        });
+        topic.fields.push(field);
+        topic.columns.push(self.headers.len());
+        self.headers.push(header);
     }
 
     /// The column for the header with this index.
@@ -91,32 +77,49 @@ impl Messages {
         self.headers.iter().position(|of| *of == header)
     }
 
-    /// Takes the numbers of a message, if it has any of those that are wanted.
-    pub(super) fn push(
+    /// Takes the messages that have any of the numbers that are wanted, at their times by `clock`.
+    pub(super) fn take(
         &mut self,
-        topic: usize,
-        time: i64,
-        message: &Value<'_>,
+        topics: &Topics,
+        clock: Clock,
         budget: &Budget,
     ) -> Result<(), ReadError> {
-        let Some(of) = self.topics.get_mut(&topic) else { return Ok(()) };
-        let mut numbers = vec![None; of.columns.len()];
-        each_number(
-            message,
-            |field| of.fields.contains(field),
-            |name, number| {
-                let column = of.by_name.get(name).and_then(|column| numbers.get_mut(*column));
-                column.map(|column| column.get_or_insert(number));
-                Ok(())
-            },
-        )?;
-        if numbers.iter().all(Option::is_none) {
-            of.empty += 1;
-            return Ok(());
+        for (number, wanted) in &mut self.topics {
+            let topic = &topics.list[*number];
+            let name = &topic.name;
+            if let Some(fault) = &topic.fault {
+                return Err(refused(
+                    format!("the message of `{name}` {fault}"),
+                    "check that it was recorded with the definition that the file holds",
+                ));
+            }
+            let (count, width) = (topic.messages.len(), wanted.fields.len());
+            budget.take_values(count, size_of::<Message>() + width * NUMBER_SIZE)?;
+            let mut numbers = vec![Vec::new(); count];
+            for (column, field) in wanted.fields.iter().enumerate() {
+                for (message, value) in &topic.fields[*field].values {
+                    numbers[*message].resize(width, f64::NAN);
+                    numbers[*message][column] = *value;
+                }
+            }
+            for ((place, times), numbers) in topic.messages.iter().zip(numbers) {
+                let Some(time) = times[clock as usize] else {
+                    return Err(refused(
+                        format!("the messages of `{name}` have no {}", clock.name()),
+                        "choose another time column; `log_time` is the time of recording",
+                    ));
+                };
+                let lag = times[Clock::Log as usize].map(|recorded| recorded.saturating_sub(time));
+                wanted.least_lag = [wanted.least_lag, lag].into_iter().flatten().min();
+                if numbers.is_empty() {
+                    wanted.empty += 1;
+                } else {
+                    let (topic, place) = (*number, *place);
+                    self.list.push(Message { place, time, topic, numbers });
+                }
+            }
         }
-        budget.take_values(1, size_of::<Message>() + numbers.len() * NUMBER_SIZE)?;
-        let numbers = numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect();
-        self.list.push(Message::of(topic, time, numbers));
+        self.list.sort_by_key(|message| message.place);
         Ok(())
     }
 
@@ -125,27 +128,18 @@ impl Messages {
     /// before the first message of all others is left out; what begins later is NaN up to there, so that a
     /// joint whose command comes late takes no rows from those beside it.
     pub(super) fn table(&mut self, wanted: &Wanted<'_>) -> Result<Aligned, ReadError> {
-        self.number_runs(wanted.clock);
-        self.list.sort_by_key(|message| (message.run, message.time));
+        let times: Vec<i64> = times_of(&self.list, wanted.clock).collect();
+        if is_set_back(&times) {
+            return Err(refused(
+                "its clock starts anew, as where a simulation is reset",
+                "choose another one with `--time log_time`, or keep one run",
+            ));
+        }
+        self.list.sort_by_key(|message| message.time);
         let columns = vec![Vec::new(); self.headers.len()];
         let mut table = Aligned { columns, ..Aligned::default() };
-        for run in self.list.chunk_by(|a, b| a.run == b.run) {
-            let rows = table.times.len();
-            self.add_run(run, &mut table, wanted)?;
-            table.empty_runs += usize::from(table.times.len() == rows);
-        }
-        Ok(table)
-    }
-
-    /// Adds the rows of a run in which the clock does not start anew.
-    fn add_run(
-        &self,
-        run: &[Message],
-        table: &mut Aligned,
-        wanted: &Wanted<'_>,
-    ) -> Result<(), ReadError> {
-        let times: Vec<i64> = times_of(run, wanted.clock).collect();
-        let parts = rows_per_message(&times, run, wanted.clock);
+        let times: Vec<i64> = times_of(&self.list, wanted.clock).collect();
+        let parts = rows_per_message(&times, &self.list, wanted.clock);
         let usual = interval(&times).unwrap_or_default();
         let most = times.len().saturating_mul(usize::try_from(parts).unwrap_or(1));
         wanted.budget.take_values(most.saturating_mul(self.headers.len()), NUMBER_SIZE)?;
@@ -166,7 +160,7 @@ impl Messages {
             }
         };
         let (mut between, mut next) = (Vec::new(), times.iter().skip(1));
-        for message in run {
+        for message in &self.list {
             while let Some(time) = between.pop_if(|time| *time < message.time) {
                 add(time, &latest, true);
             }
@@ -185,27 +179,7 @@ impl Messages {
                 between = (1..parts).rev().map(time).collect();
             }
         }
-        Ok(())
-    }
-
-    /// Numbers the runs of the clock, which starts anew where a simulation is reset or a computer's clock set
-    /// back. Runs that do not overlap are parts of one record in another order.
-    ///
-    /// Where another topic starts anew need not show by itself, as that of few commands. Each of its messages is
-    /// of the run of that message of the clock, the last before it in the file or the next, which is nearer in
-    /// time.
-    fn number_runs(&mut self, clock: usize) {
-        let times: Vec<i64> = times_of(&self.list, clock).collect();
-        let starts = restarts(&times);
-        let mut next = 0_usize;
-        for message in self.list.iter_mut().filter(|_| !starts.is_empty()) {
-            let apart = |row: &usize| times.get(*row).map(|time| time.abs_diff(message.time));
-            let around = [Some(next), next.checked_sub(1)].into_iter().flatten();
-            let nearest = around.min_by_key(|row| apart(row).unwrap_or(u64::MAX));
-            let row = nearest.unwrap_or_default();
-            message.run = starts.partition_point(|start| *start <= row);
-            next += usize::from(message.topic == clock);
-        }
+        Ok(table)
     }
 }
 
@@ -214,9 +188,10 @@ pub(super) fn times_of(list: &[Message], topic: usize) -> impl Iterator<Item = i
     list.iter().filter(move |message| message.topic == topic).map(|message| message.time)
 }
 
-/// Where the clock starts anew, of `times` in the order of the file.
-fn restarts(times: &[i64]) -> Vec<usize> {
-    let Some(usual) = interval(times) else { return Vec::new() };
+/// Whether a clock with these `times`, in the order of the file, starts anew, as where a simulation is reset or a
+/// computer's clock is set back. Runs that do not overlap are parts of one record in another order.
+fn is_set_back(times: &[i64]) -> bool {
+    let Some(usual) = interval(times) else { return false };
     let since_first = |time: &i64| time.saturating_sub(times[0]) as f64;
     let relative: Vec<f64> = times.iter().map(since_first).collect();
     let runs = between_restarts(&relative, usual).unwrap_or_default();
@@ -226,9 +201,7 @@ fn restarts(times: &[i64]) -> Vec<usize> {
     };
     let mut covered: Vec<(i64, i64)> = runs.iter().filter_map(ends).collect();
     covered.sort_unstable();
-    let overlap = covered.windows(2).any(|pair| pair[1].0 < pair[0].1);
-    let starts = runs.iter().skip(1).filter_map(|run| run.first().copied());
-    starts.filter(|_| overlap).collect()
+    covered.windows(2).any(|pair| pair[1].0 < pair[0].1)
 }
 
 /// Rows for each message of the clock at these `times`: more than one where messages are far apart and a value
@@ -274,46 +247,44 @@ mod tests {
 
     #[test]
     fn a_clock_that_is_set_back_starts_anew() {
-        assert_eq!(restarts(&[times(500, 0), times(300, 0)].concat()), [500]);
-        assert_eq!(restarts(&[times(500, 0), times(300, 4900)].concat()), [500]);
+        assert!(is_set_back(&[times(500, 0), times(300, 0)].concat()));
+        assert!(is_set_back(&[times(500, 0), times(300, 4900)].concat()));
     }
 
     #[test]
     fn messages_out_of_order_do_not_start_it_anew() {
         // Later part first, late messages, two publishers, and any order.
-        assert!(restarts(&[times(300, 5000), times(500, 0)].concat()).is_empty());
+        assert!(!is_set_back(&[times(300, 5000), times(500, 0)].concat()));
         let mut late = times(500, 0);
         late[300..303].iter_mut().for_each(|time| *time -= 900);
-        assert!(restarts(&late).is_empty());
+        assert!(!is_set_back(&late));
         let two: Vec<i64> = times(500, 0).into_iter().flat_map(|time| [time, time - 200]).collect();
-        assert!(restarts(&two).is_empty());
+        assert!(!is_set_back(&two));
         let wild: Vec<i64> = (0..1000).map(|k| k * 7919 % 1000).collect();
-        assert!(restarts(&wild).is_empty());
-        assert!(restarts(&[]).is_empty());
+        assert!(!is_set_back(&wild));
+        assert!(!is_set_back(&[]));
     }
 
     /// The table of messages of the topics 0, which gives the rows, and 1, each with its time and its number,
     /// in the order of the file.
-    fn table(messages: &[(usize, i64, f64)]) -> (Aligned, usize) {
+    fn table(messages: &[(usize, i64, f64)]) -> Aligned {
         let budget = Budget::new(MemoryLimit::of_bytes(1 << 20));
         let mut all = Messages::default();
-        all.want(0, "a", 3);
-        all.want(1, "b", 4);
-        for (topic, time, number) in messages {
-            let name = ["a", "b"][*topic];
-            let message = Value::Message(vec![(name, Value::Number(*number))]);
-            all.push(*topic, *time, &message, &budget).unwrap();
+        all.want(0, 0, 3);
+        all.want(1, 0, 4);
+        for (place, (topic, time, number)) in messages.iter().enumerate() {
+            let (topic, time, numbers) = (*topic, *time, vec![*number]);
+            all.list.push(Message { place, time, topic, numbers });
         }
         let head = Head::without_lines(Vec::new());
         let (head, numeric, budget, grows) = (&head, &[3, 4], &budget, false);
-        let wanted =
-            Wanted { head, numeric, label: None, time: None, clock: 0, rows: 0, budget, grows };
-        (all.table(&wanted).unwrap(), all.topics[&0].empty)
+        let wanted = Wanted { head, numeric, label: None, time: None, clock: 0, budget, grows };
+        all.table(&wanted).unwrap()
     }
 
     #[test]
     fn a_value_is_held_from_its_message_on() {
-        let (found, _) = table(&[
+        let found = table(&[
             (1, 10, 1.0),
             (0, 5, 0.0),
             (0, 10, 0.1),
@@ -327,44 +298,18 @@ mod tests {
         ]);
         assert_eq!(found.columns[1], [1.0, 1.0, 2.0, 3.0, 3.0]);
         assert_eq!(found.columns[0], [0.1, 0.2, 0.3, 0.4, 0.5]);
-        assert_eq!((found.early, found.empty_runs), (1, 0));
+        assert_eq!(found.early, 1);
     }
 
     #[test]
     fn rows_between_messages_hold_no_number_of_theirs() {
         let of_clock = [0, 20, 40, 200, 220].map(|ms: i64| (0, ms * 1_000_000, ms as f64));
         let commands = [(1, 0, 1.0), (1, 22_000_000, 2.0)];
-        let (found, _) = table(&[&commands[..], &of_clock].concat());
+        let found = table(&[&commands[..], &of_clock].concat());
         let times: Vec<i64> = found.times.iter().map(|time| time / 1_000_000).collect();
         assert_eq!(times, [0, 10, 20, 30, 40, 200, 210, 220], "none in the pause");
         assert_eq!(found.columns[1], [1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 2.0]);
         let is_own: Vec<bool> = found.columns[0].iter().map(|value| !value.is_nan()).collect();
         assert_eq!(is_own, [true, false, true, false, true, true, false, true]);
-    }
-
-    #[test]
-    fn what_is_held_begins_anew_with_the_clock() {
-        let run = |from: f64| (0..300).map(move |k| (0, 10 * k, from)).collect::<Vec<_>>();
-        let (found, _) =
-            table(&[vec![(1, 0, 1.0)], run(1.0), vec![(1, 50, 2.0)], run(2.0)].concat());
-        assert_eq!(found.times.len(), 300 + 295);
-        assert_eq!((found.early, found.columns[1][300]), (5, 2.0));
-    }
-
-    #[test]
-    fn messages_are_taken_by_the_names_of_their_numbers() {
-        let budget = Budget::new(MemoryLimit::of_bytes(1 << 20));
-        let mut all = Messages::default();
-        all.want(0, "boom", 3);
-        all.want(0, "arm", 4);
-        let twice = [("boom", 5.0), ("boom", 6.0)];
-        for numbers in [&[("arm", 2.0)][..], &[("other", 3.0)], &twice] {
-            let number = |(name, number): &(&'static str, f64)| (*name, Value::Number(*number));
-            let message = Value::Message(numbers.iter().map(number).collect());
-            all.push(0, 1, &message, &budget).unwrap();
-        }
-        assert_eq!((all.list.len(), all.topics[&0].empty), (2, 1));
-        assert!(all.list[0].numbers[0].is_nan());
-        assert_eq!(all.list[1].numbers.first(), Some(&5.0), "the first of two of one name");
     }
 }

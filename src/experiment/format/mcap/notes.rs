@@ -21,7 +21,6 @@ pub(super) fn held<'a>(
     if !others.is_empty() {
         let early = match early {
             0 => String::new(),
-            1 => ", of which the first comes too early and is left out".to_owned(),
             _ => format!(", of which the first {early} come too early and are left out"),
         };
         let are = if others.len() > 1 { "are held from their" } else { "is held from its" };
@@ -52,15 +51,13 @@ fn missing(messages: &Messages, topic: usize, end: i64, name: &str) -> Option<St
     let empty = messages.topics.get(&topic).map_or(0, |topic| topic.empty);
     let lacking = lacking + if SELDOM * empty < times.len() { empty } else { 0 };
     let mut said = Vec::new();
-    match pauses(&times, end) {
-        (0, _) => {}
-        (1, longest) => said.push(format!("pauses once, for up to {longest:.2} s")),
-        (times, longest) => said.push(format!("pauses {times} times, for up to {longest:.2} s")),
+    let (count, longest) = pauses(&times, end);
+    if count > 0 {
+        let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
+        said.push(format!("pauses {times}, for up to {longest:.2} s"));
     }
-    match lacking {
-        0 => {}
-        1 => said.push("has 1 message without a value".to_owned()),
-        count => said.push(format!("has {count} messages without a value")),
+    if lacking > 0 {
+        said.push(format!("has {lacking} messages without a value"));
     }
     let held = "the last value is held, so a step in such a pause is seen late or not at all";
     (!said.is_empty()).then(|| format!("`{name}` {}: {held}", said.join(" and ")))
@@ -117,8 +114,9 @@ mod tests {
     fn note(seconds: impl Iterator<Item = f64>, end_s: f64, without: usize) -> Option<String> {
         let nanoseconds = |seconds: f64| format!("{:.0}", seconds * 1e9).parse::<i64>().unwrap();
         let mut messages = Messages::default();
-        messages.want(0, "data", 1);
-        messages.list = seconds.map(|s| Message::of(0, nanoseconds(s), vec![1.0])).collect();
+        messages.want(0, 0, 1);
+        let message = |time| Message { place: 0, time, topic: 0, numbers: vec![1.0] };
+        messages.list = seconds.map(|s| message(nanoseconds(s))).collect();
         messages.topics.get_mut(&0).unwrap().empty = without;
         missing(&messages, 0, nanoseconds(end_s), "/valve")
     }

@@ -1,21 +1,15 @@
-//! What is known of a file before its values are read: topics, their fields, times.
+//! The topics of a file: their fields, and the times and numbers of their messages.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::HashMap;
 use std::sync::Arc;
 
-use mcap::records::{Channel, MessageHeader, Record};
-
 use super::fields::each_number;
-use super::message::{Decoder, Value};
-use super::stream::refused;
+use super::message::Decoder;
+use super::stream::{CHANNEL, Fields, MESSAGE, SCHEMA, refused};
 use crate::experiment::error::ReadError;
-use crate::experiment::memory::Budget;
+use crate::experiment::memory::{Budget, NUMBER_SIZE};
 use crate::experiment::names::listed;
 use crate::experiment::table::Header;
-
-/// Messages of a channel that show what it holds: nodes that take turns on one topic name their own
-/// joints. Of later ones those are looked at that are of another length, as where a joint is added.
-const ENOUGH: u64 = 100;
 
 /// Topics that cannot be read and are listed by name.
 const MOST_LEFT: usize = 100;
@@ -25,7 +19,7 @@ const DECODER_SIZE: usize = 20;
 const FIELD_SIZE: usize = 40;
 
 /// The times that a message bears.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Clock {
     /// When it was recorded.
     Log,
@@ -36,6 +30,8 @@ pub(super) enum Clock {
 }
 
 impl Clock {
+    const ALL: [Self; 3] = [Self::Log, Self::Publish, Self::Stamp];
+
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Log => "log_time",
@@ -43,49 +39,37 @@ impl Clock {
             Self::Stamp => "header.stamp",
         }
     }
-
-    /// The time of a message in nanoseconds.
-    pub(super) fn time(self, header: &MessageHeader, value: &Value<'_>) -> Option<i64> {
-        match self {
-            Self::Log => i64::try_from(header.log_time).ok(),
-            Self::Publish => i64::try_from(header.publish_time).ok(),
-            Self::Stamp => value.stamp(),
-        }
-    }
 }
+
+/// Times in nanoseconds by each [`Clock`], where it is known.
+pub(super) type Times = [Option<i64>; 3];
 
 /// What a header stands for.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Place {
     Time(Clock),
-    /// A number in the messages of a topic, by its name.
-    Field(usize, String),
+    /// A topic and one of its fields, by their numbers.
+    Field(usize, usize),
 }
 
-/// A topic, and the names of the numbers in its messages in the order in which they came up.
+/// A topic: its messages, in the order of the file, and their numbers in the order in which names came up.
+#[derive(Debug, Default)]
+pub(super) struct Topic {
+    pub(super) name: String,
+    pub(super) fields: Vec<Field>,
+    by_name: HashMap<String, usize>,
+    /// Of each message its number in the file, and its times.
+    pub(super) messages: Vec<(usize, Times)>,
+    /// What is wrong with the first message that cannot be decoded.
+    pub(super) fault: Option<String>,
+}
+
+/// A number in the messages of a topic.
 #[derive(Debug)]
-struct Topic {
+pub(super) struct Field {
     name: String,
-    fields: Vec<String>,
-    known: HashSet<String>,
-}
-
-impl Topic {
-    /// Learns the numbers of a message.
-    fn learn(&mut self, message: &Value<'_>, budget: &Budget) -> Result<(), ReadError> {
-        each_number(
-            message,
-            |_| true,
-            |name, _| {
-                if !self.known.contains(name) {
-                    budget.take_values(name.len() + 1, FIELD_SIZE)?;
-                    self.known.insert(name.to_owned());
-                    self.fields.push(name.to_owned());
-                }
-                Ok(())
-            },
-        )
-    }
+    /// The messages that have it, by their numbers in the topic.
+    pub(super) values: Vec<(usize, f64)>,
 }
 
 #[derive(Debug)]
@@ -94,107 +78,113 @@ struct Schema {
     decoder: Result<Arc<Decoder>, String>,
 }
 
-/// A channel that can be read.
-#[derive(Debug)]
-pub(super) struct Readable {
-    pub(super) topic: usize,
-    pub(super) decoder: Arc<Decoder>,
-    /// Messages that were looked at, and the lengths of all.
-    seen: u64,
-    lengths: HashSet<usize>,
-}
-
-/// What is known of a file.
+/// What a file holds.
 #[derive(Debug, Default)]
 pub(super) struct Topics {
-    list: Vec<Topic>,
+    pub(super) list: Vec<Topic>,
     by_name: HashMap<String, usize>,
     schemas: HashMap<u16, Schema>,
-    pub(super) channels: HashMap<u16, Readable>,
+    /// The topic of each channel that can be read.
+    channels: HashMap<u16, (usize, Arc<Decoder>)>,
     /// Topics that cannot be read, and why.
     pub(super) left: Vec<String>,
-    /// The earliest time by each clock that messages have, in nanoseconds.
-    pub(super) zero: BTreeMap<Clock, i64>,
+    /// The earliest time by each clock.
+    pub(super) zero: Times,
+    /// Messages so far.
+    count: usize,
 }
 
 impl Topics {
-    /// Learns from a record.
-    pub(super) fn look_at(&mut self, record: Record<'_>, budget: &Budget) -> Result<(), ReadError> {
-        match record {
-            Record::Schema { header, data } => {
+    /// Takes the fields of a record, where it is one that is of use.
+    pub(super) fn take(
+        &mut self,
+        opcode: u8,
+        mut fields: Fields<'_>,
+        budget: &Budget,
+    ) -> Result<(), ReadError> {
+        match opcode {
+            SCHEMA => {
+                let id = u16::from_le_bytes(fields.bytes()?);
+                let (name, encoding, definition) =
+                    (fields.text()?, fields.text()?, fields.block()?);
                 // It may be repeated; a file that was appended to may use its number anew.
-                let known = self.schemas.get(&header.id);
-                if known.is_some_and(|schema| schema.definition == *data) {
-                    return Ok(());
+                if self.schemas.get(&id).is_none_or(|known| known.definition != definition) {
+                    budget.take_values(definition.len(), DECODER_SIZE)?;
+                    let decoder = decoder(name, encoding, definition).map(Arc::new);
+                    self.schemas.insert(id, Schema { definition: definition.to_vec(), decoder });
                 }
-                budget.take_values(data.len(), DECODER_SIZE)?;
-                let decoder = decoder(&header.name, &header.encoding, &data).map(Arc::new);
-                self.schemas.insert(header.id, Schema { definition: data.into_owned(), decoder });
                 Ok(())
             }
-            Record::Channel(channel) => self.register(channel, budget),
-            Record::Message { header, data } => self.learn(&header, &data, budget),
+            CHANNEL => {
+                let [id, schema] = [fields.bytes()?, fields.bytes()?].map(u16::from_le_bytes);
+                let (topic, encoding) = (fields.text()?, fields.text()?);
+                if self.channels.contains_key(&id) {
+                    return Ok(());
+                }
+                match self.schemas.get(&schema).map(|schema| &schema.decoder) {
+                    Some(Ok(decoder)) if encoding == "cdr" => {
+                        let decoder = Arc::clone(decoder);
+                        budget.take_values(topic.len() + 1, FIELD_SIZE)?;
+                        let topic = self.number_of(topic);
+                        self.channels.insert(id, (topic, decoder));
+                    }
+                    // Another topic may be all that is asked for.
+                    other => {
+                        let reason = other.and_then(|decoder| decoder.as_ref().err());
+                        let reason = reason.map_or(encoding, String::as_str);
+                        self.leave(format!("{topic} ({reason})"));
+                    }
+                }
+                Ok(())
+            }
+            MESSAGE => self.learn(fields, budget),
             _ => Ok(()),
         }
     }
 
-    /// Keeps a channel; of one that cannot be read its topic, as another may be all that is asked for.
-    fn register(&mut self, channel: Channel, budget: &Budget) -> Result<(), ReadError> {
-        if self.channels.contains_key(&channel.id) {
-            return Ok(());
-        }
-        let decoder = match self.schemas.get(&channel.schema_id).map(|schema| &schema.decoder) {
-            Some(Ok(decoder)) if channel.message_encoding == "cdr" => Arc::clone(decoder),
-            other => {
-                let refused = other.and_then(|decoder| decoder.as_ref().err());
-                let reason = refused.unwrap_or(&channel.message_encoding);
-                leave(&mut self.left, format!("{} ({reason})", channel.topic));
-                return Ok(());
-            }
-        };
-        budget.take_values(channel.topic.len() + 1, FIELD_SIZE)?;
-        let topic = *self.by_name.entry(channel.topic.clone()).or_insert_with(|| {
-            let (fields, known) = (Vec::new(), HashSet::new());
-            self.list.push(Topic { name: channel.topic, fields, known });
+    fn number_of(&mut self, topic: &str) -> usize {
+        *self.by_name.entry(topic.to_owned()).or_insert_with(|| {
+            self.list.push(Topic { name: topic.to_owned(), ..Topic::default() });
             self.list.len() - 1
-        });
-        let readable = Readable { topic, decoder, seen: 0, lengths: HashSet::new() };
-        self.channels.insert(channel.id, readable);
-        Ok(())
+        })
     }
 
-    /// Learns the fields and the times of a message.
-    fn learn(
-        &mut self,
-        header: &MessageHeader,
-        data: &[u8],
-        budget: &Budget,
-    ) -> Result<(), ReadError> {
-        let zero = &mut self.zero;
-        let mut note = |clock, time: Option<i64>| {
-            if let Some(time) = time {
-                zero.entry(clock).and_modify(|zero| *zero = time.min(*zero)).or_insert(time);
-            }
-        };
-        note(Clock::Log, i64::try_from(header.log_time).ok());
-        let Some(channel) = self.channels.get_mut(&header.channel_id) else { return Ok(()) };
-        let Some(topic) = self.list.get_mut(channel.topic) else { return Ok(()) };
-        channel.seen += 1;
-        if !channel.lengths.insert(data.len()) && channel.seen > ENOUGH {
-            return Ok(());
+    /// Notes a topic that cannot be read, or has a message that cannot, and why.
+    fn leave(&mut self, what: String) {
+        if self.left.len() < MOST_LEFT && !self.left.contains(&what) {
+            self.left.push(what);
         }
-        let value = match channel.decoder.decode(data) {
+    }
+
+    /// Takes the times and the numbers of a message. One that cannot be decoded is refused where its topic is
+    /// asked for.
+    fn learn(&mut self, mut fields: Fields<'_>, budget: &Budget) -> Result<(), ReadError> {
+        let channel = u16::from_le_bytes(fields.bytes()?);
+        let number = u32::from_le_bytes(fields.bytes()?);
+        let times = [fields.bytes()?, fields.bytes()?].map(u64::from_le_bytes);
+        let [log, publish] = times.map(|time| i64::try_from(time).ok());
+        let Some((topic, decoder)) = self.channels.get(&channel) else { return Ok(()) };
+        let Some(topic) = self.list.get_mut(*topic) else { return Ok(()) };
+        let value = match decoder.decode(fields.0) {
             Ok(value) => value,
-            // It is refused where it is asked for.
             Err(reason) => {
-                leave(&mut self.left, format!("{} (a message of it: {reason})", topic.name));
+                let [time, _] = times;
+                topic.fault.get_or_insert_with(|| {
+                    format!("with the sequence number {number}, logged at {time} ns: {reason}")
+                });
+                let what = format!("{} (a message of it: {reason})", topic.name);
+                self.leave(what);
                 return Ok(());
             }
         };
-        for clock in [Clock::Log, Clock::Publish, Clock::Stamp] {
-            note(clock, clock.time(header, &value));
+        let times = [log, publish, value.stamp()];
+        for (zero, time) in self.zero.iter_mut().zip(times) {
+            *zero = [*zero, time].into_iter().flatten().min();
         }
-        topic.learn(&value, budget)
+        budget.take_values(2, size_of::<(usize, Times)>())?;
+        topic.messages.push((self.count, times));
+        self.count += 1;
+        each_number(&value, &mut |name, number| topic.take(name, number, budget))
     }
 
     /// Refuses a file in which no message can be read.
@@ -214,22 +204,24 @@ impl Topics {
 
     /// The times, and the fields of all topics.
     pub(super) fn places(&self) -> Vec<Place> {
-        let mut places: Vec<Place> = self.zero.keys().copied().map(Place::Time).collect();
+        let clocks = Clock::ALL.into_iter().filter(|clock| self.zero[*clock as usize].is_some());
+        let mut places: Vec<Place> = clocks.map(Place::Time).collect();
         for (number, topic) in self.list.iter().enumerate() {
-            places.extend(topic.fields.iter().map(|field| Place::Field(number, field.clone())));
+            places.extend((0..topic.fields.len()).map(|field| Place::Field(number, field)));
         }
         places
     }
 
     /// The recorded time is `time`, so that it is found where none is named.
-    pub(super) fn header(&self, place: &Place) -> Header {
+    pub(super) fn header(&self, place: Place) -> Header {
         match place {
             Place::Time(Clock::Log) => {
                 Header { text: "log_time".to_owned(), ..Header::plain("time", 0) }
             }
             Place::Time(clock) => Header::plain(clock.name(), 0),
-            Place::Field(topic, field) => {
-                Header::plain(&format!("{}.{field}", self.name(*topic)), *topic)
+            Place::Field(number, field) => {
+                let topic = &self.list[number];
+                Header::plain(&format!("{}.{}", topic.name, topic.fields[field].name), number)
             }
         }
     }
@@ -239,17 +231,28 @@ impl Topics {
     }
 }
 
+impl Topic {
+    /// Takes a number of the latest message; of two of one name the first.
+    fn take(&mut self, name: &str, number: f64, budget: &Budget) -> Result<(), ReadError> {
+        let message = self.messages.len() - 1;
+        if !self.by_name.contains_key(name) {
+            budget.take_values(name.len() + 1, FIELD_SIZE)?;
+            self.by_name.insert(name.to_owned(), self.fields.len());
+            self.fields.push(Field { name: name.to_owned(), values: Vec::new() });
+        }
+        let values = &mut self.fields[self.by_name[name]].values;
+        if values.last().is_none_or(|(last, _)| *last != message) {
+            budget.take_values(2, NUMBER_SIZE)?;
+            values.push((message, number));
+        }
+        Ok(())
+    }
+}
+
 /// The decoder of a schema, or why there is none.
 fn decoder(name: &str, encoding: &str, definition: &[u8]) -> Result<Decoder, String> {
     if encoding != "ros2msg" {
         return Err(format!("{encoding} {name}"));
     }
     Decoder::new(name, definition).map_err(|reason| format!("definition of {name}: {reason}"))
-}
-
-/// Notes a topic, or a message of it, that cannot be read, and why.
-fn leave(left: &mut Vec<String>, what: String) {
-    if left.len() < MOST_LEFT && !left.contains(&what) {
-        left.push(what);
-    }
 }
