@@ -143,16 +143,6 @@ impl Rival {
     }
 }
 
-/// `values` in windows, each without its mean: a fit starts anew there.
-fn centred(values: &[f64], windows: &[(usize, usize)]) -> Vec<f64> {
-    let window = |(start, end): &(usize, usize)| {
-        let part = &values[*start..*end];
-        let mean = part.iter().sum::<f64>() / part.len().max(1) as f64;
-        part.iter().map(|value| value - mean).collect::<Vec<_>>()
-    };
-    windows.iter().flat_map(window).collect()
-}
-
 fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

@@ -102,6 +102,11 @@ fn log_line(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     format!("{step}  {verdict}   ({at}{found}; doubt {doubt})")
 }
 
+/// A step and its verdict.
+pub(super) fn in_short(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+    format!("{} {}", trial.step(segment), verdict(trial, segment.decision))
+}
+
 fn verdict(trial: &TrialLayout<'_>, decision: &Decision) -> String {
     let period = trial.trial.period().seconds();
     let delay = |delay: Option<f64>| {

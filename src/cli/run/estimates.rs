@@ -7,7 +7,7 @@ use crate::numerics::{quantile, to_digits};
 use crate::report::EstimatedJoint;
 use crate::report::answer::input_note;
 use crate::study::JointEstimate;
-use crate::wording::{number, percent};
+use crate::wording::percent;
 
 /// The delays of each joint.
 pub(crate) type Estimates = Vec<Result<JointEstimate, EstimateError>>;
