@@ -8,7 +8,7 @@ use crate::explain::{Attribution, Candidate, Contribution, Judgement, Verdict};
 use crate::fit::AssessedModel;
 use crate::model::Component;
 use crate::study::JointEstimate;
-use crate::wording::{measure, percent, rounded};
+use crate::wording::{measure, percent, times_noise};
 
 /// A joint, the verdict on its model, and the ranking it follows from.
 #[derive(Clone, Copy, Debug)]
@@ -102,7 +102,7 @@ pub(crate) struct Consequence<'a> {
 /// `5.6 times the noise`; where that is not known, `a fit of 88 % to the output`.
 pub(crate) fn in_proportion(error: ErrorFigures, noise: Option<f64>) -> String {
     match (noise, error.fit_percent / 100.0) {
-        (Some(noise), _) => format!("{} times the noise", rounded(error.rmse / noise)),
+        (Some(noise), _) => times_noise(error.rmse / noise),
         (None, fit) if fit > 0.0 => format!("a fit of {} to the output", percent(fit)),
         // A model that runs away, or an output that hardly moves.
         (None, _) => "no better than the mean of the output".to_owned(),

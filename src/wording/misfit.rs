@@ -8,6 +8,17 @@ use crate::diagnosis::{
 };
 use crate::experiment::Joint;
 
+/// `5.6 times the noise`, `as large as the noise`.
+pub(crate) fn times_noise(times: f64) -> String {
+    /// A difference of the two that nobody asks about.
+    const ALIKE: f64 = 0.05;
+    if (times - 1.0).abs() < ALIKE {
+        "as large as the noise".to_owned()
+    } else {
+        format!("{} times the noise", rounded(times))
+    }
+}
+
 /// Whether a lack of fit is shown, and by what.
 pub(crate) fn lack_of_fit(test: LackOfFit) -> String {
     let p_value = p_text(test.p_value);
@@ -19,7 +30,7 @@ pub(crate) fn lack_of_fit(test: LackOfFit) -> String {
         }
         None => {
             let times = test.times_noise.map_or_else(String::new, |times| {
-                format!(": training error {} times the noise", rounded(times))
+                format!(": training error {}", times_noise(times))
             });
             format!("small{times} ({p_value})")
         }

@@ -18,7 +18,7 @@ pub(crate) use doubt::{DOUBT_MEANS, doubtful_sentence};
 pub(crate) use doubt::{doubt_percent, doubt_sentence, remedy_text};
 pub(crate) use misfit::{
     correlation_sentences, fails_or_errs, failure_sentences, feature_with_level, feature_with_unit,
-    lack_of_fit, misfit_units, region_text, worst_segment_text,
+    lack_of_fit, misfit_units, region_text, times_noise, worst_segment_text,
 };
 pub(crate) use model::{effect_ids, effects_named, effects_text, parameter_units, parameter_value};
 pub use number::number;

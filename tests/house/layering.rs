@@ -278,7 +278,7 @@ fn a_tie_of_the_maker_of_test_data_is_seen() {
 }
 
 /// Libraries, and the places that may name them.
-const PLACES: [(&str, &[&str]); 22] = [
+const PLACES: [(&str, &[&str]); 21] = [
     ("tauscope_synthetic", &["src/synthetic.rs"]),
     ("rayon", &["src/batch.rs"]),
     ("rerun", &["src/recording"]),

@@ -7,7 +7,7 @@ use crate::recording::markdown::{plain, prose};
 use crate::report::ladder::change_in_words;
 use crate::report::parameters::parameter_table;
 use crate::report::{ComparedJoint, Finding, ImprovedJoint};
-use crate::wording::{rounded, unit_suffix};
+use crate::wording::{rounded, times_noise, unit_suffix};
 
 /// The page of the revision at `place`: what is concluded of the last; then what changed at this one,
 /// how large its error is and where it arises.
@@ -72,7 +72,7 @@ fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {
     let unit = unit_suffix(improved.finding.compared.joint.output_unit.as_deref());
     let error = |place: usize| Some(judged(&improved.revisions.get(place)?.comparison));
     let Some(now) = error(place) else { return String::new() };
-    let times = noise(improved).map(|noise| format!(", {} times the noise", rounded(now / noise)));
+    let times = noise(improved).map(|noise| format!(", {}", times_noise(now / noise)));
     let times = times.unwrap_or_default();
     match place.checked_sub(1).and_then(error) {
         Some(before) => {

@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::document::{Block, Document, Entry, slug};
-use super::joint;
 use super::report::Report;
+use super::{delays, joint};
 use crate::experiment::{Joint, Source, Trial};
 use crate::report::difference::differences_json;
 use crate::report::explain::conclusion_json;
@@ -17,6 +17,9 @@ impl Report<'_> {
     /// Puts the report together.
     pub(crate) fn document(&self) -> Document {
         let mut blocks = vec![Block::text(self.extent()), Block::Contents(self.contents())];
+        // Of models the delays are what they are made from.
+        let overview = delays::overview(self.joints).filter(|_| self.models.is_empty());
+        blocks.extend(overview.map(|figure| Block::Figures(vec![figure])));
         if !self.failures.is_empty() {
             blocks.push(Block::Lead("Left out".to_owned()));
             blocks.push(Block::List(self.failures.to_vec()));

@@ -5,9 +5,11 @@ use super::timeline::{Timeline, values_of};
 use crate::delay::{AgainstState, Bounds, DeadTime, Decision, DelayTable, Transition, Verdict};
 use crate::experiment::Trial;
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, delay_levels};
+use crate::numerics::quantile;
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;
 use crate::report::answer::dead_time_sentences;
+use crate::report::decisions::doubted;
 use crate::wording::bracketed;
 
 /// Input and output over time.
@@ -210,6 +212,42 @@ pub(crate) fn against_panel(found: &AgainstState, variable: usize) -> Option<Pan
         height: 190,
         marks: kinds.into_iter().map(mark).collect(),
     })
+}
+
+/// How the delays of each joint are spread; none of fewer than two joints.
+pub(super) fn overview(joints: &[EstimatedJoint<'_>]) -> Option<Figure> {
+    let spread = |joint: &EstimatedJoint<'_>| Some((joint.joint.name.clone(), spread(*joint)?));
+    let (names, spreads): (Vec<String>, Vec<[f64; 5]>) = joints.iter().filter_map(spread).unzip();
+    if names.len() < 2 {
+        return None;
+    }
+    let rows = || (0_u32..).map(|row| -f64::from(row)).zip(&spreads);
+    let line = |from: usize, to: usize| {
+        rows().map(|(row, at)| vec![(at[from], row), (at[to], row)]).collect::<Vec<_>>()
+    };
+    let x = Span::around(spreads.iter().flat_map(|at| [at[0], at[4]]).chain([0.0]), 0.03);
+    let panel = Panel {
+        x: Axis::new(x, "delay [s]", 8.0),
+        y: Axis::of_names(&names, ""),
+        height: 22 * u32::try_from(names.len()).unwrap_or(1) + 10,
+        marks: vec![
+            Mark::lines(Role::Faint, 1.2, line(0, 4)).named("least to greatest"),
+            Mark::lines(Role::Smoothed, 6.0, line(1, 3)).named("middle half"),
+            Mark::dots(Role::Ink, rows().map(|(row, at)| (at[2], row)).collect()).named("median"),
+        ],
+    };
+    let [name, caption] =
+        ["Delays of all joints", "The accepted delays of each joint."].map(str::to_owned);
+    Some(Figure { name, width: WIDTH, panels: vec![panel], caption })
+}
+
+/// The least, the quartiles and the greatest of the accepted delays of a joint, in seconds.
+fn spread(estimated: EstimatedJoint<'_>) -> Option<[f64; 5]> {
+    let delays = doubted(estimated).filter_map(|it| it.delay_s(it.decision.accepted_delay()));
+    let mut delays: Vec<f64> = delays.collect();
+    delays.sort_by(f64::total_cmp);
+    let at = |share: f64| quantile(&delays, share);
+    Some([*delays.first()?, at(0.25)?, at(0.5)?, at(0.75)?, *delays.last()?])
 }
 
 /// What is said and drawn of it; nothing for an input that is made of steps.
