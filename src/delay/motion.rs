@@ -1,7 +1,8 @@
-//! What the output does about each step of the input: rest and departure.
+//! What the output does about each step of the input: rest, departure, arrival at a stop.
 //!
-//! An actuator that rests until the input steps cannot have begun to react later than it has plainly
-//! left its rest. What it does at a stop, which its record shows, stands in `stops`.
+//! An actuator that rests until the input steps, moves, and stands at its stop long before the
+//! input steps again says two things that hold for every method. It cannot have begun to react
+//! later than it has plainly left its rest; and what it does at its stop is no reaction to a step.
 //!
 //! A joint *rests* over `n` samples when the line through them, of slope `v` with the standard
 //! error `e = s·√(12/n³)` and residuals of standard deviation `s`, is shown to be slower than the
@@ -16,8 +17,10 @@
 //! what the differences of neighbours say of the noise.
 //!
 //! It has *departed* once the output stays beyond that line by more than `6·s`, by more than the
-//! part [`PLAIN`] of the motion to come, and by more than as much drift again as before. A joint whose
-//! rest is not shown, as under much noise, is left alone.
+//! part [`PLAIN`] of the motion to come, and by more than as much drift again as before. It has
+//! *arrived* at a stop when it rests before the next step, although it was plainly driven: its
+//! input was not eased, and it came faster than it went before the step, or from the other side.
+//! A joint whose rest is not shown, as under much noise, is left alone.
 
 use super::settings::{FirstLast, Settings};
 use super::steps::InputStep;
@@ -197,8 +200,10 @@ impl Hold<'_> {
     }
 
     fn motion(&self, so_far: &SoFar) -> Option<StepMotion> {
-        let rest = self.quiet_at(self.step).find(|quiet| quiet.rests(so_far))?;
-        self.leaving(&rest, so_far)
+        match self.quiet_at(self.step).find(|quiet| quiet.rests(so_far)) {
+            Some(rest) => self.leaving(&rest, so_far),
+            None => self.stopping(so_far),
+        }
     }
 
     /// The lines before a sample: what is sampled seldom needs longer to show its rest.
@@ -244,11 +249,39 @@ impl Hold<'_> {
         let limit = if self.is_eased { still } else { slow.min(still) };
         limit.max(BEYOND_NOISE * before.noise)
     }
+
+    /// In motion, and at a stop before the next step. An input that is eased needs no stop to
+    /// bring the joint to rest.
+    fn stopping(&self, so_far: &SoFar) -> Option<StepMotion> {
+        let held = self.held();
+        if self.is_eased || held.len() < 2 * self.look_back {
+            return None;
+        }
+        let before = Quiet::before(self.output, self.step, self.look_back)?;
+        let at_stop = self.quiet_at(self.end()).find(|quiet| quiet.rests(so_far))?;
+        let near = (PLAIN * so_far.range()).max(BEYOND_NOISE * at_stop.noise);
+        let arrived = held.iter().rposition(|y| (y - at_stop.level).abs() > near)? + 1;
+        // A joint that only ends its motion comes no faster than it went.
+        let approach =
+            held.get(..arrived).and_then(|held| Quiet::before(held, arrived, self.look_back))?;
+        let driven = approach.speed * before.speed < 0.0
+            || approach.speed.abs() > FASTER * before.speed.abs();
+        let end = self.step + arrived;
+        (driven && !approach.rests(so_far)).then_some(StepMotion {
+            first: 0,
+            latest: end,
+            end,
+            rest: None,
+        })
+    }
 }
 
 /// Times the noise of neighbours that the residuals about a line have, of a joint that does not
 /// turn: more than white noise does in one of a thousand windows of eight.
 const TURNS: f64 = 1.5;
+
+/// Times as fast as before the step that a joint is plainly driven.
+const FASTER: f64 = 1.2;
 
 /// The line through a few samples.
 #[derive(Clone, Copy, Debug)]
