@@ -12,6 +12,9 @@
 use super::windows::{Pass, Run};
 use crate::units::{ceil_to_index, floor_to_index};
 
+/// A common delay in samples, and `L`.
+pub(super) type Alignment = (f64, f64);
+
 /// Delays in a hold that are compared.
 const PER_HOLD: f64 = 60.0;
 
@@ -25,29 +28,43 @@ const ALIKE: f64 = 0.97;
 /// Part of the windows that must be in the record at a delay.
 const MOST: f64 = 0.6;
 
-/// The delay at which `L` is largest, of maxima alike the nearest; `longest` is the longest delay in holds.
-pub(super) fn best_alignment(runs: &[Run], hold: f64, longest: f64, pass: &Pass) -> Option<f64> {
+/// The delays at which `L` has its maxima, the largest first, of those alike the
+/// nearest; `longest` is the
+/// longest delay in holds.
+pub(super) fn alignments(runs: &[Run], hold: f64, longest: f64, pass: &Pass) -> Vec<Alignment> {
     let sums: Vec<Sums> = runs.iter().map(|run| Sums::of(&run.output)).collect();
     let by = (hold / PER_HOLD).floor().max(1.0);
     let count = floor_to_index((longest + LEAD) * hold / by);
     let first = -((LEAD * hold / by).floor() * by);
-    let curve = (0..=count).map(|k| {
-        let delay = first + k as f64 * by;
-        let (gain, used) = gain(runs, &sums, delay, pass);
-        (delay, gain, used)
-    });
-    let mut curve: Vec<(f64, f64, f64)> = curve.collect();
+    let curve: Vec<(f64, f64, f64)> = (0..=count)
+        .map(|k| {
+            let delay = first + k as f64 * by;
+            let (gain, used) = gain(runs, &sums, delay, pass);
+            (delay, gain, used)
+        })
+        .collect();
     let most = curve.iter().map(|(_, _, used)| *used).fold(0.0, f64::max);
-    curve.retain(|(_, _, used)| *used > 0.0 && *used >= MOST * most);
+    let curve: Vec<Alignment> = curve
+        .into_iter()
+        .filter(|(_, _, used)| *used > 0.0 && *used >= MOST * most)
+        .map(|(delay, gain, _)| (delay, gain))
+        .collect();
     let is_top = |k: &usize| {
         let near = k.saturating_sub(2)..(k + 3).min(curve.len());
-        curve[near].iter().all(|(_, gain, _)| *gain <= curve[*k].1)
+        curve[near].iter().all(|(_, gain)| *gain <= curve[*k].1)
     };
-    let tops = || (0..curve.len()).filter(is_top).map(|index| curve[index]);
-    let most = tops().map(|(_, gain, _)| gain).fold(f64::NEG_INFINITY, f64::max);
+    let mut tops: Vec<Alignment> =
+        (0..curve.len()).filter(is_top).map(|index| curve[index]).collect();
+    let most = tops.iter().map(|(_, gain)| *gain).fold(f64::NEG_INFINITY, f64::max);
     // Where holds are equally long a delay shows as well a few holds later: the nearest counts.
-    let alike = tops().filter(|(_, gain, _)| *gain >= ALIKE * most).map(|(delay, ..)| delay);
-    alike.min_by(|a, b| a.abs().total_cmp(&b.abs()))
+    let rank = |(delay, gain): &Alignment| -> (f64, f64) {
+        if *gain >= ALIKE * most { (0.0, delay.abs()) } else { (1.0, -gain) }
+    };
+    tops.sort_by(|a, b| {
+        let (a, b) = (rank(a), rank(b));
+        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    tops
 }
 
 /// `L` at a delay, and the windows that it is of.
@@ -169,8 +186,8 @@ mod tests {
             let response = response_of(&shape, 45.0, 182);
             let (responses, shapes) = (vec![(shape, response)], Shapes::shared(shape));
             let pass = Pass { responses, shapes, reach: 90, typical: 0.0, noise: 0.005, before };
-            let found = best_alignment(&[run(delay)], 60.0, LONGEST, &pass).unwrap();
-            assert!((found - delay).abs() <= 1.0, "{delay}: {found:?}");
+            let found = alignments(&[run(delay)], 60.0, LONGEST, &pass);
+            assert!((found[0].0 - delay).abs() <= 1.0, "{delay}: {found:?}");
         }
     }
 }

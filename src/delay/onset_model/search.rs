@@ -22,7 +22,7 @@
 //! problems whose variables separate", SIAM Journal on Numerical Analysis 10 (1973); G. Schwarz,
 //! "Estimating the dimension of a model", Annals of Statistics 6 (1978).
 
-use super::alignment::{LONGEST, best_alignment};
+use super::alignment::{LONGEST, alignments};
 use super::dynamics::Before;
 use super::follows::Follows;
 use super::response::response_of;
@@ -156,9 +156,14 @@ impl Search {
     ) -> Vec<Onsets> {
         for _ in 0..passes {
             for (run, onsets) in self.runs.iter().zip(&mut onsets) {
-                onsets.sweep(run, pass);
+                onsets.sweep(run, 0..run.steps.len(), pass);
             }
             pass.typical = self.typical(&onsets).unwrap_or(pass.typical);
+        }
+        if passes > 1 {
+            for (run, onsets) in self.runs.iter().zip(&mut onsets) {
+                onsets.reassign(run, pass);
+            }
         }
         onsets
     }
@@ -201,7 +206,7 @@ impl Search {
         let pass = self.pass(Shapes::shared(shape), typical);
         let of_run = |(run, was): (&Run, &Onsets)| {
             let mut now = was.clone();
-            now.sweep(run, &pass);
+            now.sweep(run, 0..run.steps.len(), &pass);
             was.found.iter().zip(now.found).filter_map(|(was, now)| Some(((*was)?, now?))).collect()
         };
         self.runs.iter().zip(held).flat_map::<Vec<_>, _>(of_run).collect()
@@ -341,6 +346,22 @@ impl Search {
             self.keep_those_that_follow(&mut all);
         }
         all.sort_by(|a, b| a.score.total_cmp(&b.score));
+        self.restarted_at_best(all)
+    }
+
+    /// Each candidate started again from the onsets of the best: which reaction belongs to which
+    /// step does not depend on the shape.
+    fn restarted_at_best(&self, mut all: Vec<Candidate>) -> Vec<Candidate> {
+        let Some(best) = all.first().cloned() else { return all };
+        for other in &mut all[1..] {
+            let later = best.shape.mean() - other.shape.mean();
+            let onsets = best.onsets.iter().map(|of_run| of_run.later(later)).collect();
+            let again = self.evaluate(other.shape, onsets, best.typical + later, 2);
+            if again.score < other.score {
+                *other = self.refined(again, ROUNDS);
+            }
+        }
+        all.sort_by(|a, b| a.score.total_cmp(&b.score));
         all
     }
 
@@ -368,16 +389,42 @@ impl Search {
         all.retain(|it| self.r2(it) > most - WORSE);
     }
 
-    /// Broken lines about the common delay that shows best; of a few steps, or none where that fits better.
+    /// Broken lines about the common delay that shows best, or whose onsets go best with the input
+    /// where several show.
     pub(super) fn first(&self) -> Candidate {
+        /// Tops that are tried, and how well they must show beside the best.
+        const TOPS: usize = 6;
+        const SHOWS: f64 = 0.2;
+        /// What is explained well enough, and by how much another must explain more.
+        const WELL: f64 = 0.9;
+        const MORE: f64 = 0.05;
         let few = self.has_few_steps();
         let longest = if few { 1.0 } else { LONGEST };
-        let pass = self.pass(Shapes::shared(Shape::BEND), 0.0);
-        let delay = best_alignment(&self.runs, self.hold, longest, &pass).unwrap_or(0.0);
+        let tops = alignments(
+            &self.runs,
+            self.hold,
+            longest,
+            &self.pass(Shapes::shared(Shape::BEND), 0.0),
+        );
         let bend = |delay: f64| self.evaluate(Shape::BEND, self.starting(delay), delay, 2);
-        let best = bend(delay);
-        let other = few.then(|| bend(0.0)).filter(|other| other.score < best.score);
-        other.unwrap_or(best)
+        let Some((delay, most)) = tops.first().copied() else { return bend(0.0) };
+        let mut best = bend(delay);
+        if few {
+            let other = bend(0.0);
+            return if other.score < best.score { other } else { best };
+        }
+        let mut explained = self.r2(&best);
+        for (delay, gain) in tops.into_iter().take(TOPS).skip(1) {
+            if gain < SHOWS * most || explained > WELL {
+                break;
+            }
+            let other = bend(delay);
+            let its = self.r2(&other);
+            if its > explained + MORE {
+                (best, explained) = (other, its);
+            }
+        }
+        best
     }
 
     /// Where onsets of a shape are taken to be at first, with their typical delay.

@@ -4,6 +4,8 @@
 //! onset, its own; each pass finds every onset between its neighbours, which the next pass takes
 //! for the ends of the windows.
 
+use std::ops::Range;
+
 use super::dynamics::{Before, Fit, Jump, Response};
 use super::shape::{Shape, Shapes};
 use crate::delay::neutral::Transition;
@@ -152,9 +154,9 @@ impl Onsets {
         Self { windows: Some(windows), ..self.clone() }
     }
 
-    /// Finds each onset between its neighbours.
-    pub(super) fn sweep(&mut self, run: &Run, pass: &Pass) {
-        for index in 0..run.steps.len() {
+    /// Finds each onset of a range of steps between its neighbours.
+    pub(super) fn sweep(&mut self, run: &Run, range: Range<usize>, pass: &Pass) {
+        for index in range {
             let held = self.windows.as_ref().map(|windows| windows[index]);
             let window = held.unwrap_or_else(|| pass.window(run, &self.positions, index));
             let onset = pass.find(run, index, window);
@@ -169,6 +171,49 @@ impl Onsets {
                 (run.steps[index].at + pass.typical).max(before).min(next.max(before))
             };
         }
+    }
+
+    /// Gives reactions back to the steps that made them, where one step has none since those before it
+    /// have each taken the next one's.
+    pub(super) fn reassign(&mut self, run: &Run, pass: &Pass) {
+        for last in 1..run.steps.len() {
+            if self.found[last].is_some_and(|onset| !onset.is_clear) {
+                self.shift(run, last, pass);
+            }
+        }
+    }
+
+    /// Moves the onsets up to the step `last` to the next step each, as far as they lie after it, and
+    /// finds another for the first of these steps, if less is left over then.
+    fn shift(&mut self, run: &Run, last: usize, pass: &Pass) {
+        /// Steps of a chain at most (chosen).
+        const LONGEST: usize = 12;
+        let taken = |index: &usize| self.positions[index - 1] > run.steps[*index].at;
+        let links = (1..=last).rev().take_while(taken).take(LONGEST).count();
+        let first = last - links;
+        if links == 0 {
+            return;
+        }
+        let affected = first.saturating_sub(1)..(last + 2).min(self.found.len());
+        let before = self.clone();
+        self.positions.copy_within(first..last, first + 1);
+        let earliest = first.checked_sub(1).map_or(0.0, |before| self.positions[before]);
+        self.positions[first] =
+            (run.steps[first].at + pass.typical).max(earliest).min(self.positions[first + 1]);
+        (0..2).for_each(|_| self.sweep(run, affected.clone(), pass));
+        if self.lack(affected.clone()) >= before.lack(affected) {
+            *self = before;
+        }
+    }
+
+    /// What is left over in windows: the negative logarithm of their likelihood, for a sample.
+    fn lack(&self, range: Range<usize>) -> f64 {
+        let found = self.found[range].iter().flatten();
+        let (sum, samples) = found.fold((0.0, 0.0), |(sum, samples), onset| {
+            let log = onset.mean_square().max(f64::MIN_POSITIVE).ln();
+            (sum + onset.samples() as f64 * log, samples + onset.samples() as f64)
+        });
+        sum / f64::max(samples, 1.0)
     }
 }
 
