@@ -20,6 +20,16 @@ use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
 use crate::delay::settings::{CONFIDENCE, CandidateLines, FirstLast, Settings};
 
+/// The segments of all steps with their candidates, before it is asked whether anything happened.
+pub(super) fn by_lines(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
+    let decisions = in_turn(trial, settings, settings.alpha);
+    // Not what a step is judged by that may come later, and nothing that is not the paper's.
+    if !settings.paper && !settings.grows && answer_the_next_step(&decisions, settings.beta) {
+        return in_turn(trial, settings, 0);
+    }
+    decisions
+}
+
 /// The decisions on all steps of a trial.
 pub(super) fn decide(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
     let mut decisions = by_lines(trial, settings);
@@ -31,16 +41,9 @@ pub(super) fn decide(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision>
                 decision.test_reaction(Some(p_value), confidence);
             }
         }
-    }
-    decisions
-}
-
-/// The segments of all steps with their candidates, before it is asked whether anything happened.
-pub(super) fn by_lines(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
-    let decisions = in_turn(trial, settings, settings.alpha);
-    // Not what a step is judged by that may come later, and nothing that is not the paper's.
-    if !settings.paper && !settings.grows && answer_the_next_step(&decisions, settings.beta) {
-        return in_turn(trial, settings, 0);
+    } else if !settings.paper {
+        let departs = |index| StepContext { trial, index, settings }.departed().is_some();
+        noise_test::judge_until_one_reacts(&mut decisions, trial, departs, CONFIDENCE);
     }
     decisions
 }

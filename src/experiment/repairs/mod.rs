@@ -4,13 +4,14 @@
 //! stamps are read: in [`super::clock`].
 
 mod bursts;
+mod mended;
 mod rezeroed;
 mod same_time;
 mod slow_sensor;
 mod wrap;
 
+use self::mended::mend_outputs;
 use super::error::ReadError;
-use super::layout::JointLayout;
 use super::log::Log;
 use super::table::TrialRows;
 
@@ -41,22 +42,6 @@ pub(super) fn mend_all(log: &mut Log<'_>) -> Result<(), ReadError> {
         });
     }
     Ok(())
-}
-
-/// The values of an output as they are mended, and what is said of it.
-type Mended = (Vec<f64>, Option<String>);
-
-/// Mends each output that needs it.
-fn mend_outputs(log: &mut Log<'_>, mend: impl Fn(&Log<'_>, &JointLayout) -> Option<Mended>) {
-    for joint in log.with_own_outputs() {
-        let Some((values, note)) = mend(log, joint) else { continue };
-        if let Some(column) = log.column_mut(joint.output.column) {
-            column.values = values;
-        }
-        if let Some(note) = note {
-            log.note_on(joint, &note);
-        }
-    }
 }
 
 /// Stamps in two columns, whole seconds and what they leave over, as those of ROS are, become one. Where

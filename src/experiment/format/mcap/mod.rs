@@ -19,7 +19,7 @@ mod topics;
 use std::path::Path;
 
 use self::messages::{Messages, times_of};
-use self::stream::refused;
+use self::stream::{for_each_record, refused};
 use self::topics::{Clock, Place, Topics};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
@@ -34,7 +34,8 @@ struct Unread {
 
 /// Opens the log and takes the numbers of its messages.
 pub(super) fn open(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
-    let mut topics = stream::topics(path, budget)?;
+    let mut topics = Topics::default();
+    for_each_record(path, budget, |opcode, fields| topics.take(opcode, fields, budget))?;
     topics.check()?;
     let places = topics.places();
     let headers = places.iter().map(|place| topics.header(*place)).collect();

@@ -11,7 +11,6 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use super::topics::Topics;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 
@@ -42,12 +41,16 @@ fn cut_off() -> ReadError {
     damaged("it ends within a record")
 }
 
-/// The topics of a file; its records are read with memory for one chunk. Checksums of chunks and of all data are
-/// compared where the file has them.
-pub(super) fn topics(path: &Path, budget: &Budget) -> Result<Topics, ReadError> {
+/// Hands each record of a file to `take`, in chunks or not: what it is, and its fields. Records are read with
+/// memory for one chunk. Checksums of chunks and of all data are compared where the file has them.
+pub(super) fn for_each_record(
+    path: &Path,
+    budget: &Budget,
+    mut take: impl FnMut(u8, Fields<'_>) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
     let file = File::open(path)?;
     let size = file.metadata()?.len();
-    let (mut file, mut topics) = (BufReader::new(file), Topics::default());
+    let mut file = BufReader::new(file);
     let (mut head, mut record, mut sum) = (Vec::new(), Vec::new(), crc32fast::Hasher::new());
     fill(&mut head, &mut file, MAGIC.len() as u64)?;
     sum.update(&head);
@@ -70,7 +73,7 @@ pub(super) fn topics(path: &Path, budget: &Budget) -> Result<Topics, ReadError> 
                     let length = u64::from_le_bytes(fields.bytes()?);
                     let record = fields.take(length)?;
                     rest = fields.0;
-                    topics.take(opcode, Fields(record), budget)?;
+                    take(opcode, Fields(record))?;
                 }
             }
             DATA_END => {
@@ -79,9 +82,9 @@ pub(super) fn topics(path: &Path, budget: &Budget) -> Result<Topics, ReadError> 
             }
             FOOTER => {
                 fill(&mut record, &mut file, MAGIC.len() as u64)?;
-                return if record == MAGIC { Ok(topics) } else { Err(cut_off()) };
+                return if record == MAGIC { Ok(()) } else { Err(cut_off()) };
             }
-            _ => topics.take(opcode, Fields(&record), budget)?,
+            _ => take(opcode, Fields(&record))?,
         }
         sum.update(&head);
         sum.update(&record);
