@@ -5,13 +5,13 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use tauscope::diagnosis::failure::{ResidualRecord, Samples, diagnose};
+use tauscope::diagnosis::failure::{RecordError, ResidualRecord, Samples, diagnose};
 
 const SAMPLES: usize = 12_000;
 const HOLD: usize = 150;
 
 /// A joint driven by steps, whose residual is five times as large where `fails`.
-fn record(fails: fn(f64, f64) -> bool) -> Option<ResidualRecord> {
+fn record(fails: fn(f64, f64) -> bool) -> Result<ResidualRecord, RecordError> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut samples = Samples { trial: vec![0; SAMPLES], ..Samples::default() };
     let (mut level, mut output) = (0.0, 0.0_f64);
@@ -36,7 +36,7 @@ fn record(fails: fn(f64, f64) -> bool) -> Option<ResidualRecord> {
 
 fn benches(criterion: &mut Criterion) {
     let mut bench = |name: &str, fails| {
-        if let Some(record) = record(fails) {
+        if let Ok(record) = record(fails) {
             let residual = || record.samples().residual.iter().copied();
             criterion.bench_function(name, |run| {
                 run.iter(|| diagnose(black_box(&record), residual()));

@@ -272,7 +272,7 @@ fn residual_record(
         samples.trial.extend(std::iter::repeat_n(number, trial.len()));
     }
     let labels = trials.iter().map(|trial| trial.label().to_owned()).collect();
-    failure::ResidualRecord::new(samples, labels, segments)
+    failure::ResidualRecord::new(samples, labels, segments).ok()
 }
 
 /// Spans of samples with one level.

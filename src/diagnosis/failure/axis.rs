@@ -39,6 +39,24 @@ impl Axis {
     pub(super) fn parts(&self) -> usize {
         self.cuts.len() + 1
     }
+
+    /// Where the part begins; no number for the first part and after the last one.
+    pub(super) fn bound(&self, part: u8) -> Option<f64> {
+        self.cuts.get(usize::from(part).checked_sub(1)?).copied()
+    }
+
+    /// Whether `bound` is between the cuts before and after the beginning of `part`.
+    pub(super) fn is_near(&self, part: u8, bound: Option<f64>) -> bool {
+        match (self.bound(part), bound) {
+            (None, None) => true,
+            (Some(_), Some(bound)) => {
+                let before = part.checked_sub(1).and_then(|part| self.bound(part));
+                let behind = part.checked_add(1).and_then(|part| self.bound(part));
+                before.is_none_or(|cut| cut < bound) && behind.is_none_or(|cut| bound < cut)
+            }
+            _ => false,
+        }
+    }
 }
 
 /// The part of `value`, or one after the last for NaN. There are fewer than 256.

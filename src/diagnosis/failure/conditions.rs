@@ -4,10 +4,11 @@ use std::fmt;
 
 use super::axis::Axis;
 use super::feature::Feature;
-use super::grid::{Grid, Selection};
+use super::grid::{Choice, Grid, Selection};
 use super::record::{ResidualRecord, Row, Units};
 use super::regions::trial_label;
-use super::search::{MIN_GAIN, Search};
+use super::search::{DIGITS_COST, MIN_GAIN, Search};
+use crate::numerics::to_digits;
 
 /// Conditions that are named.
 const MOST: usize = 3;
@@ -76,6 +77,18 @@ impl fmt::Display for Clause {
 }
 
 impl Clause {
+    /// Whether it holds where its feature is `value`.
+    fn holds(&self, record: &ResidualRecord, value: f64) -> bool {
+        match (&self.bound, self.relation) {
+            (Bound::Label(label), _) => trial_label(record, value) == label,
+            (Bound::Number(bound), Relation::Below) => value < *bound,
+            (Bound::Number(bound), Relation::Above) => value > *bound,
+            (Bound::Number(bound), Relation::AtLeast) => value >= *bound,
+            #[expect(clippy::float_cmp, reason = "a sign is a number that is set")]
+            (Bound::Number(bound), Relation::Equal) => value == *bound,
+        }
+    }
+
     /// With the unit, as people read it.
     pub(crate) fn with_unit(&self, units: &Units) -> String {
         let unit = self.feature.unit(units).map_or_else(String::new, |unit| format!(" {unit}"));
@@ -166,10 +179,12 @@ fn percent(share: f64) -> String {
 /// relative accuracy in subgroup discovery). A second clause must add 0.05, and a gain
 /// below 0.1 is not reported.
 ///
-/// All conditions of one clause are scored. Thresholds part the levels of a feature, or are the
-/// roundest numbers near 100 quantiles. The best one is compared with shuffled records, which keep
-/// the residual's correlation, and so is the best second clause among its samples. A clause that
-/// chance would match in more than 1 % of them is dropped: of a white or a correlated residual of
+/// All conditions of one clause, of an interval, and of one clause each on two features
+/// are scored. Thresholds part the levels of a feature, or are near 32 quantiles; those
+/// of the best are then moved between the next ones, if that adds 0.01. The best one is
+/// compared with shuffled records, which keep the residual's correlation; its second clause is so
+/// among the samples of the first. A condition that chance would
+/// match in more than 1 % of them is dropped: of a white or a correlated residual of
 /// even size no condition is found. The next condition is looked for in the samples
 /// that those before it do not hold, so that each shows another failure; one that
 /// shares more than half of its samples with one before is dropped.
@@ -192,15 +207,17 @@ pub fn fails_where(record: &ResidualRecord) -> Vec<FailsWhere> {
     let mut rows: Vec<Row> = record.rows().collect();
     let mut found: Vec<FailsWhere> = Vec::new();
     for _ in 0..MOST {
-        let Some((selections, p_value)) = search.best(&rows) else { break };
-        let new = search.grid.members(&selections, rows.iter().copied());
+        let Some((choice, p_value)) = search.best(&rows) else { break };
+        let sharp = search.sharpened(record, &choice, &rows);
+        let (grid, choice) = sharp.as_ref().map_or((search.grid(), &choice), |(g, c)| (g, c));
+        let new = grid.members(&choice.selections, rows.iter().copied());
         if search.gain(&new) < MIN_GAIN {
             break;
         }
+        let exact = grid.members(&choice.selections, record.rows());
         // Covering: the next one is looked for in the remaining samples.
         rows.retain(|row| new.binary_search(row).is_err());
-        let samples = search.grid.members(&selections, record.rows());
-        let clauses = clauses_of(record, &search.grid, &selections);
+        let (clauses, samples) = in_few_digits(record, &search, grid, choice, &exact);
         if found.iter().all(|other| overlap(&other.samples, &samples) <= SAME) {
             found.push(report(record, &search, clauses, samples, p_value));
         }
@@ -219,16 +236,49 @@ fn beside_motion(
     moving: &FailsWhere,
 ) -> Option<FailsWhere> {
     let relative = search.relative(record, &moving.samples)?;
-    let (selections, p_value) = relative.best(&moving.samples)?;
-    let inside = relative.grid.members(&selections, moving.samples.iter().copied());
+    let (choice, p_value) = relative.best_on_one_feature(&moving.samples)?;
+    let inside = relative.grid().members(&choice.selections, moving.samples.iter().copied());
     if relative.gain_among(&moving.samples, &inside) < MIN_GAIN {
         return None;
     }
-    let samples = relative.grid.members(&selections, record.rows());
-    let clauses = clauses_of(record, &relative.grid, &selections);
+    let exact = relative.grid().members(&choice.selections, record.rows());
+    let (clauses, samples) = in_few_digits(record, search, relative.grid(), &choice, &exact);
     let is_new = overlap(&moving.samples, &samples) <= SAME;
     let found = || report(record, search, clauses, samples, p_value);
     is_new.then(|| FailsWhere { beside_speed: true, ..found() })
+}
+
+/// The clauses of `choice` with bounds of three digits, or up to six where fewer would be
+/// another condition, and the samples for which these hold. Where even six do not do, as
+/// within values that are all but equal, those of them that gain most.
+fn in_few_digits(
+    record: &ResidualRecord,
+    search: &Search,
+    grid: &Grid,
+    choice: &Choice,
+    exact: &[Row],
+) -> (Vec<Clause>, Vec<Row>) {
+    let said = |digits: &dyn Fn(f64) -> f64| -> Vec<Clause> {
+        let selections = choice.selections.iter();
+        selections.flat_map(|one| clauses(record, &grid.axes[one.axis], *one, digits)).collect()
+    };
+    // Rounded bounds are another condition; one with as much gain says the same.
+    let wanted = search.gain(exact);
+    // One set of samples at a time: each may be as long as the log.
+    let mut most: Option<(Vec<Clause>, Vec<Row>, f64)> = None;
+    for digits in 3..=6 {
+        let clauses = said(&|cut| to_digits(cut, digits));
+        let samples = holding(record, &clauses);
+        let gain = search.gain(&samples);
+        let is_near = (gain - wanted).abs() < DIGITS_COST;
+        if is_near || most.as_ref().is_none_or(|(.., most)| gain >= *most) {
+            most = Some((clauses, samples, gain));
+        }
+        if is_near {
+            break;
+        }
+    }
+    most.map_or_else(Default::default, |(clauses, samples, _)| (clauses, samples))
 }
 
 fn report(
@@ -258,31 +308,44 @@ fn overlap(a: &[Row], b: &[Row]) -> f64 {
     common as f64 / (a.len() + b.len() - common).max(1) as f64
 }
 
-/// Selections in words.
-fn clauses_of(record: &ResidualRecord, grid: &Grid, selections: &[Selection]) -> Vec<Clause> {
-    selections.iter().flat_map(|one| clauses(record, &grid.axes[one.axis], *one)).collect()
+/// The samples for which all of `clauses` hold.
+fn holding(record: &ResidualRecord, clauses: &[Clause]) -> Vec<Row> {
+    let holds = |row: Row, clause: &Clause| {
+        let value = clause.feature.value(record.samples(), row as usize);
+        value.is_some_and(|value| clause.holds(record, value))
+    };
+    record.rows().filter(|row| clauses.iter().all(|clause| holds(*row, clause))).collect()
 }
 
-/// A selection in words.
+/// A selection in words, its bounds as `digits` makes them.
 fn clauses(
     record: &ResidualRecord,
     axis: &Axis,
-    Selection { from, to, .. }: Selection,
+    Selection { span, .. }: Selection,
+    digits: &dyn Fn(f64) -> f64,
 ) -> Vec<Clause> {
     let feature = axis.feature;
+    let (from, to) = (usize::from(span.from), usize::from(span.to));
     if feature.has_kinds() {
         let level = axis.levels.as_ref().and_then(|levels| levels.get(from)).copied();
         return level.map(|level| kind(record, feature, level)).into_iter().collect();
     }
-    let clause = |relation, cut: f64| Clause { feature, relation, bound: Bound::Number(cut) };
     let lower = from.checked_sub(1).and_then(|cut| axis.cuts.get(cut)).map(|&cut| {
-        let is_at = |value: f64| value.partial_cmp(&cut) == Some(std::cmp::Ordering::Equal);
-        let touched = feature.values(record.samples()).any(is_at);
-        clause(if touched { Relation::AtLeast } else { Relation::Above }, cut)
+        let cut = digits(cut);
+        let touched =
+            feature.values(record.samples()).any(|value| value.partial_cmp(&cut) == Some(EQUAL));
+        let relation = if touched { Relation::AtLeast } else { Relation::Above };
+        Clause { feature, relation, bound: Bound::Number(cut) }
     });
-    let upper = axis.cuts.get(to - 1).map(|&cut| clause(Relation::Below, cut));
+    let upper = axis.cuts.get(to - 1).map(|&cut| Clause {
+        feature,
+        relation: Relation::Below,
+        bound: Bound::Number(digits(cut)),
+    });
     lower.into_iter().chain(upper).collect()
 }
+
+const EQUAL: std::cmp::Ordering = std::cmp::Ordering::Equal;
 
 /// A trial, or a direction.
 fn kind(record: &ResidualRecord, feature: Feature, level: f64) -> Clause {
@@ -362,8 +425,15 @@ mod tests {
 
     #[test]
     fn bounds_have_no_more_digits_than_matter() {
-        let found = fails_where(&failing((0..4000).map(|k| f64::from(k) / 100.0).collect(), 1230));
-        assert!(found[0].condition.len() <= "output < 12.3".len(), "{}", found[0].condition);
+        let record = failing((0..4000).map(|k| f64::from(k) / 100.0).collect(), 1230);
+        let search = Search::new(&record, record.shares_of_what_arises().unwrap());
+        // The grid's own thresholds have all digits.
+        let choice = search.best_on_one_feature(&record.rows().collect::<Vec<_>>()).unwrap().0;
+        let exact = search.grid().members(&choice.selections, record.rows());
+        let (clauses, samples) = in_few_digits(&record, &search, search.grid(), &choice, &exact);
+        assert_eq!(samples, holding(&record, &clauses));
+        assert!(clauses[0].to_string().len() <= "output < 12.3".len(), "{}", clauses[0]);
+        assert!((search.gain(&samples) - search.gain(&exact)).abs() < DIGITS_COST);
         // Levels that only the fifth digit parts.
         let near = |k| if k < 2000 { 12.3451 } else { 12.3459 };
         let found = fails_where(&failing((0..4000).map(near).collect(), 2000));

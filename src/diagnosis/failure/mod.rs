@@ -22,7 +22,7 @@ mod threshold;
 
 pub use conditions::{Bound, Clause, FailsWhere, Relation, fails_where};
 pub use feature::Feature;
-pub use record::{ResidualRecord, Samples, Units};
+pub use record::{RecordError, ResidualRecord, Samples, Units};
 pub use regions::{Region, regions};
 pub use segments::{WorstSegment, worst_segments};
 

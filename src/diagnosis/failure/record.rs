@@ -46,6 +46,19 @@ pub struct Units {
     pub output: Option<String>,
 }
 
+/// Why samples do not make a [`ResidualRecord`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{what}` does not go with {samples} samples of the residual, at {index}")]
+pub struct RecordError {
+    /// A column, or `segments`.
+    pub what: &'static str,
+    /// The first value or segment that is no finite number, of no known trial, or not after the
+    /// one before; the length of a column with another one.
+    pub index: usize,
+    /// Samples of the residual.
+    pub samples: usize,
+}
+
 /// The residual of one joint with all that it is held against.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResidualRecord {
@@ -60,16 +73,36 @@ impl ResidualRecord {
     /// `segments` are the spans of samples, counted from 0, that belong to one input step
     /// each. They are in order, do not overlap, and need not cover all samples.
     ///
-    /// `None` where a residual or an error of the speed is no finite number, or columns differ in
-    /// length.
-    pub fn new(samples: Samples, trials: Vec<String>, segments: Vec<Range<usize>>) -> Option<Self> {
-        let Samples { residual, speed_error, .. } = &samples;
-        let count = residual.len();
-        let has_errors = speed_error.is_empty() || speed_error.len() == count;
-        let are_finite = residual.iter().chain(speed_error).all(|value| value.is_finite());
-        let is_whole = samples.lengths().iter().all(|length| *length == count) && has_errors;
-        let fits = is_whole && are_finite && Row::try_from(count).is_ok();
-        fits.then_some(Self { samples, trials, segments })
+    /// # Errors
+    /// [`RecordError`], the first that is found.
+    pub fn new(
+        samples: Samples,
+        trials: Vec<String>,
+        segments: Vec<Range<usize>>,
+    ) -> Result<Self, RecordError> {
+        let count = samples.residual.len();
+        let error = |what: &'static str, index: usize| RecordError { what, index, samples: count };
+        if Row::try_from(count).is_err() {
+            return Err(error("residual", count));
+        }
+        if let Some((column, length)) = samples.lengths().find(|(_, length)| *length != count) {
+            return Err(error(column, length));
+        }
+        for (column, values) in
+            [("residual", &samples.residual), ("speed_error", &samples.speed_error)]
+        {
+            if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+                return Err(error(column, index));
+            }
+        }
+        let is_unknown = |trial: &u32| *trial as usize >= trials.len();
+        if let Some(index) = samples.trial.iter().position(is_unknown) {
+            return Err(error("trial", index));
+        }
+        if let Some(index) = misplaced(&segments, count) {
+            return Err(error("segments", index));
+        }
+        Ok(Self { samples, trials, segments })
     }
 
     /// The columns.
@@ -132,11 +165,31 @@ fn squared_shares(values: &[f64]) -> Option<Vec<f64>> {
 }
 
 impl Samples {
-    fn lengths(&self) -> [usize; 7] {
-        let Self { input, output, speed, time_s, since_step_s, hold_s, trial, .. } = self;
-        let [a, b, c, d, e, f] = [input, output, speed, time_s, since_step_s, hold_s].map(Vec::len);
-        [a, b, c, d, e, f, trial.len()]
+    fn lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        let speed_errors = Some(self.speed_error.len()).filter(|length| *length > 0);
+        let columns = [
+            ("input", self.input.len()),
+            ("output", self.output.len()),
+            ("speed", self.speed.len()),
+            ("time_s", self.time_s.len()),
+            ("since_step_s", self.since_step_s.len()),
+            ("hold_s", self.hold_s.len()),
+            ("trial", self.trial.len()),
+        ];
+        columns.into_iter().chain(speed_errors.map(|length| ("speed_error", length)))
     }
+}
+
+/// The index of the first segment that is not after the one before it.
+fn misplaced(segments: &[Range<usize>], samples: usize) -> Option<usize> {
+    let mut end = 0;
+    for (index, segment) in segments.iter().enumerate() {
+        if segment.start < end || segment.is_empty() || segment.end > samples {
+            return Some(index);
+        }
+        end = segment.end;
+    }
+    None
 }
 
 #[cfg(test)]
@@ -159,11 +212,19 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_no_record() {
-        let record = |samples| ResidualRecord::new(samples, vec!["a".into()], vec![0..2]);
-        assert!(record(samples(4)).is_some());
-        assert!(record(Samples { speed: vec![0.0; 3], ..samples(4) }).is_none());
-        assert!(record(Samples { residual: vec![0.0, f64::INFINITY], ..samples(2) }).is_none());
+    fn what_does_not_fit_is_named() {
+        let record = |samples, segments| ResidualRecord::new(samples, vec!["a".into()], segments);
+        assert!(record(samples(4), vec![0..2, 2..4]).is_ok());
+        let error = |what, index, samples| Err(RecordError { what, index, samples });
+        let short = Samples { speed: vec![0.0; 3], ..samples(4) };
+        assert_eq!(record(short, vec![]), error("speed", 3, 4));
+        let infinite = Samples { residual: vec![0.0, f64::INFINITY], ..samples(2) };
+        assert_eq!(record(infinite, vec![]), error("residual", 1, 2));
+        let strange = Samples { trial: vec![0, 1], ..samples(2) };
+        assert_eq!(record(strange, vec![]), error("trial", 1, 2));
+        for segments in [vec![0..2, 1..3], vec![0..1, 3..5], vec![0..1, 2..2]] {
+            assert_eq!(record(samples(4), segments), error("segments", 1, 4));
+        }
     }
 
     #[test]

@@ -1,20 +1,19 @@
 //! The search for the conditions that hold most of an error.
 
-use super::feature::Feature;
-use super::grid::{Grid, Selection};
+use super::grid::{Choice, Family, Grid};
 use super::record::{ResidualRecord, Row, of_row};
-use super::significance::{Excess, Shuffler, blocks};
+use super::significance::{Chance, Excess, Shuffler, blocks};
 
 /// The gain below which a condition is not worth acting on.
 pub(super) const MIN_GAIN: f64 = 0.1;
 
-/// What a second clause must add to the gain to be worth reading.
-const CLAUSE_COST: f64 = 0.05;
+/// What a threshold with more digits must add to the gain.
+pub(super) const DIGITS_COST: f64 = 0.01;
 
 /// A record made ready to be searched.
 #[derive(Debug)]
 pub(super) struct Search {
-    pub(super) grid: Grid,
+    grid: Grid,
     block_of: Vec<u32>,
     shares: Vec<f64>,
 }
@@ -22,44 +21,78 @@ pub(super) struct Search {
 impl Search {
     /// `shares` of the squared error for each sample of `record`.
     pub(super) fn new(record: &ResidualRecord, shares: Vec<f64>) -> Self {
-        Self { grid: Grid::of(record, |_| true), block_of: blocks(record), shares }
+        Self { grid: Grid::new(record), block_of: blocks(record), shares }
     }
 
-    /// The best clause for the samples `rows` that chance does not explain, with a second one among
-    /// its samples where that adds enough, and the larger of their p-values.
-    pub(super) fn best(&self, rows: &[Row]) -> Option<(Vec<Selection>, f64)> {
-        let (first, p_value) = self.best_clause(rows, |_| true)?;
-        let inside = self.grid.members(&[first], rows.iter().copied());
-        let wanted = self.gain_among(rows, &inside) + CLAUSE_COST;
-        let adds_enough = |second: Selection| {
-            let both = self.grid.members(&[second], inside.iter().copied());
-            self.gain_among(rows, &both) > wanted
-        };
-        let Some((second, of_second)) = self.best_clause(&inside, adds_enough) else {
-            return Some((vec![first], p_value));
-        };
-        let selections = if first.axis == second.axis {
-            let (from, to) = (first.from.max(second.from), first.to.min(second.to));
-            vec![Selection { from, to, ..first }]
-        } else if first.axis < second.axis {
-            vec![first, second]
-        } else {
-            vec![second, first]
-        };
-        Some((selections, p_value.max(of_second)))
+    /// The features, cut into parts.
+    pub(super) fn grid(&self) -> &Grid {
+        &self.grid
     }
 
-    /// The best clause for the samples `rows`, where it `is_worth` more than chance, with its p-value.
-    fn best_clause(
-        &self,
-        rows: &[Row],
-        is_worth: impl Fn(Selection) -> bool,
-    ) -> Option<(Selection, f64)> {
+    /// The best condition for the samples `rows` that chance does not explain.
+    pub(super) fn best(&self, rows: &[Row]) -> Option<(Choice, f64)> {
         let excess = Excess::new(&self.shares, rows)?;
-        let (best, score) = self.grid.best(&self.grid.part_sums(rows, |row| excess.of(row)));
-        let best = best.filter(|best| is_worth(*best))?;
-        let p_value = Shuffler::new(&self.grid, rows, &excess, &self.block_of).p_value(score)?;
-        Some((best, p_value))
+        let (one, one_p, chance) = self.best_of_one(rows, &excess)?;
+        let pair = self.grid.best_pair(rows, |row| excess.of(row));
+        if pair.score <= one.score {
+            return Some((one, one_p));
+        }
+        let pair_p = self.pair_p_value(&pair, rows, &chance);
+        Some(pair_p.map_or((one, one_p), |p_value| (pair, p_value)))
+    }
+
+    /// The best condition on one feature for the samples `rows`, likewise.
+    pub(super) fn best_on_one_feature(&self, rows: &[Row]) -> Option<(Choice, f64)> {
+        let (choice, p_value, _) = self.best_of_one(rows, &Excess::new(&self.shares, rows)?)?;
+        Some((choice, p_value))
+    }
+
+    fn best_of_one(&self, rows: &[Row], excess: &Excess<'_>) -> Option<(Choice, f64, Chance)> {
+        let sums = self.grid.part_sums(rows, |row| excess.of(row));
+        let one = self.grid.best_of(&sums);
+        if one.selections.is_empty() {
+            return None;
+        }
+        let shuffler = Shuffler::new(&self.grid, rows, excess, &self.block_of);
+        let chance = shuffler.stands_out(Family::OneFeature, one.score)?;
+        let p_value = chance.p_value(Family::OneFeature, one.score)?;
+        Some((one, p_value, chance))
+    }
+
+    /// The p-value of two clauses: of either alone, and of the other among its samples.
+    fn pair_p_value(&self, pair: &Choice, rows: &[Row], chance: &Chance) -> Option<f64> {
+        let [a, b] = pair.selections.as_slice() else { return None };
+        let orders = [(*a, *b), (*b, *a)];
+        let p_value = |(first, second)| {
+            let inside = self.grid.members(&[first], rows.iter().copied());
+            let alone = chance.p_value(Family::OneClause, self.gain_among(rows, &inside))?;
+            let gain =
+                self.gain_among(&inside, &self.grid.members(&[second], inside.iter().copied()));
+            let excess = Excess::new(&self.shares, &inside)?;
+            let shuffler = Shuffler::new(&self.grid, &inside, &excess, &self.block_of);
+            let chance = shuffler.stands_out(Family::OneClause, gain)?;
+            // Both clauses must stand out: the larger of the two.
+            Some(alone.max(chance.p_value(Family::OneClause, gain)?))
+        };
+        orders.into_iter().find_map(p_value)
+    }
+
+    /// The condition with its thresholds moved to where the gain is largest, and the grid
+    /// it is of; none when that gains too little to be worth the digits.
+    pub(super) fn sharpened(
+        &self,
+        record: &ResidualRecord,
+        choice: &Choice,
+        rows: &[Row],
+    ) -> Option<(Grid, Choice)> {
+        let excess = Excess::new(&self.shares, rows)?;
+        let excess = |row| excess.of(row);
+        let grid = self.grid.about(record, choice)?;
+        let sharp = match choice.selections.len() {
+            1 => grid.best_of(&grid.part_sums(rows, excess)),
+            _ => grid.best_pair(rows, excess),
+        };
+        (sharp.score > choice.score + DIGITS_COST).then_some((grid, sharp))
     }
 
     /// Share of the squared error in the samples `rows`.
@@ -102,8 +135,7 @@ impl Search {
             for share in &mut shares {
                 *share /= sum;
             }
-            let drives = [Feature::Input, Feature::AbsInput, Feature::Speed, Feature::AbsSpeed];
-            let grid = Grid::of(record, |feature| !drives.contains(&feature));
+            let grid = Grid::beside_motion(record);
             Self { grid, block_of: self.block_of.clone(), shares }
         })
     }

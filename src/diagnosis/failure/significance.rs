@@ -18,13 +18,16 @@ use std::ops::Range;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-use super::grid::Grid;
+use super::grid::{BestScores, Family, Grid};
 use super::record::{ResidualRecord, Row, of_row};
 
 /// Shuffled records that a condition is held against.
 const SHUFFLES: u32 = 199;
 
-/// Shuffles whose best clause may be as good: p is then (1 + 1)/(1 + 199), the level of 0.01.
+/// The largest p-value that counts.
+const LEVEL: f64 = 0.01;
+
+/// Shuffles whose best condition may be as good: p is then (1 + 1)/(1 + 199), the level.
 const ALLOWED: u32 = 1;
 
 /// Blocks below which there are too few orders for a p-value.
@@ -119,6 +122,20 @@ fn correlation_time(residual: &[f64], most: usize) -> usize {
 /// the part. Of a feature that is noise there are as many as rows.
 type Run = (Row, u8);
 
+/// The best scores that chance gives.
+pub(super) struct Chance {
+    best: Vec<BestScores>,
+}
+
+impl Chance {
+    /// `p = (1 + shuffles that are as good) / (1 + shuffles)`; none above the level.
+    pub(super) fn p_value(&self, family: Family, score: f64) -> Option<f64> {
+        let as_good = self.best.iter().filter(|best| best[family as usize] >= score).count();
+        let p_value = (1.0 + as_good as f64) / (1.0 + self.best.len() as f64);
+        (p_value <= LEVEL).then_some(p_value)
+    }
+}
+
 /// The squared error of each row beyond an even spread, as shares of that of all rows.
 pub(super) struct Excess<'a> {
     shares: &'a [f64],
@@ -162,26 +179,28 @@ impl<'a> Shuffler<'a> {
         Self { grid, excess, blocks, runs }
     }
 
-    /// How often the best clause of a shuffled record scores `score` or more; none above the level, or
-    /// where there are too few blocks.
-    pub(super) fn p_value(&self, score: f64) -> Option<f64> {
+    /// The best scores of all shuffled records, if a condition of `family` that scores
+    /// `score` stands out from them; none either when there are too few blocks.
+    pub(super) fn stands_out(&self, family: Family, score: f64) -> Option<Chance> {
         if self.blocks.len() < MIN_BLOCKS {
             return None;
         }
         let mut random = ChaCha8Rng::seed_from_u64(SEED);
         let mut order: Vec<usize> = (0..self.blocks.len()).collect();
         let mut cumulative = Vec::with_capacity(self.excess.len() + 1);
+        let mut best = Vec::new();
         let mut as_good = 0;
         for _ in 0..SHUFFLES {
             self.shuffle(&mut order, &mut random, &mut cumulative);
-            let (_, best) = self.grid.best(&self.part_sums(&cumulative));
-            as_good += u32::from(best >= score);
+            let scores = self.grid.best_scores(&self.part_sums(&cumulative));
+            as_good += u32::from(scores[family as usize] >= score);
+            // Two of 199 as good: p = 3/200 > LEVEL, whatever follows.
             if as_good > ALLOWED {
                 return None;
             }
+            best.push(scores);
         }
-        // p = (1 + shuffles that are as good)/(1 + shuffles).
-        Some(f64::from(1 + as_good) / f64::from(1 + SHUFFLES))
+        Some(Chance { best })
     }
 
     /// Cumulative sums of the excess in a new order.
