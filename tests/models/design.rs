@@ -341,7 +341,7 @@ fn an_output_that_regulates_itself_is_played_at_levels_of_its_log() {
     assert!(output.iter().all(|y| (2.0..=33.0).contains(y)));
     let said = desk.run("design speed.csv --output-range=2,33 --duration 60 -o in.csv -q");
     let said = String::from_utf8(said.stdout).unwrap();
-    assert!(said.contains("until the output settles") && said.contains("first order"), "{said}");
+    assert!(said.contains("until the output settles"), "{said}");
     let said = desk.refusal("design speed.csv --output-range=4.5,5.5 -o none.csv");
     assert!(said.contains("the output regulates itself"), "{said}");
 }

@@ -36,9 +36,14 @@ fn a_missing_dead_band_is_named_with_its_numbers_and_its_command_works() {
     assert!(ranked.len() > 1, "{ranked:?}");
 
     let words = boom["in_words"].as_str().unwrap();
-    for part in
-        ["out = max(in - 0.", "lower = -0.", " ± ", " V", "The residual is largest in ", "stiction"]
-    {
+    for part in [
+        "out = max(in - upper, 0)",
+        "lower = -0.",
+        " ± ",
+        " V",
+        "The residual is largest in ",
+        "stiction",
+    ] {
         assert!(words.contains(part), "no `{part}` in: {words}");
     }
     assert_eq!(boom["commands"], json!(["tauscope add dead_band log.csv --model model.toml"]));
@@ -86,7 +91,7 @@ fn an_integrator_lacks_nothing_and_its_limits_are_said() {
     assert_eq!(boom["ranking"], json!([]));
     assert_eq!(boom["commands"], json!([]));
     let words = boom["in_words"].as_str().unwrap();
-    assert!(words.contains("No lack of fit is shown") && words.contains("times the noise"));
+    assert!(words.contains("No lack of fit is shown") && words.contains("the noise"));
     assert!(words.contains("input -1.5 to 1.5 V"), "{words}");
     let text = String::from_utf8(desk.run("explain log.csv").stdout).unwrap();
     assert!(text.starts_with("boom: no missing effect found\n"), "{text}");
@@ -185,10 +190,10 @@ fn what_cannot_be_used_is_refused() {
 
 #[cfg(feature = "rrd")]
 #[test]
-fn the_model_and_the_best_candidate_are_recorded() {
+fn the_model_and_its_ranking_are_recorded() {
     let desk = Desk::with(vec![banded("boom")]);
     let models = desk.recorded_models("explain log.csv --effects dead_band");
-    assert_eq!(models, ["integrator", "with dead_band"]);
+    assert_eq!(models, ["integrator"]);
     assert_eq!(desk.recorded_revisions(), 1);
 }
 

@@ -187,7 +187,7 @@ mod interrupted {
             let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
             let told = BufReader::new(child.stderr.take().unwrap());
             let mut program = Self { child, told };
-            program.wait_for("revision 0");
+            program.wait_for("integrator");
             program
         }
 

@@ -367,7 +367,7 @@ fn effects_of_the_dynamics_are_exact() {
 #[test]
 fn effects_of_the_load_are_those_of_the_midpoint_rule() {
     assert_within(&[("gravity_load", &[0.5, 30.0, 2.0])], 5e-5);
-    assert_within(&[("position_gain", &[0.006, -0.000_05, 1e-6, 20.0])], 5e-5);
+    assert_within(&[("position_gain", &[0.006, -0.000_05, 1e-7, 20.0])], 5e-5);
     assert_within(&[("thermal_drift", &[0.05, 6.0])], 1e-7);
     assert_within(&[("supply_droop", &[0.4])], 1e-10);
     assert_within(&[("leakage", &[0.3, 15.0])], 1e-5);

@@ -83,7 +83,7 @@ fn the_step_under_the_cursor_is_marked_in_every_plot() {
         let kinds = ["start", "stop", "change", "reversal"].map(&page);
         let drawn = kinds.iter().filter(|kind| back.chunks.contains_key(*kind));
         let drawn = drawn.map(|kind| back.points(kind)).collect::<Vec<_>>().concat();
-        assert_eq!(drawn.len(), 5 * steps.len());
+        assert_eq!(drawn.len(), 6 * steps.len());
         let marked = back.rows(&page("here"), "Points2D:positions", places);
         assert!(
             marked
