@@ -70,7 +70,9 @@ fn without_faults(input: Cow<'_, [f64]>, noise: f64, period_s: f64) -> Cow<'_, [
         return input;
     }
     let mut mended = input.into_owned();
-    faults.into_iter().for_each(|fault| mended[fault] = mended[fault - 1]);
+    for fault in faults {
+        mended[fault] = mended[fault - 1];
+    }
     Cow::Owned(mended)
 }
 

@@ -88,7 +88,9 @@ impl Candidates {
         found.fit_before(values, offset);
         found.fit_after(values, offset);
         let mut all = RunningLine::default();
-        values.iter().for_each(|y| all.push(y - offset));
+        for y in values {
+            all.push(y - offset);
+        }
         found.one_line = all.sse();
         // Algorithm 1: q_i is where SSE_f is least.
         let best = found.lowest(TIE * sum_of_squares(values, offset), latest);

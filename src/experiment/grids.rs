@@ -55,7 +55,7 @@ pub(super) fn grids(
     let is_uniform = uniform.iter().map(Option::is_some);
     let laid = clocks.into_iter().zip(periods).zip(is_uniform);
     let laid = laid.map(|((clock, period), is_uniform)| Laid { clock, period, is_uniform });
-    Ok((grids, lines(&laid.collect::<Vec<_>>(), repair.resample.is_some(), number)))
+    Ok((grids, lines(&laid.collect::<Vec<_>>(), repair.resample, number)))
 }
 
 /// The period of each trial's grid: trials of one rate share their mean, each counting by its rows, as a round
@@ -171,7 +171,7 @@ type Number<'a> = &'a dyn Fn(usize, usize) -> u64;
 type Count = fn(&Clock) -> Option<(usize, usize)>;
 
 /// A line on each thing that was found in the clocks of a log.
-fn lines(trials: &[Laid], is_resampled: bool, number: Number<'_>) -> Vec<String> {
+fn lines(trials: &[Laid], resample: Option<SamplePeriod>, number: Number<'_>) -> Vec<String> {
     const KINDS: [(Count, &str); 3] = [
         (
             |clock| clock.found.twice,
@@ -186,7 +186,7 @@ fn lines(trials: &[Laid], is_resampled: bool, number: Number<'_>) -> Vec<String>
         let (trial, (count, row)) = found.next()?;
         Some((count + found.map(|(_, (more, _))| more).sum::<usize>(), number(trial, row)))
     };
-    let mut lines = on_periods(trials, is_resampled, number);
+    let mut lines = on_periods(trials, resample, number);
     lines.extend(on_gaps(trials, number));
     for (count, says) in KINDS {
         if let Some((count, row)) = all(count) {
@@ -204,8 +204,9 @@ fn lines(trials: &[Laid], is_resampled: bool, number: Number<'_>) -> Vec<String>
 }
 
 /// A line on each rate and kind of clock, by the worst of its trials.
-fn on_periods(trials: &[Laid], is_resampled: bool, number: Number<'_>) -> Vec<String> {
-    let mut kinds: Vec<((Evenness, f64), Vec<(usize, &Clock)>)> = Vec::new();
+fn on_periods(trials: &[Laid], resample: Option<SamplePeriod>, number: Number<'_>) -> Vec<String> {
+    type Kind<'a> = ((Evenness, f64), Vec<(usize, &'a Clock)>);
+    let mut kinds: Vec<Kind<'_>> = Vec::new();
     for (trial, Laid { clock, period, .. }) in trials.iter().enumerate().filter(|(_, t)| t.is_odd())
     {
         let kind = (clock.evenness, *period);
@@ -229,7 +230,7 @@ fn on_periods(trials: &[Laid], is_resampled: bool, number: Number<'_>) -> Vec<St
             let to = duration(to_s);
             format!("{whose}the times are rounded to {to}: samples are placed evenly, {grid} apart")
         } else {
-            let what = if !is_resampled && evenness == Evenness::Jitters {
+            let what = if resample.is_none() && evenness == Evenness::Jitters {
                 "samples are placed"
             } else {
                 "the output is interpolated and the input held"

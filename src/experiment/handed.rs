@@ -123,7 +123,9 @@ fn source(path: &Path, joints: &[Joint]) -> Source {
 
 /// Adds numbers as they lie in memory.
 fn add(sum: &mut Sum, values: &[f64]) {
-    values.iter().for_each(|value| sum.add(&value.to_le_bytes()));
+    for value in values {
+        sum.add(&value.to_le_bytes());
+    }
 }
 
 /// Opens a log in memory.

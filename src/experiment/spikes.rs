@@ -42,7 +42,9 @@ impl Spikes {
         let without: Vec<_> = trials.iter().zip(&self.0).map(without).collect();
         let of = |(trial, without): (&Trial, &Vec<Range<usize>>)| {
             let mut weights = vec![1.0; trial.len()];
-            without.iter().for_each(|range| weights[range.clone()].fill(0.0));
+            for range in without {
+                weights[range.clone()].fill(0.0);
+            }
             weights
         };
         let any = without.iter().any(|ranges| !ranges.is_empty());

@@ -61,9 +61,9 @@ impl Head {
     /// Refuses columns whose names are none: each page, table and path of an output would bear them.
     pub(super) fn check_names(
         &self,
-        columns: impl Iterator<Item = usize>,
+        mut columns: impl Iterator<Item = usize>,
     ) -> Result<(), ReadError> {
-        columns.map(|column| check_name(&self.text(column), self.header_row)).collect()
+        columns.try_for_each(|column| check_name(&self.text(column), self.header_row))
     }
 
     /// Refuses a table without a header.

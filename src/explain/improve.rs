@@ -86,23 +86,28 @@ pub fn improve(
     {
         turn_to(&mut ended, other);
     }
-    let mut verdict = ended.verdict;
+    let verdict = ended.verdict;
     let attribution = if ended.was_stopped {
         Attribution::default()
     } else {
         let grown = Grown { record, first: &start, whole: &ended.fit, misfit, options };
         attributed(&grown, ended.refinements, workers, visit)
     };
-    // As many effects as may be added were, and each of them may only imitate one from outside the catalogue.
-    if verdict == Verdict::MissingEffect && attribution.is_doubtful_throughout() {
-        verdict = Verdict::Unexplained;
-        let last = revisions.iter_mut().rfind(|revision| !revision.ranking.is_empty());
+    credible(Improvement { revisions, verdict, attribution })
+}
+
+/// `found`, unexplained where as many effects as may be added were, and each of them may only imitate one
+/// from outside the catalogue: the next one would, too.
+fn credible(mut found: Improvement) -> Improvement {
+    if found.verdict == Verdict::MissingEffect && found.attribution.is_doubtful_throughout() {
+        found.verdict = Verdict::Unexplained;
+        let last = found.revisions.iter_mut().rfind(|revision| !revision.ranking.is_empty());
         let next = last.into_iter().flat_map(|revision| &mut revision.ranking);
-        next.filter(|one| one.judgement.is_added()).for_each(|one| {
+        for one in next.filter(|one| one.judgement.is_added()) {
             one.judgement.refusal = Some(Refusal::NotTheWhole);
-        });
+        }
     }
-    Improvement { revisions, verdict, attribution }
+    found
 }
 
 /// A search that starts anew from elsewhere; its steps are those from the first model on.

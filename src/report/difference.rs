@@ -63,7 +63,8 @@ pub(crate) fn against_text(against: &Against<'_>) -> String {
         text += "\n";
     }
     if !against.only_there.is_empty() {
-        text += &format!("joints that are not here: {}\n", against.only_there.join(", "));
+        let names = against.only_there.join(", ");
+        text += &["joints that are not here: ", &names, "\n"].concat();
     }
     let all: usize = against.joints.iter().map(|(_, found)| found.differing().count()).sum();
     let left_out = all - table.rows.len();

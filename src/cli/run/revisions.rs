@@ -105,7 +105,7 @@ impl<'a> Start<'a> {
 
 /// `improved` after a search that only the limit has ended, or who pressed `interrupt`, where more is
 /// missing.
-pub(crate) fn ended<'a>(improved: ImprovedJoint<'a>, interrupt: Interrupt) -> ImprovedJoint<'a> {
+pub(crate) fn ended(improved: ImprovedJoint<'_>, interrupt: Interrupt) -> ImprovedJoint<'_> {
     let verdict = improved.finding.verdict;
     let is_stopped = interrupt.was_pressed();
     let interrupted = is_stopped && verdict != Verdict::Adequate;

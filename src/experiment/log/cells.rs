@@ -135,7 +135,9 @@ fn named(table: &Table, stem: Option<&str>) -> Vec<TrialRows> {
     }
     let mut trials = table.trials.clone();
     if let Some(stem) = stem {
-        trials.iter_mut().for_each(|trial| trial.label = format!("{stem}/{}", trial.label));
+        for trial in &mut trials {
+            trial.label = format!("{stem}/{}", trial.label);
+        }
     }
     trials
 }

@@ -227,7 +227,9 @@ fn turns_at_jumps(trial: &[f64], range: f64) -> Vec<f64> {
         // From the middle of what is before to that of what is after, by the slopes of both.
         let [(first, first_way), (second, second_way)] = [before, behind].map(|part| {
             let mut line = RunningLine::default();
-            part.iter().for_each(|value| line.push(*value));
+            for value in part {
+                line.push(*value);
+            }
             (line.mean(), 0.5 * line.slope() * part.len() as f64)
         });
         moves.then(|| (second - first - first_way - second_way).abs())

@@ -143,7 +143,9 @@ impl Columns<'_> {
         let own = |column: usize| self.name(column).map(&own).unwrap_or_default();
         let mut with: HashMap<String, Vec<usize>> = HashMap::new();
         for output in outputs {
-            own(*output).into_iter().for_each(|word| with.entry(word).or_default().push(*output));
+            for word in own(*output) {
+                with.entry(word).or_default().push(*output);
+            }
         }
         let mut pairs = Vec::new();
         for input in inputs {
@@ -324,8 +326,9 @@ impl Columns<'_> {
             format!("{}{}", by.unwrap_or_default(), says.unwrap_or_default())
         });
         if let Some(follows) = pair.follows {
-            why[1] +=
-                &format!("; its rate of change follows the input (correlation {follows:+.2})");
+            let follows =
+                format!("its rate of change follows the input (correlation {follows:+.2})");
+            why[1] = [&why[1], "; ", &follows].concat();
         }
         why
     }

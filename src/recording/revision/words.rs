@@ -21,21 +21,15 @@ pub(super) fn page(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>, place
         format!("## Revision {revision} of {last}: {}\n", plain(&change_in_words(step))),
         format!("**{}**\n", plain(&fall(improved, place))),
     ];
-    match improved.revisions.get(place + 1) {
-        Some(next) => {
-            let compared = ComparedJoint {
-                revision,
-                comparison: &step.comparison,
-                ..improved.finding.compared
-            };
-            let fails = Finding { compared, ..improved.finding }.fails();
-            lines.extend(fails.iter().map(|one| line(one.topic.0, &one.text())));
-            lines.push(line("Next", &change_in_words(next)));
-        }
-        None => {
-            lines.extend(conclusion.passages.iter().map(|one| line(one.topic.0, &one.text())));
-            lines.extend(conclusion.commands.iter().map(|command| format!("    {command}\n")));
-        }
+    if let Some(next) = improved.revisions.get(place + 1) {
+        let compared =
+            ComparedJoint { revision, comparison: &step.comparison, ..improved.finding.compared };
+        let fails = Finding { compared, ..improved.finding }.fails();
+        lines.extend(fails.iter().map(|one| line(one.topic.0, &one.text())));
+        lines.push(line("Next", &change_in_words(next)));
+    } else {
+        lines.extend(conclusion.passages.iter().map(|one| line(one.topic.0, &one.text())));
+        lines.extend(conclusion.commands.iter().map(|command| format!("    {command}\n")));
     }
     let several = if improved.revisions.len() > 1 { SEVERAL } else { "" };
     let decision = if layout.segments().next().is_some() { "`decision`, " } else { "" };

@@ -157,9 +157,13 @@ impl<'p> Frame<'p> {
     fn draw(&self, svg: &mut Svg) {
         let (behind, before): (Vec<&Mark>, Vec<&Mark>) =
             self.panel.marks.iter().partition(|mark| mark.is_ground());
-        behind.into_iter().for_each(|mark| self.mark(mark, svg));
+        for mark in behind {
+            self.mark(mark, svg);
+        }
         self.axes(svg);
-        before.into_iter().for_each(|mark| self.mark(mark, svg));
+        for mark in before {
+            self.mark(mark, svg);
+        }
         self.legend(svg);
     }
 
@@ -236,7 +240,9 @@ impl<'p> Frame<'p> {
                 }
             }
             Shape::Bars(bars) => {
-                bars.iter().for_each(|(a, b)| svg.block([self.at(*a), self.at(*b)], role, 1.0));
+                for (a, b) in bars {
+                    svg.block([self.at(*a), self.at(*b)], role, 1.0);
+                }
             }
             Shape::Words(words) => {
                 for ((x, y), text) in words.iter().map(|(place, text)| (self.at(*place), text)) {
