@@ -106,6 +106,8 @@ class EstimateOptions(ReadOptions, total=False):
     with the same settings. May be a list."""
     output: File | None
     """Record the results for the Rerun viewer."""
+    threads: int | None
+    """Threads to use [default: all processors]."""
     detail: Literal["auto", "full", "lean"] | None
     """Candidates in the recording: all, or fewer of accepted segments that are not doubtful
     [default: auto]."""
@@ -126,8 +128,6 @@ class EstimateOptions(ReadOptions, total=False):
     against_state: bool
     """Show what the delays depend on: speed, step size, direction, dwell, angle, time and further
     signals."""
-    threads: int | None
-    """Threads to use [default: all processors]."""
 
 
 class SweepOptions(ReadOptions, total=False):
@@ -181,10 +181,10 @@ class SweepOptions(ReadOptions, total=False):
     input: Literal["auto", "steps", "continuous"] | None
     """Take the input as steps, each of which has a delay, or as moving all the time, with one dead
     time over the record; `auto` decides it for each joint from the record [default: auto]."""
-    output: File | None
-    """Record the results for the Rerun viewer."""
     steps: bool
     """Show all steps that depend on a setting, not only those that do most."""
+    output: File | None
+    """Record the results for the Rerun viewer."""
     threads: int | None
     """Threads to use [default: all processors]."""
 
