@@ -6,14 +6,13 @@ use super::decide::Judge;
 use super::eligible::{eligible, free_forms, steady_refinements};
 use super::extension::Extension;
 use super::limiting_case::put_limiting_cases_first;
-use super::options::{Options, Tried};
+use super::options::Tried;
 use super::outcome::FitOutcome;
 use super::pairs::pairs;
 use super::screening::{Entrants, Surveyed, fitted, surveyed};
 use super::workers::Workers;
 use crate::diagnosis::{NEAR_NOISE, sensor_noise};
 use crate::effect::{Effect, RecordRange};
-use crate::fit::{Fit, FitRecord};
 use crate::model::{Component, JointModel};
 
 /// What is tried.
@@ -86,14 +85,11 @@ pub(super) fn rank_beside(
 /// A model, and what may be missing from it.
 struct Search<'a, 'r> {
     judge: &'a Judge<'a, 'r>,
-    record: &'a FitRecord<'r>,
-    base: &'a Fit,
     /// Standard deviation of the measurement noise, output units.
     noise_floor: f64,
     effects: Vec<&'static dyn Effect>,
     /// Finer forms of some of the effects.
     refinements: Vec<&'static dyn Effect>,
-    options: &'a Options,
     range: &'a RecordRange<'a>,
 }
 
@@ -103,14 +99,14 @@ impl<'a, 'r> Search<'a, 'r> {
         let noise_floor = sensor_noise(&record.measured().trials).unwrap_or(0.0);
         let effects = eligible(record, &base.model, options);
         let refinements = steady_refinements(record, &base.model, options);
-        Self { judge, record, base, noise_floor, effects, refinements, options, range }
+        Self { judge, noise_floor, effects, refinements, range }
     }
 
     /// The base with each effect by itself, ranked.
     fn singles(&self, scope: Scope, workers: &impl Workers) -> Vec<Candidate> {
         let with = |effect: &&'static dyn Effect| {
             let id = effect.spec().id;
-            let models = self.base.model.placements(&Component::neutral(*effect));
+            let models = self.judge.base.model.placements(&Component::neutral(*effect));
             models.into_iter().map(move |model| (id, model))
         };
         let models: Vec<_> = self.effects.iter().flat_map(with).collect();
@@ -137,9 +133,9 @@ impl<'a, 'r> Search<'a, 'r> {
         models: &[(&'static str, JointModel)],
         workers: &impl Workers,
     ) -> Vec<Extension> {
-        let are_asked_for = self.options.tried == Tried::Always;
+        let are_asked_for = self.judge.options.tried == Tried::Always;
         let entrants = if are_asked_for { Entrants::All } else { Entrants::Promising };
-        let mut surveys = surveyed(self.record, models, self.range, entrants, workers);
+        let mut surveys = surveyed(self.judge.record, models, self.range, entrants, workers);
         if !are_asked_for {
             let limit = surveys.first().map_or(0.0, |(_, best)| HOPELESS * best.cost);
             let hopeful = surveys.partition_point(|(_, survey)| survey.cost <= limit);
@@ -151,7 +147,7 @@ impl<'a, 'r> Search<'a, 'r> {
             if !are_asked_for && self.has_one_to_add(&extensions) {
                 break;
             }
-            let fits = fitted(self.record, some, self.range, workers).into_iter();
+            let fits = fitted(self.judge.record, some, self.range, workers).into_iter();
             extensions.extend(fits.map(|(id, fit)| Extension { effects: vec![id], fit }));
         }
         extensions
@@ -161,29 +157,31 @@ impl<'a, 'r> Search<'a, 'r> {
     fn put_likely_first(&self, surveys: &mut [Surveyed<'_, &'static str>]) {
         let outline = |((id, _), survey): &Surveyed<'_, &'static str>| Extension {
             effects: vec![*id],
-            fit: FitOutcome::of(self.record, survey.on(self.record, self.range)),
+            fit: FitOutcome::of(self.judge.record, survey.on(self.judge.record, self.range)),
         };
         let outlines = surveys.iter().map(outline).collect();
-        let ranked = compared(self.record, self.base, self.noise_floor, outlines);
+        let ranked = compared(self.judge.record, self.judge.base, self.noise_floor, outlines);
         surveys.sort_by_key(|((id, _), _)| ranked.iter().position(|one| one.effects == [*id]));
     }
 
     /// Whether nothing speaks against one of `extensions`.
     fn has_one_to_add(&self, extensions: &[Extension]) -> bool {
-        let candidates = compared(self.record, self.base, self.noise_floor, extensions.to_vec());
+        let candidates =
+            compared(self.judge.record, self.judge.base, self.noise_floor, extensions.to_vec());
         candidates.iter().any(|one| self.judge.judge(one).is_added())
     }
 
     /// The candidates of `ranking` among the best pairs of effects.
     fn beside_pairs(&self, ranking: &[Candidate], workers: &impl Workers) -> Vec<Candidate> {
-        let mut extensions = pairs(self.record, self.base, &self.effects, self.range, workers);
+        let mut extensions =
+            pairs(self.judge.record, self.judge.base, &self.effects, self.range, workers);
         extensions.extend(ranking.iter().map(Candidate::extension));
         self.compared(extensions)
     }
 
     /// The candidates of `ranking` beside effects of a free form.
     fn beside_free_forms(&self, ranking: &[Candidate], workers: &impl Workers) -> Vec<Candidate> {
-        let free = free_forms(self.record, &self.base.model, self.options);
+        let free = free_forms(self.judge.record, &self.judge.base.model, self.judge.options);
         let mut extensions = self.with_each(&free, workers);
         extensions.extend(ranking.iter().map(Candidate::extension));
         self.compared(extensions)
@@ -192,18 +190,18 @@ impl<'a, 'r> Search<'a, 'r> {
     /// The base as the first order that the output follows, where it does or is likely to follow the
     /// input itself: too far from an integrator for a descent to find it.
     fn as_first_order(&self) -> Option<Extension> {
-        let (effects, model) = self.record.follower()?.started_at(&self.base.model)?;
+        let (effects, model) = self.judge.record.follower()?.started_at(&self.judge.base.model)?;
         let is_allowed = |id: &&str| self.effects.iter().any(|effect| effect.spec().id == *id);
         if !effects.iter().all(is_allowed) {
             return None;
         }
-        self.extended(effects, &model).filter(|one| one.fit.cost < self.base.cost)
+        self.extended(effects, &model).filter(|one| one.fit.cost < self.judge.base.cost)
     }
 
     /// The base with each of `effects`, fitted.
     fn with_each(&self, effects: &[&'static dyn Effect], workers: &impl Workers) -> Vec<Extension> {
         let with = |effect: &&'static dyn Effect| {
-            let model = self.base.model.with(Component::neutral(*effect));
+            let model = self.judge.base.model.with(Component::neutral(*effect));
             self.extended(vec![effect.spec().id], &model)
         };
         workers.map(effects, with).into_iter().flatten().collect()
@@ -211,7 +209,7 @@ impl<'a, 'r> Search<'a, 'r> {
 
     /// `model`, which is the base with these `effects` more, fitted.
     fn extended(&self, effects: Vec<&'static str>, model: &JointModel) -> Option<Extension> {
-        let fit = FitOutcome::fitted(self.record, model, self.range)?;
+        let fit = FitOutcome::fitted(self.judge.record, model, self.range)?;
         Some(Extension { effects, fit })
     }
 
@@ -238,7 +236,7 @@ impl<'a, 'r> Search<'a, 'r> {
     /// The base with each step's own delay as it was measured, where these differ: delays may follow any
     /// law, or none.
     fn with_measured_delays(&self) -> Option<Extension> {
-        let Self { record, base, .. } = self;
+        let Judge { record, base, .. } = *self.judge;
         let component = self.effects.iter().find_map(|effect| Component::measured(*effect))?;
         let id = component.effect().spec().id;
         let model = base.model.with(component);
@@ -249,8 +247,9 @@ impl<'a, 'r> Search<'a, 'r> {
     }
 
     fn compared(&self, extensions: Vec<Extension>) -> Vec<Candidate> {
-        let mut candidates = compared(self.record, self.base, self.noise_floor, extensions);
-        put_limiting_cases_first(self.record, &mut candidates, self.options);
+        let mut candidates =
+            compared(self.judge.record, self.judge.base, self.noise_floor, extensions);
+        put_limiting_cases_first(self.judge.record, &mut candidates, self.judge.options);
         candidates
     }
 }
