@@ -47,7 +47,7 @@ static SPEC: Spec = Spec::new(
     Parameter::new("upper", "upper end of the band", Dimension::Input).between(0.0, UNLIMITED),
 ])
 .confused_with(&["stiction", "flow_curve", "coulomb_friction"])
-.upstream_of(&["input_saturation", "asymmetric_saturation"])
+.upstream_of(&["input_saturation", "asymmetric_saturation", "flow_curve"])
 .steady()
 .equations(Equations::new(&["out = max(signal - upper, 0) + min(signal - lower, 0)"]));
 

@@ -28,6 +28,16 @@ static SPEC: Spec = Spec::new(
     Parameter::new("offset", "what is added to the input", Dimension::Input).typical(0.02)
 ])
 .confused_with(&["direction_gain", "leakage", "coulomb_friction", "gravity_load"])
+.upstream_of(&[
+    "dead_band",
+    "stiction",
+    "asymmetric_stiction",
+    "input_saturation",
+    "asymmetric_saturation",
+    "flow_curve",
+    "direction_gain",
+    "valve_curve",
+])
 .steady()
 .equations(Equations::new(&["out = signal + offset"]));
 

@@ -28,6 +28,7 @@ static SPEC: Spec = Spec::new(
     Parameter::new("step", "distance of two commands", Dimension::Input).between(0.0, UNLIMITED)
 ])
 .confused_with(&["dead_band", "flow_curve"])
+.upstream_of(&["valve_hysteresis", "spool_lag", "spool_rate_limit"])
 .steady()
 .equations(Equations::new(&["count = floor(abs(signal) / step + 0.5)
              out = if(step > 0 && is_finite(count), sign(signal) * step * count, signal)"]));

@@ -31,7 +31,10 @@ static SPEC: Spec = Spec::new(
     Stage::Input,
     "starts above one level of the input, stops below a lower one",
 )
-.equation("out = in while moving, else 0; starts at abs(in) > start, stops at abs(in) < stop")
+.equation(
+    "out = in while moving, else 0; starts at abs(in) > start, stops at abs(in) < stop or where in \
+             changes its sign",
+)
 .source(
     "Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994, A survey of models, analysis \
              tools and compensation methods for the control of machines with friction, \

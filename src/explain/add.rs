@@ -10,7 +10,7 @@ use super::revision::{AddError, Addition};
 use super::workers::Workers;
 use crate::diagnosis::{ErrorFigures, NEAR_NOISE, compare, sensor_noise};
 use crate::effect::{Effect, RecordRange};
-use crate::fit::{Fit, FitRecord, Part, fit};
+use crate::fit::{Fit, FitRecord, fit};
 use crate::model::{Component, JointModel};
 
 /// Fits the model of `base` with `effect`, which starts where it changes nothing.
@@ -78,7 +78,7 @@ fn of_measured_delays(
     effect: &'static dyn Effect,
 ) -> Option<JointModel> {
     let model = base.model.with(Component::measured(effect)?);
-    let error = ErrorFigures::of(record, &by_law.evaluation, Part::Training)?.rmse;
+    let error = ErrorFigures::of_record(record, &by_law.evaluation)?.rmse;
     let is_near =
         sensor_noise(&record.measured().trials).is_some_and(|floor| error <= NEAR_NOISE * floor);
     (!is_near && record.measured_delays(&model) > 0).then_some(model)

@@ -21,7 +21,8 @@ pub(super) fn compared(
     noise_floor: f64,
     extensions: Vec<Extension>,
 ) -> Vec<Candidate> {
-    let Some(best) = extensions.iter().min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost)) else {
+    let error = |one: &Extension| one.fit.errors.whole;
+    let Some(best) = extensions.iter().min_by(|a, b| error(a).total_cmp(&error(b))) else {
         return Vec::new();
     };
     let noise = NoiseMemory::of(record, &best.fit.on(record));

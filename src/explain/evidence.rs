@@ -13,7 +13,7 @@
 //! fitted.
 //!
 //! Whether a model is better than a simpler one is tested twice. Fisher's test compares the
-//! `R_t`. While much is still missing from both models, though, the memory of the best
+//! `R_t + R_v`. While much is still missing from both models, though, the memory of the best
 //! one's residual is not that of the noise, and the filter can hide what is plain to see. So the
 //! residuals `e` of the simpler one in all windows, fitted or not, are also regressed, without
 //! whitening, on the change `d` that the other makes to them, with a variance that is robust to
@@ -72,7 +72,7 @@ impl NoiseMemory {
     pub(super) fn of(record: &FitRecord<'_>, fit: &Fit) -> Self {
         let mut windows = record.cut(&fit.evaluation.residuals, Part::Training);
         windows.extend(record.cut(&fit.evaluation.residuals, Part::Validation));
-        let error = ErrorFigures::of(record, &fit.evaluation, Part::Training);
+        let error = ErrorFigures::of_record(record, &fit.evaluation);
         let is_misfit = error
             .zip(sensor_noise(&record.measured().trials))
             .is_some_and(|(error, floor)| error.rmse > BEYOND_NOISE * floor);
@@ -123,18 +123,29 @@ impl Evidence {
         (TESTS * smaller).min(1.0)
     }
 
-    /// The p-value of Fisher's test of this model against one with fewer parameters, on the
-    /// training part:
+    /// The p-value of Fisher's test of this model against one with fewer parameters, on both parts:
     ///
     /// ```text
-    /// F = ((R₀ − R) / (k − k₀)) / (R / (n − k))
+    /// F = ((R₀ − R) / (k − k₀)) / (R / (n − k)),   R = R_t + R_v,   n = n_t + n_v
     /// ```
+    ///
+    /// By chance parameters gain no more on the part that was not fitted than on the other, so that
+    /// the test is no looser than on that alone.
     fn fisher_p_value(&self, simpler: &Self) -> f64 {
         let added = self.parameters.saturating_sub(simpler.parameters).max(1);
-        let freedom = self.training.samples.saturating_sub(self.parameters).max(1);
-        let gained = (simpler.training.sum - self.training.sum).max(0.0) / added as f64;
-        let variance = (self.training.sum / freedom as f64).max(f64::MIN_POSITIVE);
+        let (own, other) = (self.both_parts(), simpler.both_parts());
+        let freedom = own.samples.saturating_sub(self.parameters).max(1);
+        let gained = (other.sum - own.sum).max(0.0) / added as f64;
+        let variance = (own.sum / freedom as f64).max(f64::MIN_POSITIVE);
         fisher_tail(gained / variance, added, freedom).unwrap_or(1.0)
+    }
+
+    fn both_parts(&self) -> Squares {
+        let Self { training, validation, .. } = self;
+        Squares {
+            sum: training.sum + validation.sum,
+            samples: training.samples + validation.samples,
+        }
     }
 
     /// The p-value of what this model explains beyond another in many windows: see the

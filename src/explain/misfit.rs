@@ -51,7 +51,7 @@ pub(super) struct Misfit {
 #[derive(Clone, Debug)]
 pub(super) struct Errors {
     /// On the whole record.
-    whole: f64,
+    pub(super) whole: f64,
     /// On the part that was fitted, where it has samples.
     pub(super) seen: Option<f64>,
     /// On the part that was not fitted, where there is one.
@@ -75,6 +75,16 @@ impl Errors {
     /// That by which a model is judged.
     pub(super) fn judged(&self) -> f64 {
         self.unseen.or(self.seen).unwrap_or(self.whole)
+    }
+
+    /// That of the part on which it is larger: where a record is explained, both its parts are.
+    pub(super) fn largest(&self) -> f64 {
+        self.seen.into_iter().chain(self.unseen).fold(self.whole, f64::max)
+    }
+
+    /// Whether the error of the whole record is less than so large a part of that of `other`.
+    pub(super) fn leave_less_than(&self, part: f64, other: &Self) -> bool {
+        self.whole < part * other.whole
     }
 }
 
@@ -124,15 +134,10 @@ impl Misfit {
         const OF_WHAT_IS_LEFT: f64 = 0.25;
         /// The part of it that is most of it: half of the error is left at most.
         const MOST: f64 = 0.75;
-        let takes_most = self.is_beside_noise(worse) && self.takes(MOST, worse, better);
+        let takes_most = self.takes(MOST, worse, better);
         let least = if takes_most { FAR_FROM_NOISE } else { self.least_share(worse) };
         self.share(worse, better) >= least
             || self.is_far_from_noise(worse) && self.takes(OF_WHAT_IS_LEFT, worse, better)
-    }
-
-    /// Whether what a model leaves beside the noise is at least as large as that.
-    fn is_beside_noise(self, errors: &Errors) -> bool {
-        errors.judged().powi(2) > 2.0 * self.noise.powi(2)
     }
 
     /// The share of the misfit from which an effect has a practical consequence, where the error without

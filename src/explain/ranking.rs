@@ -215,21 +215,19 @@ impl<'a, 'r> Search<'a, 'r> {
 
     /// Whether one of `extensions` comes near the noise.
     fn is_explained(&self, extensions: &[Extension]) -> bool {
-        Self::least_error(extensions) <= NEAR_NOISE * self.noise_floor
-    }
-
-    /// The least root mean square error of `extensions` on what they were fitted to.
-    fn least_error(extensions: &[Extension]) -> f64 {
-        let errors = extensions.iter().filter_map(|one| one.fit.errors.seen);
-        errors.fold(f64::INFINITY, f64::min)
+        let limit = NEAR_NOISE * self.noise_floor;
+        extensions.iter().any(|one| one.fit.errors.largest() <= limit)
     }
 
     /// The finer forms that leave much less than all of `extensions`: a limit that only one direction
     /// reaches is hardly seen as one of both.
     fn refined(&self, extensions: &[Extension], workers: &impl Workers) -> Vec<Extension> {
-        let limit = MUCH_LESS * Self::least_error(extensions);
         let mut refined = self.with_each(&self.refinements, workers);
-        refined.retain(|one| one.fit.errors.seen.is_some_and(|error| error < limit));
+        refined.retain(|finer| {
+            let leaves_less =
+                |one: &Extension| finer.fit.errors.leave_less_than(MUCH_LESS, &one.fit.errors);
+            extensions.iter().all(leaves_less)
+        });
         refined
     }
 

@@ -23,10 +23,10 @@ const HARM: f64 = 0.01;
 /// Chosen: what is worse by more does not become better by a fit.
 const WORSE: f64 = 1.3;
 
-/// What the cost with two effects in the place of one, or with a finer form of one, must be in parts
-/// of the cost without, whatever the criterion says, which is less sure where more is missing. Chosen:
-/// 2 % of the error, as a single effect has to explain.
-const LESS: f64 = 0.96;
+/// What the error of the whole record with two effects in the place of one, or with a finer form of one,
+/// must be in parts of that without, whatever the criterion says, which is less sure where more is
+/// missing. Chosen: 2 % less, as a single effect has to explain.
+const LESS: f64 = 0.98;
 
 /// Exchanges that are fitted, at most. Chosen: each more costs a fit.
 pub(super) const FINALISTS: usize = 6;
@@ -67,9 +67,9 @@ impl Removal<'_> {
             let is_unusual =
                 exchange.is_unusual() && fit.parameters.len() >= whole.parameters.len();
             let leaves_less = if exchange.has_free_form() {
-                fit.cost < MUCH_LESS * MUCH_LESS * whole.cost
+                fit.errors.leave_less_than(MUCH_LESS, &own)
             } else {
-                !is_unusual || fit.cost < LESS * whole.cost
+                !is_unusual || fit.errors.leave_less_than(LESS, &own)
             };
             // Two in the place of one have to be ahead of the one, too.
             let hurdle = if is_unusual { ALIKE } else { 0.0 };

@@ -106,7 +106,16 @@ fn descended(
     let space = Space::of(surveyed, range);
     let _turn = turn::wait_for(record.training_samples() * space.free.len());
     let training = record.for_training();
-    let found = Search::new(&training, surveyed, &space, plain(surveyed)).descended(limits);
+    let mut found = Search::new(&training, surveyed, &space, plain(surveyed)).descended(limits);
+    // A descent may have come across a level that only the part has that is not fitted.
+    let whole = space.has_jumps().then(|| record.coarser_for(surveyed).unsplit());
+    if let Some(whole) = &whole {
+        let before = found.problem.free.clone();
+        found = found.onto(whole).across_flats().onto(&training);
+        if found.problem.free != before {
+            found = found.descended(limits);
+        }
+    }
     // A value that does nothing may lie outside of the bounds.
     let given = plain(other);
     let held = space.holding(&given);
