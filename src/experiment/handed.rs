@@ -9,7 +9,7 @@ use super::layout::unknown_joint;
 use super::memory::Budget;
 use super::read::{Experiment, Failure, Place, ReadOptions, read_log};
 use super::source::{Source, Sum};
-use super::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
+use super::table::{Column, Head, Header, Labels, OpenTable, Table, Wanted};
 
 /// A log in memory: columns of equal length, with the names that a file would have.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,20 +134,15 @@ fn open(log: &Rc<HandedLog>, budget: Budget) -> Result<OpenTable, ReadError> {
         return Err(ReadError::empty());
     }
     let headers = log.columns.iter().map(|column| Header::parse(&column.name)).collect();
-    let rows = Box::new(Unread(Rc::clone(log)));
-    Ok(OpenTable::new((Head::without_lines(headers), rows), budget))
-}
-
-struct Unread(Rc<HandedLog>);
-
-impl Rows for Unread {
-    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let values = |place: &usize| self.0.columns.get(*place).map(|column| &column.values);
+    let log = Rc::clone(log);
+    let read_rows = move |wanted: &Wanted<'_>| {
+        let values = |place: &usize| log.columns.get(*place).map(|column| &column.values);
         let labels = wanted.label.and_then(|label| values(&label)).map(HandedValues::labels);
         let labels = Labels::of(labels.unwrap_or_default(), wanted.budget)?;
         let columns = wanted.numeric.iter().filter_map(values).map(HandedValues::column).collect();
         Ok(Table::counted(wanted, columns, labels))
-    }
+    };
+    Ok(OpenTable::new((Head::without_lines(headers), Box::new(read_rows)), budget))
 }
 
 fn source_of(log: &HandedLog) -> Source {

@@ -115,24 +115,18 @@ fn check_name(name: &str, row: u64) -> Result<(), ReadError> {
     Err(ReadError::content(text).in_row(row))
 }
 
-/// The columns of a log, and what is in them still unread.
-pub(super) type Opened = (Head, Box<dyn Rows>);
+/// The columns of a log, and what reads those that are wanted.
+pub(super) type Opened = (Head, ReadRows);
+
+/// Reads the columns that are wanted; fails where the file or a row is wrong. A bad cell spoils its column only:
+/// see [`Column::error`].
+pub(super) type ReadRows = Box<dyn FnOnce(&Wanted<'_>) -> Result<Table, ReadError>>;
 
 /// A log whose columns are known, with the memory that its values may take.
 pub(super) struct OpenTable {
     pub(super) head: Head,
-    rows: Box<dyn Rows>,
+    read_rows: ReadRows,
     budget: Budget,
-}
-
-/// The part of a file that holds the values.
-pub(super) trait Rows {
-    /// Reads the columns that are wanted.
-    ///
-    /// # Errors
-    /// What is wrong with the file or a row. A bad cell spoils its column only: see
-    /// [`Column::error`].
-    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError>;
 }
 
 /// What is to be read of a file.
@@ -154,8 +148,8 @@ pub(super) struct Wanted<'a> {
 }
 
 impl OpenTable {
-    pub(super) fn new((head, rows): Opened, budget: Budget) -> Self {
-        Self { head, rows, budget }
+    pub(super) fn new((head, read_rows): Opened, budget: Budget) -> Self {
+        Self { head, read_rows, budget }
     }
 
     /// Reads the columns `numeric` as numbers, `time` among them, and `label` as text, in the rows of `clock`.
@@ -166,9 +160,9 @@ impl OpenTable {
         clock: usize,
         repair: Repair,
     ) -> Result<Table, ReadError> {
-        let Self { head, rows, budget } = self;
+        let Self { head, read_rows, budget } = self;
         let (head, budget, grows) = (&head, &budget, repair.as_it_stands);
-        let table = rows.read(&Wanted { head, numeric, label, time, clock, budget, grows })?;
+        let table = read_rows(&Wanted { head, numeric, label, time, clock, budget, grows })?;
         if table.rows.is_empty() {
             return Err(ReadError::header_only());
         }

@@ -12,28 +12,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 
 use crate::experiment::error::ReadError;
-use crate::experiment::table::{Opened, Rows, Table, Wanted};
+use crate::experiment::table::Opened;
 
 /// Opens a log by `open`, the reader of `format`, and fences what reads its rows, too.
 pub(super) fn open(
     format: &'static str,
     open: impl FnOnce() -> Result<Opened, ReadError>,
 ) -> Result<Opened, ReadError> {
-    let (head, rows) = fenced(format, open)?;
-    Ok((head, Box::new(Fenced { format, rows })))
-}
-
-/// Rows that a library reads.
-struct Fenced {
-    format: &'static str,
-    rows: Box<dyn Rows>,
-}
-
-impl Rows for Fenced {
-    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let Self { format, rows } = *self;
-        fenced(format, || rows.read(wanted))
-    }
+    let (head, read_rows) = fenced(format, open)?;
+    Ok((head, Box::new(move |wanted| fenced(format, || read_rows(wanted)))))
 }
 
 /// Does `work`, of which nothing is left where it panics.

@@ -22,7 +22,7 @@ use parquet::file::metadata::RowGroupMetaData;
 
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, NUMBER_SIZE};
-use crate::experiment::table::{Column, Head, Header, Labels, Opened, Rows, Table, Wanted};
+use crate::experiment::table::{Column, Head, Header, Labels, Opened, Table, Wanted};
 
 /// Rows that are read at once, at most.
 const BATCH: u64 = 8192;
@@ -60,7 +60,8 @@ pub(super) fn open(path: &Path, _: &Budget) -> Result<Opened, ReadError> {
     let columns = metadata.parquet_schema().columns();
     let headers = columns.iter().zip(&types);
     let headers = headers.map(|(column, kind)| header(&column.path().string(), kind)).collect();
-    Ok((Head::without_lines(headers), Box::new(Unread { file, metadata, types })))
+    let unread = Unread { file, metadata, types };
+    Ok((Head::without_lines(headers), Box::new(move |wanted| unread.read(wanted))))
 }
 
 /// Whether the columns of a group of rows lie in a file of `size` bytes, as they are said to.
@@ -98,8 +99,8 @@ fn header(name: &str, kind: &DataType) -> Header {
     header
 }
 
-impl Rows for Unread {
-    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+impl Unread {
+    fn read(&self, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         wanted.budget.take_values(self.rows(), wanted.numeric.len() * NUMBER_SIZE)?;
         let mut columns = Vec::new();
         for index in wanted.numeric {
@@ -117,9 +118,7 @@ impl Rows for Unread {
         }
         Ok(Table::counted(wanted, columns, labels))
     }
-}
 
-impl Unread {
     fn rows(&self) -> usize {
         let counts = self.groups().iter().map(|group| usize::try_from(group.num_rows()));
         counts.fold(0, |all: usize, count| all.saturating_add(count.unwrap_or(0)))

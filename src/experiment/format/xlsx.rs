@@ -18,7 +18,7 @@ use super::text::Bytes;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::names::on_one_line;
-use crate::experiment::table::{Opened, Rows, Table, Wanted};
+use crate::experiment::table::{Opened, Wanted};
 use crate::experiment::time_column::find_time_column;
 use crate::numerics::to_decimals;
 
@@ -50,7 +50,7 @@ pub(super) fn open(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
         if range.height() < 2 {
             continue;
         }
-        let found = of_sheet(&range, name, count, budget);
+        let found = of_sheet(&range, &name, count, budget);
         if !range.rows().any(|row| row.iter().filter(|cell| is_value(cell)).count() > 1) {
             rows = rows.or(Some(found));
         } else if found.as_ref().is_ok_and(|(head, _)| find_time_column(head).is_some()) {
@@ -84,42 +84,28 @@ fn is_value(cell: &Data) -> bool {
     }
 }
 
-/// Reads the header of a sheet as that of a text with commas.
+/// Reads the header of a sheet, one of `count`, as that of a text with commas.
 fn of_sheet(
     range: &Range<Data>,
-    name: String,
+    name: &str,
     count: usize,
     budget: &Budget,
 ) -> Result<Opened, ReadError> {
     let text = text_of(range).map_err(damaged)?;
     budget.take(text.len() as u64)?;
     let (bytes, start) = Bytes::made(text);
-    let (head, rows) = table(bytes, &start, Some(b','), budget)?;
-    Ok((head, Box::new(OfSheet { name, count, rows })))
+    let (head, read_rows) = table(bytes, &start, Some(b','), budget)?;
+    let note = format!("the sheet `{}` of {count} is read", on_one_line(name));
+    let read_rows = move |wanted: &Wanted<'_>| {
+        let mut table = read_rows(wanted)?;
+        table.notes.extend((count > 1).then_some(note));
+        Ok(table)
+    };
+    Ok((head, Box::new(read_rows)))
 }
 
 /// Stands for the value of a formula that the program which wrote it did not work out.
 const NO_VALUE: &str = "a formula without a value: open and save";
-
-/// The rows of a sheet, and which one it is.
-struct OfSheet {
-    name: String,
-    /// How many sheets there are.
-    count: usize,
-    rows: Box<dyn Rows>,
-}
-
-impl Rows for OfSheet {
-    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let Self { name, count, rows } = *self;
-        let name = on_one_line(&name);
-        let mut table = rows.read(wanted)?;
-        if count > 1 {
-            table.notes.push(format!("the sheet `{name}` of {count} is read"));
-        }
-        Ok(table)
-    }
-}
 
 /// How many parts of the file may be sheets.
 ///

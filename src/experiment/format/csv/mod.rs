@@ -11,20 +11,10 @@ use super::spelling::Spelling;
 use super::text::Bytes;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
-use crate::experiment::table::{Opened, Rows, Table, Wanted};
+use crate::experiment::table::{Opened, Wanted};
 use gathered::Gathered;
 use header::{check_last_name, describes, head};
-use lines::{Place, Records};
-
-/// What follows the header, still unread.
-struct Unread {
-    records: Records,
-    delimiter: u8,
-    /// Rows of words between the header and the first row.
-    above: Vec<(csv::ByteRecord, Place)>,
-    /// Where the first row is, which was read.
-    first: Option<Place>,
-}
+use lines::Records;
 
 /// Opens the log and reads its header.
 pub(super) fn open(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
@@ -51,9 +41,10 @@ pub(super) fn table(
     let mut records = Records::of(bytes, spelling, budget);
     let place = records.next()?.ok_or_else(ReadError::empty)?;
     let mut head = head(&records.record, place.row)?;
+    // Rows of words between the header and the first row.
     let mut above = Vec::new();
-    let mut first = records.next()?;
-    while let Some(place) = first {
+    let mut next = records.next()?;
+    while let Some(place) = next {
         if !describes(&mut head, &records.record, delimiter, above.len()) {
             // Sheets say which cell is of which column.
             if is_text {
@@ -62,23 +53,18 @@ pub(super) fn table(
             break;
         }
         above.push((records.record.clone(), place));
-        first = records.next()?;
+        next = records.next()?;
     }
-    Ok((head, Box::new(Unread { records, delimiter, above, first })))
-}
-
-impl Rows for Unread {
-    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let Self { mut records, delimiter, above, first } = *self;
+    let read_rows = move |wanted: &Wanted<'_>| {
         let mut gathered = Gathered::new(wanted, delimiter);
         gathered.note_above(&above);
-        let mut next = first;
         while let Some(place) = next.filter(|place| !(place.is_open && wanted.grows)) {
             gathered.add(&records.record, place)?;
             next = records.next()?;
         }
         Ok(gathered.finish(records.into_bytes().finish()?))
-    }
+    };
+    Ok((head, Box::new(read_rows)))
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use self::variable::{Content, Variable};
 use super::first_bytes::{is_matlab_73, start_of};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, NUMBER_SIZE};
-use crate::experiment::table::{Column, Head, Labels, Opened, Rows, Table, Wanted};
+use crate::experiment::table::{Column, Head, Labels, Opened, Table, Wanted};
 
 /// The variables with the place of each header: its variable, and the column of that.
 struct Unread {
@@ -45,8 +45,8 @@ pub(super) fn open(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
     if variables.iter().all(|variable| variable.shape().0 == 0) {
         check_kinds(&variables)?;
     }
-    let rows = Unread { variables, places, size: path.metadata()?.len() };
-    Ok((Head::without_lines(headers), Box::new(rows)))
+    let unread = Unread { variables, places, size: path.metadata()?.len() };
+    Ok((Head::without_lines(headers), Box::new(move |wanted| unread.read(wanted))))
 }
 
 /// Refuses a file in which nothing has rows, and says of the first variable what it is.
@@ -61,8 +61,8 @@ fn check_kinds(variables: &[Variable]) -> Result<(), ReadError> {
     Ok(())
 }
 
-impl Rows for Unread {
-    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+impl Unread {
+    fn read(&self, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         let columns = wanted.numeric.iter().map(|index| {
             let (variable, _) = self.place(*index).unzip();
             let rows = variable.map_or(0, |variable| variable.shape().0);
@@ -73,9 +73,7 @@ impl Rows for Unread {
         let labels = wanted.label.map_or_else(|| Ok(Vec::new()), |index| self.labels(index))?;
         Ok(Table::counted(wanted, columns, Labels::of(labels, wanted.budget)?))
     }
-}
 
-impl Unread {
     fn place(&self, header: usize) -> Option<(&Variable, usize)> {
         let (variable, column) = *self.places.get(header)?;
         Some((self.variables.get(variable)?, column))

@@ -24,7 +24,7 @@ use self::topics::{Clock, Place, Topics};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::names::listed;
-use crate::experiment::table::{Column, Head, Labels, Opened, Rows, Table, Wanted};
+use crate::experiment::table::{Column, Head, Labels, Opened, Table, Wanted};
 
 /// A file whose messages are known.
 struct Unread {
@@ -40,11 +40,13 @@ pub(super) fn open(path: &Path, budget: &Budget) -> Result<Opened, ReadError> {
     let places = topics.places();
     let headers = places.iter().map(|place| topics.header(*place)).collect();
     let unread = std::mem::take(&mut topics.left);
-    Ok((Head { headers, header_row: 0, unread }, Box::new(Unread { topics, places })))
+    let head = Head { unread, ..Head::without_lines(headers) };
+    let log = Unread { topics, places };
+    Ok((head, Box::new(move |wanted| log.read(wanted))))
 }
 
-impl Rows for Unread {
-    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+impl Unread {
+    fn read(&self, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         // Where there is a sample period instead, messages are ordered by the recorded time.
         let clock = wanted.numeric.iter().find_map(|header| self.clock(*header));
         let clock = clock.unwrap_or(Clock::Log);
@@ -79,9 +81,7 @@ impl Rows for Unread {
         let columns = wanted.numeric.iter().map(column).map(Column::of).collect();
         Ok(Table { notes, ..Table::counted(wanted, columns, labels) })
     }
-}
 
-impl Unread {
     /// The clock whose times are in a column.
     fn clock(&self, header: usize) -> Option<Clock> {
         match self.places.get(header) {
