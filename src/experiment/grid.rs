@@ -1,12 +1,10 @@
-//! From rows with times to a uniform grid: places, filling, splitting, resampling.
+//! Rows on a uniform grid: filling, splitting, resampling.
 
 use std::ops::Range;
 
 use serde::Serialize;
 
-use super::clock::{filled_s, not_increasing, single_row};
 use super::error::{ReadError, ReadErrorKind};
-use crate::numerics::{as_written, median};
 use crate::units::{SamplePeriod, floor_to_index};
 
 /// What may be done to a log that is not uniform or not complete.
@@ -23,19 +21,12 @@ pub struct Repair {
     pub as_it_stands: bool,
 }
 
-/// Largest difference of a time step from the median, as a part of it, that still
-/// counts as uniform.
-const UNIFORMITY: f64 = 0.01;
-
-/// Digits of a period: 0.01 s out of times that are binary sums.
-const DIGITS: usize = 9;
-
 /// Samples of one trial that are still handled: 8 GB as numbers.
 const MOST_SAMPLES: f64 = 1e9;
 
 impl Repair {
-    /// Seconds up to which a gap is filled.
-    fn longest_gap_s(self, period: f64) -> f64 {
+    /// Seconds up to which a gap is filled in samples with this period.
+    pub(super) fn longest_gap_s(self, period: f64) -> f64 {
         self.fill_s.unwrap_or_else(|| filled_s(period))
     }
 
@@ -44,6 +35,14 @@ impl Repair {
         let Self { resample, fill_s, as_it_stands } = self;
         resample.is_none() && fill_s.is_none() && !as_it_stands
     }
+}
+
+/// The longest gap that is filled unasked, in seconds.
+pub(super) fn filled_s(period: f64) -> f64 {
+    /// One row of Algorithm 1's Φ at its usual β, and short beside the dead times of hydraulic joints.
+    const PERIODS: f64 = 5.0;
+    const SECONDS: f64 = 0.05;
+    (PERIODS * period).max(SECONDS)
 }
 
 /// Where the rows of a trial lie on a grid.
@@ -85,30 +84,6 @@ pub(super) struct Piece {
 }
 
 impl Grid {
-    /// Lays the grid over rows at `times`, in seconds, where these are uniform but for rows that are lost
-    /// and may be filled, or another period is asked for.
-    pub(super) fn lay(times: &[f64], repair: Repair) -> Result<Self, ReadError> {
-        let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        if let Some(row) = steps.iter().position(|&step| step <= 0.0 || step.is_nan()) {
-            return Err(not_increasing(times, row + 1));
-        }
-        let median = median(&steps).ok_or_else(single_row)?;
-        let rows: Vec<usize> = (0..times.len()).collect();
-        if let Some(period) = repair.resample {
-            let longest_gap_s = repair.longest_gap_s(period.seconds().max(median));
-            let part = Part::resampled(rows, times.to_vec(), longest_gap_s);
-            return Self::of_parts(period, vec![part]);
-        }
-        let places = place_rows(&steps, median, repair)?;
-        let start_s = times.first().copied().unwrap_or_default();
-        let span = times.last().copied().unwrap_or_default() - start_s;
-        let period = span / places.last().copied().unwrap_or(1) as f64;
-        let period =
-            SamplePeriod::from_seconds(as_written(period, DIGITS)).ok_or_else(single_row)?;
-        let longest_gap_s = repair.longest_gap_s(period.seconds());
-        Self::of_parts(period, vec![Part::at_places(start_s, rows, &places, longest_gap_s)])
-    }
-
     /// The grid of some `parts`.
     ///
     /// # Errors
@@ -272,37 +247,6 @@ impl Signals {
     }
 }
 
-/// Places on the grid that are still distinct as floating-point numbers.
-const MOST_PLACES: f64 = 1e12;
-
-/// The place of each row on a grid of `period`, from the steps between rows.
-fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, ReadError> {
-    let mut places = Vec::with_capacity(steps.len() + 1);
-    places.push(0);
-    let mut place = 0;
-    for (index, &step) in steps.iter().enumerate() {
-        let periods = (step / period).round().max(1.0);
-        let uniform = (step - periods * period).abs() <= UNIFORMITY * period;
-        // Over a long pause the clock may drift by more than a part of one period.
-        let pause = periods >= 1.0 / UNIFORMITY;
-        let countable = periods < MOST_PLACES;
-        let lost_rows = repair.fill_s.is_some() && (uniform || pause) && countable;
-        if !(lost_rows || uniform && periods < 1.5) {
-            let period = as_written(period, DIGITS);
-            let text = format!(
-                "this sample comes {step} s after the one before, but the period is {period} s (median)"
-            );
-            let kind = ReadErrorKind::NotUniform { step, period };
-            return Err(ReadError::new(kind, text).at_index(index + 1));
-        }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
-        let periods = periods as usize;
-        place = periods.saturating_add(place);
-        places.push(place);
-    }
-    Ok(places)
-}
-
 /// Replaces each NaN by the number before it, the first ones by the first number.
 pub(super) fn hold(values: &mut [f64]) {
     let first = values.iter().find(|value| !value.is_nan()).copied();
@@ -312,53 +256,5 @@ pub(super) fn hold(values: &mut [f64]) {
             *value = last;
         }
         last = *value;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn signals(input: &[f64], output: &[f64]) -> Signals {
-        Signals { input: input.to_vec(), output: output.to_vec(), covariates: Vec::new() }
-    }
-
-    #[test]
-    fn uniform_rows_pass_as_they_are() {
-        let times: Vec<f64> = (0..500).map(|k| 3.0 + f64::from(k) * 0.01).collect();
-        let grid = Grid::lay(&times, Repair::default()).unwrap();
-        assert_eq!(grid.period().seconds().to_string(), "0.01");
-        let pieces = grid.pieces(signals(&vec![1.0; 500], &vec![2.0; 500]));
-        assert_eq!(pieces.len(), 1);
-        assert_eq!(pieces[0].signals.output.len(), 500);
-    }
-
-    #[test]
-    fn the_row_that_is_off_is_named() {
-        for (times, says, row) in [
-            (&[0.0, 0.1, 0.1][..], "must increase", 3),
-            (&[0.0, 0.1, 0.05], "must increase", 3),
-            (&[0.0], "one row only", 1),
-            (&[0.0, 0.1, 0.2, 0.3, 0.5, 0.6], "but the period is 0.1 s", 5),
-        ] {
-            let fault = Grid::lay(times, Repair::default()).unwrap_err();
-            assert_eq!(fault.row(), Some(row), "{fault}");
-            assert!(fault.to_string().contains(says), "{fault}");
-        }
-    }
-
-    #[test]
-    fn half_a_percent_of_jitter_is_uniform_and_two_are_not() {
-        assert!(Grid::lay(&[0.0, 1.0, 2.005, 3.0, 4.0], Repair::default()).is_ok());
-        assert!(Grid::lay(&[0.0, 1.0, 2.02, 3.0, 4.0], Repair::default()).is_err());
-    }
-
-    #[test]
-    fn resampling_does_not_bridge_a_pause() {
-        let mut times: Vec<f64> = (0..20).map(f64::from).collect();
-        times.extend((0..20).map(|k| 100.0 + f64::from(k)));
-        let resampled = Repair { resample: SamplePeriod::from_seconds(1.0), ..Repair::default() };
-        let grid = Grid::lay(&times, resampled).unwrap();
-        assert_eq!(grid.pieces(signals(&times, &times)).len(), 2);
     }
 }

@@ -1,7 +1,7 @@
-//! The grids of a log whose clock is not uniform, and what its reader should know of them.
+//! The grids of a log, and what its reader should know of them where its clock is not uniform.
 
-use super::clock::{Clock, Evenness, Run, filled_s, is_mended, single_row};
-use super::error::ReadError;
+use super::clock::{Clock, Evenness, Oddity, Run, single_row};
+use super::error::{ReadError, ReadErrorKind};
 use super::grid::{Grid, Part, Repair};
 use crate::numerics::as_written;
 use crate::units::SamplePeriod;
@@ -26,36 +26,37 @@ pub(super) fn grids(
     repair: Repair,
     number: Number<'_>,
 ) -> Result<(Vec<Grid>, Vec<String>), (usize, ReadError)> {
-    let mut uniform = Vec::new();
-    let mut fault = None;
-    for (trial, times) in trials.iter().enumerate() {
-        let grid = Grid::lay(times, repair).map_err(|found| {
-            fault.get_or_insert((trial, found));
-        });
-        uniform.push(grid.ok());
-    }
-    match fault {
-        None => return Ok((uniform.into_iter().flatten().collect(), Vec::new())),
-        Some(fault) if repair.as_it_stands || !is_mended(&fault.1) => return Err(fault),
-        Some(_) => {}
-    }
-    let mut clocks = Vec::new();
-    for (trial, times) in trials.iter().enumerate() {
-        clocks.push(Clock::read(times, repair.fill_s).map_err(|fault| (trial, fault))?);
-    }
+    let clocks = |read: fn(&[f64], Repair) -> Result<Clock, ReadError>| {
+        let clocks = trials.iter().enumerate();
+        let clocks =
+            clocks.map(|(trial, times)| read(times, repair).map_err(|fault| (trial, fault)));
+        clocks.collect::<Result<Vec<_>, _>>()
+    };
+    let (clocks, is_uniform) = match clocks(Clock::uniform) {
+        Ok(clocks) => (clocks, true),
+        Err((_, fault)) if is_mended(&fault) && !repair.as_it_stands => {
+            (clocks(Clock::read)?, false)
+        }
+        Err(fault) => return Err(fault),
+    };
     let periods = match repair.resample {
         Some(period) => vec![period.seconds(); clocks.len()],
+        None if is_uniform => clocks.iter().map(|clock| clock.period).collect(),
         None => common_periods(&clocks),
     };
-    let mut grids = Vec::new();
-    for (trial, (clock, period)) in clocks.iter().zip(&periods).enumerate() {
-        let times = trials.get(trial).copied().unwrap_or_default();
-        grids.push(grid(clock, times, *period, repair).map_err(|fault| (trial, fault))?);
+    let (mut grids, mut laid) = (Vec::new(), Vec::new());
+    for (trial, (clock, period)) in clocks.into_iter().zip(periods).enumerate() {
+        let times = trials[trial];
+        grids.push(grid(&clock, times, period, repair).map_err(|fault| (trial, fault))?);
+        let is_uniform = is_uniform || Clock::uniform(times, repair).is_ok();
+        laid.push(Laid { clock, period, is_uniform });
     }
-    let is_uniform = uniform.iter().map(Option::is_some);
-    let laid = clocks.into_iter().zip(periods).zip(is_uniform);
-    let laid = laid.map(|((clock, period), is_uniform)| Laid { clock, period, is_uniform });
-    Ok((grids, lines(&laid.collect::<Vec<_>>(), repair.resample, number)))
+    Ok((grids, lines(&laid, repair.resample, number)))
+}
+
+/// Whether a clock that is not uniform so is put on a grid unasked.
+fn is_mended(fault: &ReadError) -> bool {
+    matches!(fault.kind, ReadErrorKind::Content | ReadErrorKind::NotUniform { .. })
 }
 
 /// The period of each trial's grid: trials of one rate share their mean, each counting by its rows, as a round
@@ -104,14 +105,21 @@ fn rounded(period: f64, tolerance: f64) -> f64 {
 
 /// The grid of a trial.
 fn grid(clock: &Clock, times: &[f64], period: f64, repair: Repair) -> Result<Grid, ReadError> {
-    let longest_gap_s = repair.fill_s.unwrap_or_else(|| filled_s(period));
-    let is_even = clock.evenness != Evenness::Uneven && repair.resample.is_none();
+    let longest_gap_s = repair.longest_gap_s(if repair.resample.is_some() {
+        period.max(clock.period)
+    } else {
+        period
+    });
     let part = |run: &Run| {
-        if is_even {
-            let start_s = run.start_s(times, period);
-            Part::at_places(start_s, run.rows.clone(), &run.places, longest_gap_s)
-        } else {
-            interpolated(run, times, longest_gap_s)
+        let start_s = match clock.evenness {
+            _ if repair.resample.is_some() => None,
+            Evenness::Uneven => None,
+            Evenness::Uniform => times.first().copied(),
+            Evenness::Jitters | Evenness::Rounded { .. } => Some(run.start_s(times, period)),
+        };
+        match start_s {
+            Some(start_s) => Part::at_places(start_s, run.rows.clone(), &run.places, longest_gap_s),
+            None => interpolated(run, times, longest_gap_s),
         }
     };
     let parts = clock.runs.iter().map(part).collect();
@@ -158,7 +166,7 @@ impl Laid {
         let is_cut = match self.clock.evenness {
             Evenness::Jitters => true,
             Evenness::Uneven => self.clock.gaps.is_some(),
-            Evenness::Rounded { .. } => false,
+            Evenness::Uniform | Evenness::Rounded { .. } => false,
         };
         is_cut && self.clock.jitter < NONE
     }
@@ -167,38 +175,33 @@ impl Laid {
 /// What messages call a row of a trial.
 type Number<'a> = &'a dyn Fn(usize, usize) -> u64;
 
-/// How many rows of a kind a clock has, and the first.
-type Count = fn(&Clock) -> Option<(usize, usize)>;
-
 /// A line on each thing that was found in the clocks of a log.
 fn lines(trials: &[Laid], resample: Option<SamplePeriod>, number: Number<'_>) -> Vec<String> {
-    const KINDS: [(Count, &str); 3] = [
-        (
-            |clock| clock.found.twice,
-            "at the same time as the row before; one of the two is left out",
-        ),
-        (|clock| clock.found.disordered, "out of order and sorted by time"),
-        (|clock| clock.found.alone, "alone between gaps and left out"),
+    const ODDITIES: [(Oddity, &str); 4] = [
+        (Oddity::Twice, "at the same time as the row before; one of the two is left out"),
+        (Oddity::Disordered, "out of order and sorted by time"),
+        (Oddity::Alone, "alone between gaps and left out"),
+        (Oddity::Restart, ""),
     ];
-    let all = |count: Count| {
-        let found = trials.iter().enumerate();
-        let mut found = found.filter_map(|(trial, laid)| Some((trial, count(&laid.clock)?)));
-        let (trial, (count, row)) = found.next()?;
-        Some((count + found.map(|(_, (more, _))| more).sum::<usize>(), number(trial, row)))
-    };
     let mut lines = on_periods(trials, resample, number);
     lines.extend(on_gaps(trials, number));
-    for (count, says) in KINDS {
-        if let Some((count, row)) = all(count) {
-            let rows = if count == 1 { "row is" } else { "rows are" };
-            lines.push(format!("{count} {rows} {says} (first at row {row})"));
+    for (oddity, says) in ODDITIES {
+        let mut rows = Vec::new();
+        for (trial, laid) in trials.iter().enumerate() {
+            let odd = laid.clock.odd.iter().filter(|(found, _)| *found == oddity);
+            rows.extend(odd.map(|(_, row)| (trial, *row)));
         }
-    }
-    if let Some((count, row)) = all(|clock| clock.found.restarts) {
-        let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
-        lines.push(format!(
-            "the clock starts anew {times} (first at row {row}): a new part begins there"
-        ));
+        let Some((trial, row)) = rows.iter().min() else { continue };
+        let (count, row) = (rows.len(), number(*trial, *row));
+        let [times, are] = match count {
+            1 => ["once".to_owned(), "row is".to_owned()],
+            _ => [format!("{count} times"), "rows are".to_owned()],
+        };
+        lines.push(if oddity == Oddity::Restart {
+            format!("the clock starts anew {times} (first at row {row}): a new part begins there")
+        } else {
+            format!("{count} {are} {says} (first at row {row})")
+        });
     }
     lines
 }
@@ -299,6 +302,29 @@ mod tests {
         grids(trials, Repair::default(), &|_, row| row as u64 + 2).unwrap()
     }
 
+    fn signals(input: &[f64], output: &[f64]) -> Signals {
+        Signals { input: input.to_vec(), output: output.to_vec(), covariates: Vec::new() }
+    }
+
+    #[test]
+    fn uniform_rows_pass_as_they_are() {
+        let times: Vec<f64> = (0..500).map(|k| 3.0 + f64::from(k) * 0.01).collect();
+        let (grids, notes) = laid(&[&times]);
+        assert_eq!((grids[0].period().to_string().as_str(), notes.len()), ("0.01 s", 0));
+        let pieces = grids[0].pieces(signals(&vec![1.0; 500], &vec![2.0; 500]));
+        assert_eq!(pieces.len(), 1);
+        assert_eq!(pieces[0].signals.output.len(), 500);
+    }
+
+    #[test]
+    fn resampling_does_not_bridge_a_pause() {
+        let mut times: Vec<f64> = (0..20).map(f64::from).collect();
+        times.extend((0..20).map(|k| 100.0 + f64::from(k)));
+        let resampled = Repair { resample: SamplePeriod::from_seconds(1.0), ..Repair::default() };
+        let (grids, _) = grids(&[&times], resampled, &|_, row| row as u64).unwrap();
+        assert_eq!(grids[0].pieces(signals(&times, &times)).len(), 2);
+    }
+
     #[test]
     fn trials_of_one_rate_share_a_round_period() {
         let trials = [jittering(400, 0.009_999_7, 0.1), jittering(300, 0.010_000_2, 0.05)];
@@ -313,11 +339,7 @@ mod tests {
 
     #[test]
     fn jitter_changes_no_value_and_uneven_samples_are_interpolated() {
-        let signals = |times: &[f64]| Signals {
-            input: vec![1.0; times.len()],
-            output: times.to_vec(),
-            covariates: Vec::new(),
-        };
+        let signals = |times: &[f64]| signals(&vec![1.0; times.len()], times);
         let times = jittering(200, 0.01, 0.1);
         let (grids, _) = laid(&[&times]);
         assert_eq!(grids[0].pieces(signals(&times))[0].signals.output, times);

@@ -1,7 +1,7 @@
 //! How far stamps are from an even grid, and what that makes of the clock.
 
 use super::period::Typical;
-use super::run::{LOST_SHARE, Run};
+use super::rows::{LOST_SHARE, Run};
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::numerics::{median, quantile};
 
@@ -19,9 +19,11 @@ const BLOCK: usize = 50;
 /// own tolerance: the same as of a clock without jitter.
 const DRIFT: f64 = 0.01;
 
-/// What became of the rows of a trial.
+/// What the stamps of a trial are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::experiment) enum Evenness {
+    /// Each step is the period, or several where rows are lost.
+    Uniform,
     /// The stamps jitter about an even grid.
     Jitters,
     /// The stamps are rounded to so many seconds, which is more than half a period.

@@ -8,22 +8,23 @@
 mod evenness;
 mod period;
 mod rows;
-mod run;
 
 use self::evenness::Deviations;
 use self::period::{least_squares_period, typical_period};
-use self::rows::{Found, count, is_even_once_sorted, parted, short_gaps};
-use super::error::ReadError;
+use self::rows::{in_order, is_even_once_sorted, not_increasing, once, parted, short_gaps};
+use super::error::{ReadError, ReadErrorKind};
+use super::grid::Repair;
+use crate::numerics::{as_written, median};
 
 pub(super) use self::evenness::Evenness;
-pub(super) use self::rows::between_restarts;
-pub(super) use self::run::{Run, is_mended, not_increasing, single_row};
+pub(super) use self::rows::{Run, between_restarts, single_row};
 
-/// A gap is filled up to so many periods: one row of Algorithm 1's Φ at its usual β.
-const FILLED_PERIODS: f64 = 5.0;
+/// Largest difference of a time step from the median, as a part of it, that still
+/// counts as uniform.
+const UNIFORMITY: f64 = 0.01;
 
-/// A gap is filled up to so many seconds: short beside the dead times of hydraulic joints.
-const FILLED_S: f64 = 0.05;
+/// Digits of a period: 0.01 s out of times that are binary sums.
+const DIGITS: usize = 9;
 
 /// Whether samples may be so many seconds apart: from a nanosecond to three years, beyond which the
 /// times of a record leave what a clock counts.
@@ -35,7 +36,7 @@ pub(crate) fn is_period(seconds: f64) -> bool {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Clock {
     pub(super) runs: Vec<Run>,
-    /// Least-squares period of all runs, seconds.
+    /// Least-squares period of all runs, seconds; of uniform ones the mean.
     pub(super) period: f64,
     pub(super) evenness: Evenness,
     /// Standard deviation of the jitter, in periods.
@@ -44,17 +45,60 @@ pub(super) struct Clock {
     pub(super) largest: (f64, usize),
     /// Short gaps: how many, the longest in periods, and the row after the first.
     pub(super) gaps: Option<(usize, usize, usize)>,
-    pub(super) found: Found,
+    /// Rows that are odd.
+    pub(super) odd: Vec<(Oddity, usize)>,
+}
+
+/// What may be odd about a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Oddity {
+    /// It has the time of the row before.
+    Twice,
+    /// It is earlier than the row before.
+    Disordered,
+    /// It lies between two gaps, and is left out.
+    Alone,
+    /// The clock starts anew there.
+    Restart,
 }
 
 impl Clock {
-    /// Reads the stamps `times`, in seconds; gaps up to `fill_s` do not part a run, nor those
-    /// that are filled unasked where it is none.
-    pub(super) fn read(times: &[f64], fill_s: Option<f64>) -> Result<Self, ReadError> {
+    /// The clock of uniform stamps `times`, in seconds, rows that are lost only where they may be filled; of any
+    /// that increase, where they are put on a grid of another period.
+    ///
+    /// # Errors
+    /// Of the kinds [`ReadErrorKind::Content`] and [`ReadErrorKind::NotUniform`] where [`Self::read`] may read them.
+    pub(super) fn uniform(times: &[f64], repair: Repair) -> Result<Self, ReadError> {
+        let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        if let Some(row) = steps.iter().position(|&step| step <= 0.0 || step.is_nan()) {
+            return Err(not_increasing(times, row + 1));
+        }
+        let usual = median(&steps).ok_or_else(single_row)?;
+        let rows: Vec<usize> = (0..times.len()).collect();
+        let (runs, period, evenness) = if let Some(resample) = repair.resample {
+            let is_joined = |_: &usize, row: &usize| {
+                let longest_gap_s = repair.longest_gap_s(usual.max(resample.seconds()));
+                steps[row - 1] <= longest_gap_s.max(resample.seconds()) * (1.0 + 1e-9)
+            };
+            let runs = rows.chunk_by(is_joined);
+            let runs = runs.map(|rows| Run { rows: rows.to_vec(), places: Vec::new() });
+            (runs.collect(), usual, Evenness::Uneven)
+        } else {
+            let places = place_rows(&steps, usual, repair.fill_s.is_some())?;
+            let last = places.last().copied().unwrap_or(1);
+            let span = times[times.len() - 1] - times[0];
+            let period = as_written(span / last as f64, DIGITS);
+            (vec![Run { rows, places }], period, Evenness::Uniform)
+        };
+        let (jitter, largest, gaps, odd) = (0.0, (0.0, 0), None, Vec::new());
+        Ok(Self { runs, period, evenness, jitter, largest, gaps, odd })
+    }
+
+    /// The clock of stamps `times`, in seconds; gaps that are filled do not part a run.
+    pub(super) fn read(times: &[f64], repair: Repair) -> Result<Self, ReadError> {
         let typical = typical_period(times)?;
-        let mut found = Found::default();
-        let mut runs = Vec::new();
-        let longest = fill_s.unwrap_or_else(|| filled_s(typical.seconds)) / typical.seconds;
+        let (mut runs, mut odd) = (Vec::new(), Vec::new());
+        let longest = repair.longest_gap_s(typical.seconds) / typical.seconds;
         let parts = between_restarts(times, typical.seconds).or_else(|fault| {
             // Rows of one even clock, each of which has a time of its own, can be sorted.
             if is_even_once_sorted(times) {
@@ -64,14 +108,13 @@ impl Clock {
             }
         })?;
         for (index, rows) in parts.into_iter().enumerate() {
-            let rows = found.in_order(rows, times);
-            let rows = found.once(rows, times, &typical);
-            if let Some(first) = rows.iter().min().filter(|_| index > 0) {
-                count(&mut found.restarts, *first);
-            }
+            let rows = in_order(rows, times, &mut odd);
+            let rows = once(rows, times, &typical, &mut odd);
+            let first = rows.iter().min().filter(|_| index > 0);
+            odd.extend(first.map(|first| (Oddity::Restart, *first)));
             for run in parted(&rows, times, &typical, longest.max(1.0)) {
                 match run.rows.as_slice() {
-                    [row] => count(&mut found.alone, *row),
+                    [row] => odd.push((Oddity::Alone, *row)),
                     _ => runs.push(run),
                 }
             }
@@ -79,15 +122,8 @@ impl Clock {
         let period = least_squares_period(&runs, times, &typical)?;
         let deviations = Deviations::of(&runs, times, period, &typical);
         let evenness = deviations.evenness(&runs, &typical, period)?;
-        Ok(Self {
-            gaps: short_gaps(&runs),
-            runs,
-            period,
-            evenness,
-            jitter: deviations.deviation(),
-            largest: deviations.largest(),
-            found,
-        })
+        let (jitter, largest) = (deviations.deviation(), deviations.largest());
+        Ok(Self { gaps: short_gaps(&runs), runs, period, evenness, jitter, largest, odd })
     }
 
     /// Rows of its longest run.
@@ -96,9 +132,32 @@ impl Clock {
     }
 }
 
-/// The longest gap that is filled unasked, in seconds.
-pub(super) fn filled_s(period: f64) -> f64 {
-    (FILLED_PERIODS * period).max(FILLED_S)
+/// The place of each row on a grid of `period`, from the steps between rows; rows are lost only where they may be
+/// filled.
+fn place_rows(steps: &[f64], period: f64, may_fill: bool) -> Result<Vec<usize>, ReadError> {
+    /// Places on the grid that are still distinct as floating-point numbers.
+    const MOST_PLACES: f64 = 1e12;
+    let mut places = Vec::with_capacity(steps.len() + 1);
+    places.push(0);
+    let mut place = 0;
+    for (index, &step) in steps.iter().enumerate() {
+        let periods = (step / period).round().max(1.0);
+        let uniform = (step - periods * period).abs() <= UNIFORMITY * period;
+        // Over a long pause the clock may drift by more than a part of one period.
+        let pause = periods >= 1.0 / UNIFORMITY;
+        let lost_rows = may_fill && (uniform || pause) && periods < MOST_PLACES;
+        if !(lost_rows || uniform && periods < 1.5) {
+            let period = as_written(period, DIGITS);
+            let text = format!(
+                "this sample comes {step} s after the one before, but the period is {period} s (median)"
+            );
+            let kind = ReadErrorKind::NotUniform { step, period };
+            return Err(ReadError::new(kind, text).at_index(index + 1));
+        }
+        place += crate::units::floor_to_index(periods);
+        places.push(place);
+    }
+    Ok(places)
 }
 
 #[cfg(test)]
@@ -115,13 +174,34 @@ mod tests {
     }
 
     pub(super) fn read(times: &[f64]) -> Clock {
-        Clock::read(times, None).unwrap()
+        Clock::read(times, Repair::default()).unwrap()
     }
 
     /// Whether a clock goes back, and the index of the row.
     fn refused(times: &[f64]) -> (bool, u64) {
-        let fault = Clock::read(times, None).unwrap_err();
-        (is_mended(&fault), fault.row().unwrap() - 1)
+        let fault = Clock::read(times, Repair::default()).unwrap_err();
+        (matches!(fault.kind, ReadErrorKind::Content), fault.row().unwrap() - 1)
+    }
+
+    #[test]
+    fn the_row_that_is_off_is_named() {
+        for (times, says, row) in [
+            (&[0.0, 0.1, 0.1][..], "must increase", 3),
+            (&[0.0, 0.1, 0.05], "must increase", 3),
+            (&[0.0], "one row only", 1),
+            (&[0.0, 0.1, 0.2, 0.3, 0.5, 0.6], "but the period is 0.1 s", 5),
+        ] {
+            let fault = Clock::uniform(times, Repair::default()).unwrap_err();
+            assert_eq!(fault.row(), Some(row), "{fault}");
+            assert!(fault.to_string().contains(says), "{fault}");
+        }
+    }
+
+    #[test]
+    fn half_a_percent_of_jitter_is_uniform_and_two_are_not() {
+        let is_uniform = |times: &[f64]| Clock::uniform(times, Repair::default()).is_ok();
+        assert!(is_uniform(&[0.0, 1.0, 2.005, 3.0, 4.0]));
+        assert!(!is_uniform(&[0.0, 1.0, 2.02, 3.0, 4.0]));
     }
 
     fn sizes(clock: &Clock) -> Vec<usize> {
@@ -194,7 +274,7 @@ mod tests {
         // Halves are rounded to even whole seconds, so that their lengths differ.
         let to_even = stamps(6000, |k| (0.01 * k as f64).round_ties_even());
         assert_eq!(read(&to_even).evenness, Evenness::Rounded { to_s: 1.0 });
-        let few = Clock::read(&coarse(1.7e9, 4000), None).unwrap_err().to_string();
+        let few = Clock::read(&coarse(1.7e9, 4000), Repair::default()).unwrap_err().to_string();
         assert!(few.contains("only 3 different times, 128 s apart"), "{few}");
     }
 
@@ -223,10 +303,7 @@ mod tests {
         // Rows 50 to 60 were held up and come all at once.
         let late = |k: usize| if (50..60).contains(&k) { 60.0 + 1e-3 * k as f64 } else { k as f64 };
         let clock = read(&stamps(400, |k| 0.01 * late(k)));
-        assert_eq!(
-            (clock.gaps, clock.found.twice, clock.evenness),
-            (None, None, Evenness::Jitters)
-        );
+        assert_eq!((clock.gaps, clock.odd.len(), clock.evenness), (None, 0, Evenness::Jitters));
         assert!(clock.largest.0 > 9.0);
     }
 
@@ -239,15 +316,15 @@ mod tests {
         });
         let clock = read(&times);
         assert_eq!(sizes(&clock), [100, 100, 100]);
-        assert_eq!(clock.found.restarts, Some((1, 200)));
+        assert_eq!(clock.odd, [(Oddity::Restart, 200)]);
     }
 
     #[test]
     fn a_row_that_is_there_twice_is_left_out() {
         let clock = read(&stamps(200, |k| 0.01 * (if k < 80 { k } else { k - 1 }) as f64));
-        assert_eq!((clock.found.twice, sizes(&clock)), (Some((1, 80)), vec![199]));
+        assert_eq!((&clock.odd, sizes(&clock)), (&vec![(Oddity::Twice, 80)], vec![199]));
         let rounded = read(&stamps(200, |k| 0.01 * (if k == 80 { 79 } else { k }) as f64));
-        assert_eq!((rounded.found.twice, sizes(&rounded)), (None, vec![200]));
+        assert_eq!((rounded.odd.len(), sizes(&rounded)), (0, vec![200]));
     }
 
     #[test]
@@ -258,7 +335,7 @@ mod tests {
             _ => k,
         };
         let clock = read(&stamps(100, |k| 0.01 * swapped(k) as f64));
-        assert_eq!(clock.found.disordered, Some((1, 41)));
+        assert_eq!(clock.odd, [(Oddity::Disordered, 41)]);
         assert_eq!(clock.runs[0].rows[40..42], [41, 40]);
         for (wrong, row) in [(0.01, 60), (99.0, 61)] {
             let times = stamps(100, |k| if k == 60 { wrong } else { 0.01 * k as f64 });

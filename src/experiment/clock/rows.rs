@@ -1,9 +1,55 @@
 //! Which rows follow one another: in order, each once, and parted where the clock jumps.
 
+use super::Oddity;
 use super::period::Typical;
-use super::run::{JUMP, Run, not_increasing};
-use crate::experiment::error::ReadError;
+use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::numerics::median;
+
+/// The time at the index `row` is no later than the one before, or far from all its neighbours.
+pub(super) fn not_increasing(times: &[f64], row: usize) -> ReadError {
+    let at = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
+    let (before, time) = (row.checked_sub(1).map_or(f64::NAN, at), at(row));
+    let text = format!(
+        "time goes from {before} s to {time} s, but must increase; remove the row if it is a copy, or mark a \
+         new trial in a `trial` column"
+    );
+    ReadError::content(text).at_index(row)
+}
+
+/// From so few rows no period follows; the name of the trial comes before it.
+pub(in crate::experiment) fn single_row() -> ReadError {
+    let text = "has one row only, but needs two for a sample period";
+    ReadError::new(ReadErrorKind::Empty, text).at_index(0)
+}
+
+/// A step of more periods than this may be a jump.
+pub(super) const JUMP: f64 = 1.5;
+
+/// Largest part of the places without a row; above it rows are not lost, but not even.
+pub(super) const LOST_SHARE: f64 = 0.1;
+
+/// Rows that follow one another without a long gap.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::experiment) struct Run {
+    /// Rows in the order of their time.
+    pub(in crate::experiment) rows: Vec<usize>,
+    /// Their places on an even grid; the first is 0.
+    pub(in crate::experiment) places: Vec<usize>,
+}
+
+impl Run {
+    /// When its places begin, on a grid of `period`: the least-squares offset.
+    pub(in crate::experiment) fn start_s(&self, times: &[f64], period: f64) -> f64 {
+        let offsets = self.points(times).map(|(place, time)| time - place * period);
+        offsets.sum::<f64>() / self.rows.len().max(1) as f64
+    }
+
+    /// Place and stamp of each row.
+    pub(super) fn points<'a>(&'a self, times: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let stamps = self.rows.iter().filter_map(|&row| times.get(row).copied());
+        self.places.iter().map(|&place| place as f64).zip(stamps)
+    }
+}
 
 /// Rows after a jump that are asked whether it lasts.
 const LOOK_AHEAD: usize = 5;
@@ -43,68 +89,51 @@ pub(in crate::experiment) fn between_restarts(
     Ok(runs)
 }
 
-/// How many rows of a kind were found on the way, and the first of them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(in crate::experiment) struct Found {
-    pub(in crate::experiment) twice: Option<(usize, usize)>,
-    pub(in crate::experiment) disordered: Option<(usize, usize)>,
-    /// At which the clock starts anew.
-    pub(in crate::experiment) restarts: Option<(usize, usize)>,
-    /// Between two gaps, and left out.
-    pub(in crate::experiment) alone: Option<(usize, usize)>,
+/// `rows` in the order of their stamps.
+pub(super) fn in_order(
+    mut rows: Vec<usize>,
+    times: &[f64],
+    odd: &mut Vec<(Oddity, usize)>,
+) -> Vec<usize> {
+    let time = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
+    let late = rows.windows(2).filter(|pair| time(pair[1]) < time(pair[0]));
+    odd.extend(late.map(|pair| (Oddity::Disordered, pair[1])));
+    rows.sort_by(|a, b| time(*a).total_cmp(&time(*b)));
+    rows
 }
 
-impl Found {
-    /// `rows` in the order of their stamps.
-    pub(super) fn in_order(&mut self, mut rows: Vec<usize>, times: &[f64]) -> Vec<usize> {
-        let time = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
-        for pair in rows.windows(2).filter(|pair| time(pair[1]) < time(pair[0])) {
-            count(&mut self.disordered, pair[1]);
-        }
-        rows.sort_by(|a, b| time(*a).total_cmp(&time(*b)));
-        rows
+/// `rows` without those that are there twice: a row at the time of the one before it,
+/// between steps as usual, and not made good by those after it, as a rounded stamp is: the last
+/// row, after which there is none, only where it has the same stamp.
+/// Of two with one stamp the later stays: where they differ, it says what holds from then on.
+pub(super) fn once(
+    rows: Vec<usize>,
+    times: &[f64],
+    typical: &Typical,
+    odd: &mut Vec<(Oddity, usize)>,
+) -> Vec<usize> {
+    /// Part of a period from which a row is one of its own.
+    const OWN: f64 = 0.25;
+    let time = |index: usize| rows.get(index).and_then(|&row| times.get(row)).copied();
+    let step = |from: usize, to: usize| Some((time(to)? - time(from)?) / typical.seconds);
+    let is_usual = |step: Option<f64>| step.is_none_or(|step| (0.5..JUMP).contains(&step));
+    let is_twice = |index: usize| {
+        let Some(before) = index.checked_sub(1) else { return false };
+        let later = (1..=LOOK_AHEAD + 1).map_while(|k| Some(step(before, before + k)? - k as f64));
+        let own = if time(index + 1).is_some() { OWN } else { f64::MIN_POSITIVE };
+        typical.grain_s <= 0.0
+            && step(before, index).is_some_and(|step| step < own)
+            && is_usual(before.checked_sub(1).and_then(|first| step(first, before)))
+            && is_usual(step(index, index + 1))
+            && later.fold(f64::NEG_INFINITY, f64::max) < -0.5
+    };
+    let mut stays = vec![true; rows.len()];
+    for index in (0..rows.len()).filter(|index| is_twice(*index)) {
+        odd.push((Oddity::Twice, rows[index]));
+        let has_one_stamp = step(index - 1, index).is_some_and(|step| step <= 0.0);
+        stays[if has_one_stamp { index - 1 } else { index }] = false;
     }
-
-    /// `rows` without those that are there twice: a row at the time of the one before it,
-    /// between steps as usual, and not made good by those after it, as a rounded stamp is: the last
-    /// row, after which there is none, only where it has the same stamp.
-    /// Of two with one stamp the later stays: where they differ, it says what holds from then on.
-    pub(super) fn once(
-        &mut self,
-        rows: Vec<usize>,
-        times: &[f64],
-        typical: &Typical,
-    ) -> Vec<usize> {
-        /// Part of a period from which a row is one of its own.
-        const OWN: f64 = 0.25;
-        let time = |index: usize| rows.get(index).and_then(|&row| times.get(row)).copied();
-        let step = |from: usize, to: usize| Some((time(to)? - time(from)?) / typical.seconds);
-        let is_usual = |step: Option<f64>| step.is_none_or(|step| (0.5..JUMP).contains(&step));
-        let is_twice = |index: usize| {
-            let Some(before) = index.checked_sub(1) else { return false };
-            let later =
-                (1..=LOOK_AHEAD + 1).map_while(|k| Some(step(before, before + k)? - k as f64));
-            let own = if time(index + 1).is_some() { OWN } else { f64::MIN_POSITIVE };
-            typical.grain_s <= 0.0
-                && step(before, index).is_some_and(|step| step < own)
-                && is_usual(before.checked_sub(1).and_then(|first| step(first, before)))
-                && is_usual(step(index, index + 1))
-                && later.fold(f64::NEG_INFINITY, f64::max) < -0.5
-        };
-        let mut stays = vec![true; rows.len()];
-        for index in (0..rows.len()).filter(|index| is_twice(*index)) {
-            count(&mut self.twice, rows[index]);
-            let has_one_stamp = step(index - 1, index).is_some_and(|step| step <= 0.0);
-            stays[if has_one_stamp { index - 1 } else { index }] = false;
-        }
-        rows.into_iter().zip(stays).filter(|(_, stays)| *stays).map(|(row, _)| row).collect()
-    }
-}
-
-/// Counts a row of a kind.
-pub(super) fn count(found: &mut Option<(usize, usize)>, row: usize) {
-    let (many, first) = found.unwrap_or((0, row));
-    *found = Some((many + 1, first.min(row)));
+    rows.into_iter().zip(stays).filter(|(_, stays)| *stays).map(|(row, _)| row).collect()
 }
 
 /// `rows` in parts, between gaps of more than `longest` periods.

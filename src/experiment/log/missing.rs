@@ -8,10 +8,9 @@
 use std::ops::Range;
 
 use super::cells::Log;
-use crate::experiment::clock::filled_s;
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::experiment::gaps::no_shorter;
-use crate::experiment::grid::{Grid, Repair, hold};
+use crate::experiment::grid::{Grid, Repair, filled_s, hold};
 use crate::experiment::layout::JointLayout;
 use crate::experiment::trial::Trial;
 use crate::numerics::median;

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::messages::{Messages, times_of};
-use crate::experiment::clock::filled_s;
+use crate::experiment::grid::filled_s;
 use crate::numerics::median;
 
 /// What was held at the messages of the topic `clock`, of which so many are too `early` and left out, and what
