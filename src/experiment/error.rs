@@ -19,8 +19,6 @@ pub struct ReadError {
     path: PathBuf,
     row: u64,
     column: Option<String>,
-    /// Whether the text itself says which column it is about.
-    is_column_in_text: bool,
     /// What was found, and what to do about it.
     text: String,
 }
@@ -74,8 +72,7 @@ pub enum ReadErrorKind {
 
 impl ReadError {
     pub(super) fn new(kind: ReadErrorKind, text: impl Into<String>) -> Self {
-        let (path, text) = (PathBuf::new(), text.into());
-        Self { kind, path, row: 0, column: None, is_column_in_text: false, text }
+        Self { kind, path: PathBuf::new(), row: 0, column: None, text: text.into() }
     }
 
     /// Something in it is none that can be read or computed with.
@@ -103,7 +100,7 @@ impl ReadError {
         let text = format!(
             "column `{column}` has {found} values but the log has {rows} rows; choose columns of one length"
         );
-        Self::content(text).about(column)
+        Self::content(text).in_column(column)
     }
 
     /// It is about this row: the line of the file, counted from 1, as an editor shows it; where a file
@@ -129,11 +126,6 @@ impl ReadError {
     /// It is about this column.
     pub(super) fn in_column(self, column: impl Into<String>) -> Self {
         Self { column: Some(column.into()), ..self }
-    }
-
-    /// It is about this column, which its text names.
-    pub(super) fn about(self, column: impl Into<String>) -> Self {
-        Self { is_column_in_text: true, ..self.in_column(column) }
     }
 
     /// The log at `path` is the one that cannot be read, unless another is named.
@@ -177,8 +169,9 @@ impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let path = Some(self.path.display().to_string()).filter(|path| !path.is_empty());
         let row = self.row().map(|row| format!("row {row}"));
-        let column = self.column().filter(|_| !self.is_column_in_text);
-        let column = column.map(|column| format!("column `{column}`"));
+        let column = self.column().map(|column| format!("`{column}`"));
+        let column = column.filter(|column| !self.text.contains(column));
+        let column = column.map(|column| format!("column {column}"));
         let place: Vec<String> = path.into_iter().chain(row).chain(column).collect();
         write!(f, "{}: {}", place.join(", "), self.text)
     }

@@ -236,7 +236,7 @@ fn joint_layout(columns: &Columns<'_>, joint: &JointColumns) -> Result<JointLayo
             "joint `{}` has column `{column}` for its input and for its output; give each its own",
             joint.name
         );
-        return Err(ReadError::content(text).about(column));
+        return Err(ReadError::content(text).in_column(column));
     }
     Ok(JointLayout {
         name: joint.name.clone(),
@@ -352,7 +352,7 @@ impl<'a> Columns<'a> {
                     head.names()
                 );
                 let error = ReadError::new(ReadErrorKind::MissingColumn, text);
-                Err(error.in_row(head.header_row).about(wanted))
+                Err(error.in_row(head.header_row).in_column(wanted))
             }
         }
     }

@@ -80,7 +80,7 @@ impl Head {
     /// That two columns are named so.
     pub(super) fn two_columns(&self, name: &str) -> ReadError {
         let text = format!("two columns are named `{name}`; rename one of them");
-        ReadError::content(text).in_row(self.header_row).about(name)
+        ReadError::content(text).in_row(self.header_row).in_column(name)
     }
 
     /// A column's header as it stands in the file.

@@ -17,7 +17,7 @@ pub(in crate::experiment) struct Log<'a> {
     /// The columns that were read, by their places among the headers.
     numeric: &'a [usize],
     pub(in crate::experiment) table: Table,
-    budget: &'a Budget,
+    pub(super) budget: &'a Budget,
     /// What may be done to it.
     pub(in crate::experiment) options: Repair,
     /// Seconds of each row.
@@ -45,17 +45,23 @@ impl<'a> Log<'a> {
         Self { head, layout, numeric, table, budget, options, times, counting, trials, notes }
     }
 
-    /// The joints, of those with the same output the first.
-    pub(in crate::experiment) fn with_own_outputs(&self) -> Vec<&'a JointLayout> {
-        let mut seen = HashSet::new();
-        let joints = self.layout.joints.iter().chain(&self.layout.others);
-        joints.filter(|joint| seen.insert(joint.output.column)).collect()
-    }
-
-    /// Notes `text` of a joint, where that is among the results.
-    pub(in crate::experiment) fn note_on(&mut self, joint: &JointLayout, text: &str) {
-        if self.layout.joints.contains(joint) {
-            self.notes.push(joint.note(text));
+    /// Mends each output that needs it: by its values anew, and what is said of them where their joint is among
+    /// the results. Of joints with the same output the first counts.
+    pub(in crate::experiment) fn mend_outputs(
+        &mut self,
+        mend: impl Fn(&Self, &JointLayout) -> Option<(Vec<f64>, Option<String>)>,
+    ) {
+        let (layout, mut seen) = (self.layout, HashSet::new());
+        for joint in layout.joints.iter().chain(&layout.others) {
+            if !seen.insert(joint.output.column) {
+                continue;
+            }
+            let Some((values, note)) = mend(self, joint) else { continue };
+            if let Some(column) = self.column_mut(joint.output.column) {
+                column.values = values;
+            }
+            let note = note.filter(|_| layout.joints.contains(joint));
+            self.notes.extend(note.map(|note| joint.note(&note)));
         }
     }
 
@@ -81,11 +87,6 @@ impl<'a> Log<'a> {
         self.times.get(rows.start..rows.end)
     }
 
-    /// Takes the memory of `count` values of `size` bytes each.
-    pub(super) fn take(&self, count: usize, size: usize) -> Result<(), ReadError> {
-        self.budget.take_values(count, size)
-    }
-
     pub(in crate::experiment) fn column(&self, index: usize) -> Option<&Column> {
         self.table.columns.get(self.numeric.binary_search(&index).ok()?)
     }
@@ -98,11 +99,6 @@ impl<'a> Log<'a> {
     /// The name of a column.
     pub(super) fn header(&self, column: usize) -> String {
         self.head.headers.get(column).map(|header| header.name.clone()).unwrap_or_default()
-    }
-
-    /// The header of a column as it stands in the file.
-    pub(in crate::experiment) fn cell_of_header(&self, column: usize) -> &str {
-        self.head.headers.get(column).map_or("", |header| &header.text)
     }
 
     /// What messages call a row.

@@ -48,7 +48,7 @@ impl Log<'_> {
         let (mut trials, mut split) = (Vec::new(), Vec::new());
         let size = (2 + covariates.len()) * SAMPLE_SIZE;
         for (index, (rows, grid)) in self.trials.iter().zip(grids).enumerate() {
-            self.take(grid.samples(), size)?;
+            self.budget.take_values(grid.samples(), size)?;
             let pieces = grid.pieces(self.signals(layout, rows));
             if pieces.len() > 1 {
                 split.push(self.split_note(rows, &pieces, grid));

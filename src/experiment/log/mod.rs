@@ -4,7 +4,6 @@ mod cells;
 mod joints;
 mod missing;
 mod times;
-mod unit_change;
 
 pub(super) use self::cells::Log;
 pub(super) use self::times::repeats;

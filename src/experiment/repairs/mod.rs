@@ -4,16 +4,17 @@
 //! stamps are read: in [`super::clock`].
 
 mod bursts;
-mod mended;
 mod rezeroed;
 mod same_time;
 mod slow_sensor;
 mod wrap;
 
-use self::mended::mend_outputs;
 use super::error::ReadError;
 use super::log::Log;
 use super::table::TrialRows;
+
+/// The values of an output as they are mended, and what is said of it.
+type Mended = (Vec<f64>, Option<String>);
 
 /// Mends everything in `log` that may be: the rows before their times, the times before the signals. What
 /// depends on rows that a growing log does not have yet is not mended in one.
@@ -33,11 +34,11 @@ pub(super) fn mend_all(log: &mut Log<'_>) -> Result<(), ReadError> {
         bursts::spread_out(log);
     }
     if log.options.is_free() {
-        mend_outputs(log, slow_sensor::first_readings);
+        log.mend_outputs(slow_sensor::first_readings);
     }
     if is_whole {
         // A turn is a jump, too: of what wraps it is not known where its zero is set anew.
-        mend_outputs(log, |log, joint| {
+        log.mend_outputs(|log, joint| {
             wrap::unwrap(log, joint).or_else(|| rezeroed::put_back(log, joint))
         });
     }
@@ -59,7 +60,7 @@ fn join_stamps(log: &mut Log<'_>) {
     if let Some(seconds) = log.column_mut(whole).filter(|_| are_two) {
         seconds.values.iter_mut().zip(parts).for_each(|(value, part)| *value += unit_s * part);
     }
-    let (whole, rest) = (log.cell_of_header(whole), log.cell_of_header(rest));
+    let (whole, rest) = (log.head.text(whole), log.head.text(rest));
     let and = if are_two { format!(" and `{rest}`") } else { format!("; `{rest}` is not used") };
     log.notes.push(format!("the times are those in `{whole}`{and}"));
 }

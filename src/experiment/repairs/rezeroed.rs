@@ -3,7 +3,7 @@
 //! An incremental encoder that is homed again goes on from another value: from one row to the next the
 //! output jumps as it never moves. What follows is taken back by the jump.
 
-use super::mended::Mended;
+use super::Mended;
 use crate::experiment::layout::JointLayout;
 use crate::experiment::log::Log;
 use crate::numerics::{median, to_digits};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::mended::Mended;
+use super::Mended;
 use crate::experiment::layout::JointLayout;
 use crate::experiment::log::Log;
 use crate::numerics::quantile;

@@ -4,7 +4,7 @@
 //! sample, which no joint makes. Where all large jumps of an output are of a turn, they are taken
 //! out. Its unit says what a turn is, else the jumps themselves do.
 
-use super::mended::Mended;
+use super::Mended;
 use crate::experiment::layout::JointLayout;
 use crate::experiment::log::Log;
 use crate::numerics::{RunningLine, as_written, median, quantile, to_decimals};
