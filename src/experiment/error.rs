@@ -4,8 +4,6 @@ use std::error::Error;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use super::trial::TrialError;
-
 /// The column of a time, and mappings: of each joint its name, its input and its output.
 type Likely = (Option<String>, Vec<Vec<[String; 3]>>);
 
@@ -66,8 +64,6 @@ pub enum ReadErrorKind {
     TrialNotContiguous,
     /// A trial would have more samples than can be handled.
     TooManySamples,
-    /// The samples do not make a trial.
-    Trial(Box<TrialError>),
 }
 
 impl ReadError {
@@ -181,7 +177,6 @@ impl Error for ReadError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match &self.kind {
             ReadErrorKind::Io(source) => Some(source),
-            ReadErrorKind::Trial(source) => Some(source.as_ref()),
             _ => None,
         }
     }

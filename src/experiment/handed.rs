@@ -9,7 +9,7 @@ use super::layout::unknown_joint;
 use super::memory::Budget;
 use super::read::{Experiment, Failure, Place, ReadOptions, read_log};
 use super::source::{Source, Sum};
-use super::table::{Column, Head, Header, Labels, OpenTable, Table, Wanted};
+use super::table::{Head, Header, OpenTable, Table, Values, Wanted};
 
 /// A log in memory: columns of equal length, with the names that a file would have.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,23 +36,6 @@ pub enum HandedValues {
     Numbers(Vec<f64>),
     /// Texts, as of a column that names the trials.
     Texts(Vec<String>),
-}
-
-impl HandedValues {
-    fn column(&self) -> Column {
-        match self {
-            Self::Numbers(numbers) => Column::of(numbers.clone()),
-            Self::Texts(_) => Column::text(),
-        }
-    }
-
-    fn labels(&self) -> Vec<String> {
-        let label = |number: &f64| if number.is_nan() { String::new() } else { number.to_string() };
-        match self {
-            Self::Numbers(numbers) => numbers.iter().map(label).collect(),
-            Self::Texts(texts) => texts.clone(),
-        }
-    }
 }
 
 impl Experiment {
@@ -136,11 +119,13 @@ fn open(log: &Rc<HandedLog>, budget: Budget) -> Result<OpenTable, ReadError> {
     let headers = log.columns.iter().map(|column| Header::parse(&column.name)).collect();
     let log = Rc::clone(log);
     let read_rows = move |wanted: &Wanted<'_>| {
-        let values = |place: &usize| log.columns.get(*place).map(|column| &column.values);
-        let labels = wanted.label.and_then(|label| values(&label)).map(HandedValues::labels);
-        let labels = Labels::of(labels.unwrap_or_default(), wanted.budget)?;
-        let columns = wanted.numeric.iter().filter_map(values).map(HandedValues::column).collect();
-        Ok(Table::counted(wanted, columns, labels))
+        Table::of_values(wanted, |place| {
+            Ok(match log.columns.get(place).map(|column| &column.values) {
+                Some(HandedValues::Numbers(numbers)) => Values::Numbers(numbers.clone()),
+                Some(HandedValues::Texts(texts)) => Values::Texts(texts.clone()),
+                None => Values::default(),
+            })
+        })
     };
     Ok(OpenTable::new((Head::without_lines(headers), Box::new(read_rows)), budget))
 }

@@ -203,6 +203,37 @@ impl Table {
         }
     }
 
+    /// The rows of a file that has no lines, whose columns are `values`, by their places among the headers.
+    pub(super) fn of_values(
+        wanted: &Wanted<'_>,
+        values: impl Fn(usize) -> Result<Values, ReadError>,
+    ) -> Result<Self, ReadError> {
+        let mut columns = Vec::new();
+        for column in wanted.numeric {
+            columns.push(match values(*column)? {
+                Values::Numbers(numbers) => Column::of(numbers),
+                Values::Texts(_) => Column::not_numbers("text"),
+                Values::Other(kind) => Column::not_numbers(&kind),
+            });
+        }
+        let mut labels = Vec::new();
+        if let Some(column) = wanted.label {
+            let of_number = |x: f64| if x.is_nan() { String::new() } else { x.to_string() };
+            labels = match values(column)? {
+                Values::Numbers(numbers) => numbers.into_iter().map(of_number).collect(),
+                Values::Texts(texts) => texts,
+                Values::Other(kind) => {
+                    let text = format!(
+                        "it holds {kind}, not a label per row; save it as numbers or as a cell array of texts, \
+                         or read all as one trial with `--trial none`"
+                    );
+                    return Err(ReadError::content(text).in_column(wanted.head.text(column)));
+                }
+            };
+        }
+        Ok(Self::counted(wanted, columns, Labels::of(labels, wanted.budget)?))
+    }
+
     /// The rows of a file that has no lines, counted from 1: as many as the times are, else as its longest column
     /// has.
     pub(super) fn counted(wanted: &Wanted<'_>, columns: Vec<Column>, labels: Labels) -> Self {
@@ -212,6 +243,22 @@ impl Table {
         let longest = lengths.chain([labels.rows]).max().unwrap_or_default();
         let rows = (1..).take(times.map_or(longest, |times| times.values.len())).collect();
         Self { source: None, rows, columns, trials: labels.runs, notes: Vec::new() }
+    }
+}
+
+/// The values of a column of a file that has no lines.
+pub(super) enum Values {
+    /// Missing ones are NaN.
+    Numbers(Vec<f64>),
+    Texts(Vec<String>),
+    /// What it holds instead.
+    #[cfg_attr(not(feature = "mat"), expect(dead_code, reason = "for other formats"))]
+    Other(String),
+}
+
+impl Default for Values {
+    fn default() -> Self {
+        Self::Numbers(Vec::new())
     }
 }
 
@@ -254,11 +301,6 @@ impl Column {
     pub(super) fn too_small(&self) -> Option<f64> {
         let largest = self.values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         (largest > 0.0 && largest < SMALLEST).then_some(largest)
-    }
-
-    /// A column that holds texts.
-    pub(super) fn text() -> Self {
-        Self::not_numbers("text")
     }
 
     /// Adds the cell of a row, as long as there was no bad one.

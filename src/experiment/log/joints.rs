@@ -3,12 +3,11 @@
 use super::cells::Log;
 use super::missing::Filled;
 use crate::experiment::error::{ReadError, ReadErrorKind};
-use crate::experiment::gaps::no_shorter;
 use crate::experiment::grid::{Grid, Piece, Repair, Signals};
 use crate::experiment::joint::{Joint, Signal};
 use crate::experiment::layout::{JointLayout, SignalColumn};
 use crate::experiment::table::TrialRows;
-use crate::experiment::trial::Trial;
+use crate::experiment::trial::{Trial, no_shorter};
 
 /// Memory of a sample of a signal: the number as it was read, on its grid and in its trial, and
 /// what is made of it until its delays are known.
@@ -166,10 +165,7 @@ fn trial(
     let Signals { input, output, covariates } = piece.signals;
     let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
         .and_then(|trial| trial.with_covariates(covariates));
-    trial.map_err(|source| {
-        let kind = ReadErrorKind::Trial(Box::new(source));
-        ReadError::new(kind, format!("joint `{}`", layout.name))
-    })
+    trial.map_err(|error| ReadError::content(format!("joint `{}`: {error}", layout.name)))
 }
 
 /// The first few of notes of one kind.

@@ -9,10 +9,9 @@ use std::ops::Range;
 
 use super::cells::Log;
 use crate::experiment::error::{ReadError, ReadErrorKind};
-use crate::experiment::gaps::no_shorter;
 use crate::experiment::grid::{Grid, Repair, filled_s, hold};
 use crate::experiment::layout::JointLayout;
-use crate::experiment::trial::Trial;
+use crate::experiment::trial::{Trial, no_shorter};
 use crate::numerics::median;
 use crate::units::floor_to_index;
 

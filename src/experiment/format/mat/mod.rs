@@ -19,7 +19,7 @@ use self::variable::{Content, Variable};
 use super::first_bytes::{is_matlab_73, start_of};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, NUMBER_SIZE};
-use crate::experiment::table::{Column, Head, Labels, Opened, Table, Wanted};
+use crate::experiment::table::{Head, Opened, Table, Values, Wanted};
 
 /// The variables with the place of each header: its variable, and the column of that.
 struct Unread {
@@ -63,53 +63,30 @@ fn check_kinds(variables: &[Variable]) -> Result<(), ReadError> {
 
 impl Unread {
     fn read(&self, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let columns = wanted.numeric.iter().map(|index| {
-            let (variable, _) = self.place(*index).unzip();
-            let rows = variable.map_or(0, |variable| variable.shape().0);
-            wanted.budget.take_values(rows, NUMBER_SIZE)?;
-            self.column(*index)
-        });
-        let columns = columns.collect::<Result<_, _>>()?;
-        let labels = wanted.label.map_or_else(|| Ok(Vec::new()), |index| self.labels(index))?;
-        Ok(Table::counted(wanted, columns, Labels::of(labels, wanted.budget)?))
+        Table::of_values(wanted, |header| {
+            let Some(&(variable, column)) = self.places.get(header) else {
+                return Ok(Values::default());
+            };
+            let variable = &self.variables[variable];
+            wanted.budget.take_values(variable.shape().0, NUMBER_SIZE)?;
+            self.values(variable, column)
+        })
     }
 
-    fn place(&self, header: usize) -> Option<(&Variable, usize)> {
-        let (variable, column) = *self.places.get(header)?;
-        Some((self.variables.get(variable)?, column))
-    }
-
-    /// The numbers of a column, or what is there instead.
-    fn column(&self, header: usize) -> Result<Column, ReadError> {
-        let Some((variable, column)) = self.place(header) else { return Ok(Column::default()) };
+    /// The numbers or the texts of a column, or what is there instead.
+    fn values(&self, variable: &Variable, column: usize) -> Result<Values, ReadError> {
         if let Some(kind) = variable.is_no_column() {
-            return Ok(Column::not_numbers(kind));
+            return Ok(Values::Other(kind.to_owned()));
         }
         Ok(match &variable.content {
             Content::Numbers(values) => {
                 let (rows, _) = variable.shape();
                 let values = values.iter().skip(column * rows).take(rows);
-                Column::of(values.copied().collect())
+                Values::Numbers(values.copied().collect())
             }
-            Content::Stored(dataset) => Column::of(v73::column(dataset, column, self.size)?),
-            Content::Texts(_) | Content::Other(_) => Column::not_numbers("text"),
+            Content::Stored(dataset) => Values::Numbers(v73::column(dataset, column, self.size)?),
+            Content::Texts(texts) => Values::Texts(texts.clone()),
+            Content::Other(kind) => Values::Other(kind.clone()),
         })
-    }
-
-    /// The label of each row.
-    fn labels(&self, header: usize) -> Result<Vec<String>, ReadError> {
-        let Some((variable, _)) = self.place(header) else { return Ok(Vec::new()) };
-        if let Some(found) = variable.is_no_column() {
-            let text = format!(
-                "it holds {found}, not a label per row; save it as numbers or as a cell array of texts, \
-                 or read all as one trial with `--trial none`"
-            );
-            let error = ReadError::content(text);
-            return Err(error.in_column(&variable.name));
-        }
-        match &variable.content {
-            Content::Texts(texts) => Ok(texts.clone()),
-            _ => Ok(self.column(header)?.values.iter().map(f64::to_string).collect()),
-        }
     }
 }

@@ -14,9 +14,6 @@ use re_ros_msg::message_spec::{
 /// Arrays longer than this are images and the like, not joints.
 const MOST_ELEMENTS: usize = 64;
 
-/// Letters of a field's name, at most: each column below it bears them.
-const LONGEST_NAME: usize = 255;
-
 /// Types may lie in types, but not without end.
 const DEEPEST: usize = 32;
 
@@ -78,12 +75,6 @@ impl Decoder {
     pub(super) fn new(name: &str, definition: &[u8]) -> Result<Self, String> {
         let text = std::str::from_utf8(definition).map_err(|error| error.to_string())?;
         let schema = MessageSchema::parse(name, text).map_err(|error| format!("{error:#}"))?;
-        let specs = std::iter::once(&schema.spec).chain(&schema.dependencies);
-        let mut fields = specs.flat_map(|spec| &spec.fields);
-        if let Some(field) = fields.find(|field| field.name.len() > LONGEST_NAME) {
-            let start: String = field.name.chars().take(20).collect();
-            return Err(format!("the name of the field `{start}…` is too long"));
-        }
         let types = schema.dependencies.into_iter().map(|part| (key(&part.name), part)).collect();
         Ok(Self { message: schema.spec, types })
     }
