@@ -121,6 +121,24 @@ fn with_causes(error: &dyn std::error::Error) -> String {
     text
 }
 
+/// Trials keep their rows where a table begins with its newest row.
+#[test]
+fn trials_of_unequal_length_are_turned_with_their_rows() {
+    let mut rows: Vec<String> = Vec::new();
+    for (k, row) in clean().into_iter().enumerate() {
+        let trial = if k < 500 { "a" } else { "b" };
+        rows.push(format!("{trial},{:.2},{},{}\n", row.time, row.input, row.output));
+    }
+    let header = format!("trial,{}\n", log::HEADER);
+    let read =
+        |rows: &[String]| read_file(&messy("turned.csv", header.clone() + &rows.concat(), SAME));
+    let oldest_first = read(&rows);
+    rows.reverse();
+    let newest_first = read(&rows);
+    assert_eq!(newest_first.joints[0].trials, oldest_first.joints[0].trials);
+    assert_eq!(newest_first.joints[0].trials[0].len(), 500);
+}
+
 /// A logger that notes the input when it changes does not note it where a trial begins.
 #[test]
 fn an_input_that_is_noted_at_its_changes_is_held_into_the_next_trial() {

@@ -24,7 +24,6 @@ pub(in crate::experiment) struct Log<'a> {
     pub(in crate::experiment) times: Vec<f64>,
     /// How they count, where they are read from a column of times.
     pub(super) counting: Option<Counting>,
-    pub(in crate::experiment) trials: Vec<TrialRows>,
     /// What a reader of the log should know.
     pub(in crate::experiment) notes: Vec<String>,
 }
@@ -36,13 +35,20 @@ impl<'a> Log<'a> {
         head: &'a Head,
         layout: &'a Layout,
         numeric: &'a [usize],
-        table: Table,
+        mut table: Table,
         budget: &'a Budget,
         (options, stem): (Repair, Option<&str>),
     ) -> Self {
-        let trials = named(&table, stem);
+        if table.trials.is_empty() {
+            let label = stem.unwrap_or("1").to_owned();
+            table.trials.push(TrialRows { label, start: 0, end: table.rows.len() });
+        } else if let Some(stem) = stem {
+            for trial in &mut table.trials {
+                trial.label = format!("{stem}/{}", trial.label);
+            }
+        }
         let (times, counting, notes) = (Vec::new(), None, Vec::new());
-        Self { head, layout, numeric, table, budget, options, times, counting, trials, notes }
+        Self { head, layout, numeric, table, budget, options, times, counting, notes }
     }
 
     /// Mends each output that needs it: by its values anew, and what is said of them where their joint is among
@@ -67,7 +73,7 @@ impl<'a> Log<'a> {
 
     /// The rows of each trial.
     pub(in crate::experiment) fn spans(&self) -> Vec<Range<usize>> {
-        self.trials.iter().map(|trial| trial.start..trial.end).collect()
+        self.table.trials.iter().map(|trial| trial.start..trial.end).collect()
     }
 
     /// The numbers of a column that was read.
@@ -83,7 +89,7 @@ impl<'a> Log<'a> {
 
     /// The times of the rows of a trial.
     pub(in crate::experiment) fn times_of(&self, trial: usize) -> Option<&[f64]> {
-        let rows = self.trials.get(trial)?;
+        let rows = self.table.trials.get(trial)?;
         self.times.get(rows.start..rows.end)
     }
 
@@ -121,19 +127,4 @@ impl<'a> Log<'a> {
             }
         }
     }
-}
-
-/// The trials' rows, named: the whole file is trial `1` unless it says otherwise.
-fn named(table: &Table, stem: Option<&str>) -> Vec<TrialRows> {
-    if table.trials.is_empty() {
-        let label = stem.unwrap_or("1").to_owned();
-        return vec![TrialRows { label, start: 0, end: table.rows.len() }];
-    }
-    let mut trials = table.trials.clone();
-    if let Some(stem) = stem {
-        for trial in &mut trials {
-            trial.label = format!("{stem}/{}", trial.label);
-        }
-    }
-    trials
 }

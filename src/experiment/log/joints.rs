@@ -46,13 +46,13 @@ impl Log<'_> {
         let covariates: Vec<Signal> = layout.covariates.iter().map(|c| c.signal.clone()).collect();
         let (mut trials, mut split) = (Vec::new(), Vec::new());
         let size = (2 + covariates.len()) * SAMPLE_SIZE;
-        for (index, (rows, grid)) in self.trials.iter().zip(grids).enumerate() {
+        for (index, (rows, grid)) in self.table.trials.iter().zip(grids).enumerate() {
             self.budget.take_values(grid.samples(), size)?;
             let pieces = grid.pieces(self.signals(layout, rows));
             if pieces.len() > 1 {
                 split.push(self.split_note(rows, &pieces, grid));
             }
-            let labels = part_labels(&rows.label, pieces.len(), &self.trials);
+            let labels = part_labels(&rows.label, pieces.len(), &self.table.trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
                 let between = piece.filled.clone();
                 let trial = trial(layout, label, grid, piece)?;

@@ -20,7 +20,7 @@ impl Log<'_> {
             TimeSource::Times(column, scale) => (column, scale),
             TimeSource::SampleNumbers(column, period) => (column, Some(period.seconds())),
             TimeSource::Rows(period) => {
-                let rows = self.trials.iter().flat_map(|trial| 0..trial.end - trial.start);
+                let rows = self.table.trials.iter().flat_map(|trial| 0..trial.end - trial.start);
                 self.times = rows.map(|row| row as f64 * period.seconds()).collect();
                 return Ok(());
             }
@@ -49,13 +49,13 @@ impl Log<'_> {
 
     /// The grid of each trial, and what was done to lay it.
     pub(super) fn grids(&self, options: Repair) -> Result<(Vec<Grid>, Vec<String>), ReadError> {
-        let trials = 0..self.trials.len();
+        let trials = 0..self.table.trials.len();
         let times: Vec<&[f64]> = trials.filter_map(|trial| self.times_of(trial)).collect();
         let number = |trial: usize, row: usize| {
-            self.trials.get(trial).map_or(0, |rows| self.row(rows.start + row))
+            self.table.trials.get(trial).map_or(0, |rows| self.row(rows.start + row))
         };
         grids(&times, options, &number).map_err(|(trial, fault)| {
-            let label = self.trials.get(trial).map_or("", |trial| &trial.label);
+            let label = self.table.trials.get(trial).map_or("", |trial| &trial.label);
             fault.in_trial(label, |row| number(trial, row))
         })
     }
@@ -90,7 +90,7 @@ impl Log<'_> {
             Some(_) => SELDOM_S.0,
             None => f64::INFINITY,
         };
-        for (trial, grid) in self.trials.iter().zip(grids) {
+        for (trial, grid) in self.table.trials.iter().zip(grids) {
             let period = grid.period().seconds();
             let column = self.header(column);
             if period > most {
@@ -201,8 +201,8 @@ impl Log<'_> {
         let column = self.header(output);
         let times = self.layout.time.column().and_then(|column| self.column(column));
         let Some((times, output)) = times.zip(self.column(output)) else { return Ok(()) };
-        let repeats = repeats(&times.values, &self.trials);
-        let rows: usize = self.trials.iter().map(|trial| trial.end - trial.start).sum();
+        let repeats = repeats(&times.values, &self.table.trials);
+        let rows: usize = self.table.trials.iter().map(|trial| trial.end - trial.start).sum();
         let groups = rows - repeats.len();
         // Rounded to the nearest.
         let size = (2 * rows + groups).checked_div(2 * groups).unwrap_or(1);

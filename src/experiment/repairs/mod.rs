@@ -89,11 +89,12 @@ fn falls(times: &[f64]) -> bool {
 /// row. Where all are of one row, that is an error of the log.
 fn leave_out_single_rows(log: &mut Log<'_>) {
     let is_long = |trial: &TrialRows| trial.end > trial.start + 1;
-    if !log.trials.iter().any(is_long) {
+    if !log.table.trials.iter().any(is_long) {
         return;
     }
-    let (long, alone): (_, Vec<_>) = std::mem::take(&mut log.trials).into_iter().partition(is_long);
-    log.trials = long;
+    let (long, alone): (_, Vec<_>) =
+        std::mem::take(&mut log.table.trials).into_iter().partition(is_long);
+    log.table.trials = long;
     let Some(TrialRows { label, .. }) = alone.first() else { return };
     let count = alone.len();
     log.notes.push(if count == 1 {

@@ -14,7 +14,7 @@ pub(super) fn put_back(log: &Log<'_>, joint: &JointLayout) -> Option<Mended> {
     let (inputs, outputs) = (log.parts(joint.input.column)?, log.parts(joint.output.column)?);
     let signals = inputs.into_iter().zip(&outputs).map(|(input, output)| [input, *output]);
     let least = least_jump(&signals.collect::<Vec<_>>())?;
-    let mut trials = log.trials.iter().zip(outputs);
+    let mut trials = log.table.trials.iter().zip(outputs);
     if !trials.all(|(rows, output)| are_near(log, rows.start, output, least)) {
         return None;
     }

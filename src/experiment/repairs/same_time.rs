@@ -9,7 +9,7 @@ const REPEATED: f64 = 0.1;
 /// Joins rows with the one before that has their time, where no two of these contradict each other.
 pub(super) fn join(log: &mut Log<'_>) {
     let times = &mut log.times;
-    let repeats = repeats(times, &log.trials);
+    let repeats = repeats(times, &log.table.trials);
     if repeats.len() as f64 <= REPEATED * times.len() as f64 {
         return;
     }
@@ -25,7 +25,7 @@ pub(super) fn join(log: &mut Log<'_>) {
     let place = |row: usize| row - repeats.partition_point(|repeat| *repeat < row);
     let kept: Vec<usize> = (0..table.rows.len()).filter(is_kept).collect();
     *times = kept.iter().filter_map(|row| times.get(*row).copied()).collect();
-    for trial in &mut log.trials {
+    for trial in &mut table.trials {
         (trial.start, trial.end) = (place(trial.start), place(trial.end));
     }
     table.rows = kept.iter().filter_map(|row| table.rows.get(*row).copied()).collect();
