@@ -26,11 +26,11 @@ impl Log<'_> {
         let layout = &layout;
         self.check_one_series(layout.output.column)?;
         let (filled, mut notes) = self.missing(layout, grids)?;
-        let own = filled.longest_s().map(|fill_s| Repair { fill_s: Some(fill_s), ..self.options });
+        let own = filled.map(|(_, fill_s)| Repair { fill_s: Some(fill_s), ..self.options });
         let own = own.map(|options| self.grids(options)).transpose()?;
         let grids = own.as_ref().map_or(grids, |(own, _)| own);
         notes.extend(unread);
-        let (joint, split) = self.on_grids(layout, grids, filled)?;
+        let (joint, split) = self.on_grids(layout, grids, filled.map(|(filled, _)| filled))?;
         notes.extend(shown(split));
         Ok((joint, notes))
     }
@@ -40,7 +40,7 @@ impl Log<'_> {
         &self,
         layout: &JointLayout,
         grids: &[Grid],
-        filled: Filled,
+        filled: Option<Filled>,
     ) -> Result<(Joint, Vec<String>), ReadError> {
         let origin_s = self.origin_s();
         let covariates: Vec<Signal> = layout.covariates.iter().map(|c| c.signal.clone()).collect();
@@ -57,12 +57,12 @@ impl Log<'_> {
                 let between = piece.filled.clone();
                 let trial = trial(layout, label, grid, piece)?;
                 let trial = match filled {
-                    Filled::Readings { .. } => trial.with_interpolated(between),
-                    Filled::Pauses { .. } => {
+                    Some(Filled::Readings) => trial.with_interpolated(between),
+                    Some(Filled::Pauses) => {
                         let pauses = self.pauses(index, &trial);
                         trial.with_unlogged(pauses)
                     }
-                    Filled::Gaps => trial,
+                    None => trial,
                 };
                 trials.push(trial.counted_from(origin_s));
             }

@@ -15,29 +15,18 @@ use crate::experiment::trial::{Trial, no_shorter};
 use crate::numerics::median;
 use crate::units::floor_to_index;
 
-/// What of an output is filled with lines.
+/// What of an output is filled with lines, beside the gaps that are filled in the clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Filled {
-    /// The gaps that are filled in the clock.
-    Gaps,
     /// What lies between the readings of a sensor that is slower than the log.
-    Readings { longest_s: f64 },
+    Readings,
     /// The pauses of a logger in which the input changes, and nowhere else.
-    Pauses { longest_s: f64 },
-}
-
-impl Filled {
-    /// How far apart outputs are joined, seconds, where it is farther than in the clock.
-    pub(super) fn longest_s(self) -> Option<f64> {
-        match self {
-            Self::Gaps => None,
-            Self::Readings { longest_s } | Self::Pauses { longest_s } => Some(longest_s),
-        }
-    }
+    Pauses,
 }
 
 impl Log<'_> {
-    /// What of the output of a joint is filled, whose clock is that of `grids`, and what is said of it.
+    /// What of the output of a joint is filled, whose clock is that of `grids`, with the seconds up to which
+    /// outputs are joined then; and what is said of it.
     ///
     /// # Errors
     /// [`ReadErrorKind::Missing`] where nothing may be filled.
@@ -45,25 +34,26 @@ impl Log<'_> {
         &self,
         layout: &JointLayout,
         grids: &[Grid],
-    ) -> Result<(Filled, Vec<String>), ReadError> {
+    ) -> Result<(Option<(Filled, f64)>, Vec<String>), ReadError> {
         let Repair { as_it_stands, fill_s, .. } = self.options;
         if as_it_stands && fill_s.is_none() {
             self.check_whole(layout)?;
         }
-        if let Some((filled, note)) = self.slow_sensor(layout).filter(|_| self.options.is_free()) {
-            return Ok((filled, vec![note]));
+        if let Some((longest_s, note)) = self.slow_sensor(layout).filter(|_| self.options.is_free())
+        {
+            return Ok((Some((Filled::Readings, longest_s)), vec![note]));
         }
         let mut notes = self.filled_notes(layout);
         let may_fill = !as_it_stands && fill_s.is_none();
         let Some(longest_s) = self.pause_with_steps_s(layout, grids).filter(|_| may_fill) else {
-            return Ok((Filled::Gaps, notes));
+            return Ok((None, notes));
         };
         notes.push(format!(
             "its input changes only in gaps of the log (of up to {longest_s} s). They are filled, \
              the output interpolated and the input held, so delays count from the end of a gap. A \
              reaction inside a gap cannot be seen; a delay accepted for such a step is wrong"
         ));
-        Ok((Filled::Pauses { longest_s }, notes))
+        Ok((Some((Filled::Pauses, longest_s)), notes))
     }
 
     /// The longest pause of a logger, with two periods to spare, to three digits, where the input of a joint
@@ -127,7 +117,7 @@ impl Log<'_> {
 
     /// How far apart outputs may be that are joined by a line, where so many rows have none that the sensor
     /// must have a clock of its own: steps of the input keep their times.
-    fn slow_sensor(&self, layout: &JointLayout) -> Option<(Filled, String)> {
+    fn slow_sensor(&self, layout: &JointLayout) -> Option<(f64, String)> {
         /// Part of the rows without an output, at least, and times the usual distance of two outputs beyond
         /// which nothing is known between them (chosen).
         const SPARSE: f64 = 0.3;
@@ -151,7 +141,7 @@ impl Log<'_> {
              as measured, and an onset model may take the interpolation for a lag. Models are \
              compared with the measured samples only"
         );
-        Some((Filled::Readings { longest_s: LONGEST * usual_s }, note))
+        Some((LONGEST * usual_s, note))
     }
 
     /// A line on cells that are missing in the input and the output of a joint.
