@@ -84,7 +84,7 @@ impl Clock {
             let runs = runs.map(|rows| Run { rows: rows.to_vec(), places: Vec::new() });
             (runs.collect(), usual, Evenness::Uneven)
         } else {
-            let places = place_rows(&steps, usual, repair.fill_s.is_some())?;
+            let places = place_rows(&steps, usual, repair)?;
             let last = places.last().copied().unwrap_or(1);
             let span = times[times.len() - 1] - times[0];
             let period = as_written(span / last as f64, DIGITS);
@@ -134,7 +134,7 @@ impl Clock {
 
 /// The place of each row on a grid of `period`, from the steps between rows; rows are lost only where they may be
 /// filled.
-fn place_rows(steps: &[f64], period: f64, may_fill: bool) -> Result<Vec<usize>, ReadError> {
+fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, ReadError> {
     /// Places on the grid that are still distinct as floating-point numbers.
     const MOST_PLACES: f64 = 1e12;
     let mut places = Vec::with_capacity(steps.len() + 1);
@@ -145,7 +145,7 @@ fn place_rows(steps: &[f64], period: f64, may_fill: bool) -> Result<Vec<usize>, 
         let uniform = (step - periods * period).abs() <= UNIFORMITY * period;
         // Over a long pause the clock may drift by more than a part of one period.
         let pause = periods >= 1.0 / UNIFORMITY;
-        let lost_rows = may_fill && (uniform || pause) && periods < MOST_PLACES;
+        let lost_rows = repair.fill_s.is_some() && (uniform || pause) && periods < MOST_PLACES;
         if !(lost_rows || uniform && periods < 1.5) {
             let period = as_written(period, DIGITS);
             let text = format!(

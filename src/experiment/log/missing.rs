@@ -24,9 +24,11 @@ pub(super) enum Filled {
     Pauses,
 }
 
+/// What is filled, and up to how many seconds outputs are joined then.
+type FilledFor = Option<(Filled, f64)>;
+
 impl Log<'_> {
-    /// What of the output of a joint is filled, whose clock is that of `grids`, with the seconds up to which
-    /// outputs are joined then; and what is said of it.
+    /// What of the output of a joint is filled, whose clock is that of `grids`, and what is said of it.
     ///
     /// # Errors
     /// [`ReadErrorKind::Missing`] where nothing may be filled.
@@ -34,7 +36,7 @@ impl Log<'_> {
         &self,
         layout: &JointLayout,
         grids: &[Grid],
-    ) -> Result<(Option<(Filled, f64)>, Vec<String>), ReadError> {
+    ) -> Result<(FilledFor, Vec<String>), ReadError> {
         let Repair { as_it_stands, fill_s, .. } = self.options;
         if as_it_stands && fill_s.is_none() {
             self.check_whole(layout)?;
