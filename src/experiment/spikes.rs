@@ -66,8 +66,8 @@ impl Spikes {
 
 /// Samples of `trial` that are spikes.
 pub(crate) fn spike_count(trial: &Trial) -> usize {
-    let Spikes(spikes) = Spikes::of(std::slice::from_ref(trial));
-    spikes.into_iter().flatten().flatten().collect::<BTreeSet<usize>>().len()
+    let spikes = spikes(trial.output(), noise(std::slice::from_ref(trial)));
+    spikes.into_iter().flatten().collect::<BTreeSet<usize>>().len()
 }
 
 /// The output of `trial` with lines in the place of its spikes; none where it has no spike.
