@@ -1,7 +1,7 @@
 //! How far stamps are from an even grid, and what that makes of the clock.
 
 use super::period::Typical;
-use super::rows::{LOST_SHARE, Run};
+use super::run::{LOST_SHARE, Run};
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::numerics::{median, quantile};
 

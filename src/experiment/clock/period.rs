@@ -1,6 +1,6 @@
 //! The period of a clock: a first guess, and the least-squares period.
 
-use super::rows::{JUMP, LOST_SHARE, Run, not_increasing, single_row};
+use super::run::{JUMP, LOST_SHARE, Run, not_increasing, single_row};
 use crate::experiment::error::{ReadError, ReadErrorKind};
 use crate::numerics::median;
 

@@ -10,6 +10,9 @@ use crate::experiment::memory::Budget;
 use crate::experiment::origin::Counting;
 use crate::experiment::table::{Column, Head, Table, TrialRows};
 
+/// The values of an output as they are mended, and what is said of it.
+pub(in crate::experiment) type Mended = (Vec<f64>, Option<String>);
+
 /// A table that was read, with what is needed to mend it and to speak of its cells.
 pub(in crate::experiment) struct Log<'a> {
     pub(in crate::experiment) head: &'a Head,
@@ -55,7 +58,7 @@ impl<'a> Log<'a> {
     /// the results. Of joints with the same output the first counts.
     pub(in crate::experiment) fn mend_outputs(
         &mut self,
-        mend: impl Fn(&Self, &JointLayout) -> Option<(Vec<f64>, Option<String>)>,
+        mend: impl Fn(&Self, &JointLayout) -> Option<Mended>,
     ) {
         let (layout, mut seen) = (self.layout, HashSet::new());
         for joint in layout.joints.iter().chain(&layout.others) {

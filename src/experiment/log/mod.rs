@@ -5,5 +5,5 @@ mod joints;
 mod missing;
 mod times;
 
-pub(super) use self::cells::Log;
+pub(super) use self::cells::{Log, Mended};
 pub(super) use self::times::repeats;

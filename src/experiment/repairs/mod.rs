@@ -13,9 +13,6 @@ use super::error::ReadError;
 use super::log::Log;
 use super::table::TrialRows;
 
-/// The values of an output as they are mended, and what is said of it.
-type Mended = (Vec<f64>, Option<String>);
-
 /// Mends everything in `log` that may be: the rows before their times, the times before the signals. What
 /// depends on rows that a growing log does not have yet is not mended in one.
 ///

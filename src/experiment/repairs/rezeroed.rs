@@ -3,9 +3,8 @@
 //! An incremental encoder that is homed again goes on from another value: from one row to the next the
 //! output jumps as it never moves. What follows is taken back by the jump.
 
-use super::Mended;
 use crate::experiment::layout::JointLayout;
-use crate::experiment::log::Log;
+use crate::experiment::log::{Log, Mended};
 use crate::numerics::{median, to_digits};
 
 /// The output of a joint without its jumps where its zero is set anew. Rows after a gap lie as far apart as the joint

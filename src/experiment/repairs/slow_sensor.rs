@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use super::Mended;
 use crate::experiment::layout::JointLayout;
-use crate::experiment::log::Log;
+use crate::experiment::log::{Log, Mended};
 use crate::numerics::quantile;
 
 /// Rows in which a reading is repeated, at least.

@@ -4,9 +4,8 @@
 //! sample, which no joint makes. Where all large jumps of an output are of a turn, they are taken
 //! out. Its unit says what a turn is, else the jumps themselves do.
 
-use super::Mended;
 use crate::experiment::layout::JointLayout;
-use crate::experiment::log::Log;
+use crate::experiment::log::{Log, Mended};
 use crate::numerics::{RunningLine, as_written, median, quantile, to_decimals};
 
 /// The output of a joint without the turns of a sensor that wraps.
