@@ -5,7 +5,7 @@ use std::iter::once;
 use super::beside::{Other, weight};
 use super::blueprint::Blueprint;
 use super::chunk::{Chunks, Index, Moment, Opening};
-use super::content::{Content, Growth, Tab, hashed, name_of};
+use super::content::{Content, Tab, hashed, name_of};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
 use super::paths;
@@ -19,7 +19,7 @@ use crate::units::signed;
 
 impl<'a> Recording<'a> {
     /// Each joint and where it lies on the timelines.
-    fn layouts(&self, growth: Growth) -> impl Iterator<Item = JointLayout<'a>> {
+    fn layouts(&self) -> impl Iterator<Item = JointLayout<'a>> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
         let numbers = || self.revisions.iter().flat_map(ImprovedJoint::numbered);
         let numbers = || numbers().map(|(number, _)| i64::from(number));
@@ -28,8 +28,6 @@ impl<'a> Recording<'a> {
         let before = |first, last| if last > first { first - 1 } else { first };
         let revisions = numbers().min().zip(numbers().max());
         let revisions = revisions.map(|(first, last)| (before(first, last), last));
-        // Which one is the first is not known when the decisions are sent, and they are sent once.
-        let revisions = revisions.filter(|_| growth == Growth::Finished);
         let decisions = self.joints.iter().flat_map(|joint| joint.estimate.estimated());
         let decisions = decisions.flat_map(|trial| &trial.decisions);
         let most = decisions.map(|decision| signed(decision.candidates.len())).max().unwrap_or(0);
@@ -54,11 +52,11 @@ impl<'a> Content for Recording<'a> {
     }
 
     fn about(&self) -> String {
-        let layouts: Vec<_> = self.layouts(Growth::Finished).collect();
+        let layouts: Vec<_> = self.layouts().collect();
         about::page(self, &layouts)
     }
 
-    fn tabs(&self, growth: Growth) -> Vec<Tab<'_>> {
+    fn tabs(&self) -> Vec<Tab<'_>> {
         let tab = |mut layout: JointLayout<'a>| {
             let (joint, others) = (layout.joint, self.others(layout.estimated));
             if !others.is_empty() {
@@ -67,15 +65,15 @@ impl<'a> Content for Recording<'a> {
             let add = move |chunks: &mut Chunks| add_joint(chunks, self, &layout, &others);
             Tab { joint: &joint.name, add: Box::new(add) }
         };
-        self.layouts(growth).map(tab).collect()
+        self.layouts().map(tab).collect()
     }
 
-    fn blueprint(&self, growth: Growth) -> Blueprint {
-        views::blueprint(self, growth)
+    fn blueprint(&self) -> Blueprint {
+        views::blueprint(self)
     }
 
-    fn views_in_words(&self, growth: Growth) -> String {
-        views::in_words(self, growth)
+    fn views_in_words(&self) -> String {
+        views::in_words(self)
     }
 }
 

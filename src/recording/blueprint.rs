@@ -161,7 +161,6 @@ pub(super) struct Blueprint {
     pub(super) about: String,
     /// The timeline that it opens on.
     pub(super) timeline: &'static str,
-    pub(super) play: PlayState,
 }
 
 impl Blueprint {
@@ -192,7 +191,8 @@ impl Blueprint {
             .with_state(PanelState::Collapsed)
             .with_timeline(self.timeline)
             .with_fps(20.0)
-            .with_play_state(self.play);
+            // So that the first arrow moves the cursor: at the tick that shows the last one.
+            .with_play_state(PlayState::Paused);
         builder.log("time_panel", &time)?;
         builder.log(LINKED_TIME_AXIS, &whole_record())?;
         let store = StoreId::new(StoreKind::Blueprint, application.clone(), store);

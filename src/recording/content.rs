@@ -13,14 +13,6 @@ use crate::experiment::{Joint, Source};
 /// Who takes the chunks as they are made.
 pub(super) type Take<'t> = &'t mut dyn FnMut(&Chunk) -> Result<(), RecordError>;
 
-/// Whether more revisions of models are to come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Growth {
-    Finished,
-    /// Every joint will have some; the viewer goes along with them.
-    Growing,
-}
-
 /// A joint of a recording, and what adds all of it below the joint's root.
 pub(super) struct Tab<'c> {
     pub(super) joint: &'c str,
@@ -41,13 +33,13 @@ pub(super) trait Content {
     fn about(&self) -> String;
 
     /// The joints in the order of their tabs.
-    fn tabs(&self, growth: Growth) -> Vec<Tab<'_>>;
+    fn tabs(&self) -> Vec<Tab<'_>>;
 
     /// What the viewer shows of it.
-    fn blueprint(&self, growth: Growth) -> Blueprint;
+    fn blueprint(&self) -> Blueprint;
 
     /// What decides which views there are, for one that grows.
-    fn views_in_words(&self, _: Growth) -> String {
+    fn views_in_words(&self) -> String {
         String::new()
     }
 }
@@ -63,7 +55,7 @@ pub(super) fn for_each_chunk(
     if part.joint.is_none() {
         chunks.page(ABOUT, content.about())?;
     }
-    let tabs = content.tabs(part.growth);
+    let tabs = content.tabs();
     let taken = tabs.len() as u64 + 1;
     for (namespace, tab) in (part.used + 3..).zip(tabs).filter(|(_, tab)| part.has(tab.joint)) {
         chunks.into_chunks().iter().try_for_each(&mut *take)?;
@@ -77,10 +69,9 @@ pub(super) fn for_each_chunk(
 /// The messages of the views of `content`, the last of which makes the viewer show them.
 pub(super) fn view_messages(
     content: &dyn Content,
-    growth: Growth,
     (application, id): (&ApplicationId, &str),
 ) -> Result<Vec<LogMsg>, RecordError> {
-    let mut messages = content.blueprint(growth).messages(application, id)?;
+    let mut messages = content.blueprint().messages(application, id)?;
     let views = messages.first().map(|message| message.store_id().clone());
     messages.extend(views.map(|views| LogMsg::from(activation(views))));
     Ok(messages)
@@ -101,7 +92,6 @@ pub(super) fn first_messages(store: &StoreId, name: String) -> Result<Vec<LogMsg
 pub(super) struct Part<'n> {
     /// The recording's.
     pub(super) ids: Ids,
-    pub(super) growth: Growth,
     /// Namespaces that are taken, beside the first one.
     pub(super) used: u64,
     /// All joints and what is about them all, or one joint.
@@ -111,7 +101,7 @@ pub(super) struct Part<'n> {
 impl Part<'_> {
     /// All of a recording.
     pub(super) fn whole(ids: Ids) -> Self {
-        Self { ids, growth: Growth::Finished, used: 0, joint: None }
+        Self { ids, used: 0, joint: None }
     }
 
     fn has(self, joint: &str) -> bool {

@@ -267,132 +267,97 @@ fn flagged(plot: &Plot, flags: &[(f64, String)]) -> Vec<(Vec2D, String)> {
     flags.iter().map(place).collect()
 }
 
-/// Whether the models of a drawing stay, or are others at each tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Models {
-    Stay,
-    Follow,
-}
-
-/// Whether something is drawn below all else.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Depth {
-    Ground,
-    Above,
-}
-
-/// What an entity is called: by its mark, and of a model in a drawing that stays by its number, so
-/// that it can be hidden.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Key {
-    name: String,
-    model: Option<usize>,
-}
-
-impl Key {
-    fn is_of(&self, mark: &Mark, models: Models) -> bool {
-        self.name == name(mark) && self.model == model(mark, models)
-    }
-
-    fn path(&self) -> String {
-        let letter = |c: char| if c.is_alphanumeric() || c == '/' { c } else { '_' };
-        let name: String = self.name.chars().map(letter).collect();
-        self.model.map_or_else(|| name.clone(), |number| of_model(&name, number))
-    }
-}
-
-fn name(mark: &Mark) -> &str {
-    let of_shape = match mark.shape {
-        Shape::Lines(..) => "lines",
-        Shape::Dots(..) | Shape::Named(_) => "dots",
-        Shape::Crosses(_) => "crosses",
-        Shape::Verticals(..) => "verticals",
-        Shape::Band(..) => "band",
-        Shape::Spans(..) => "spans",
-        Shape::Bars(_) => "bars",
-        Shape::Spreads(..) => "spreads",
-        Shape::Words(_) => "words",
-        Shape::Flags(_) => "flags",
-    };
-    mark.part.as_deref().or(mark.name.as_deref()).unwrap_or(of_shape)
-}
-
-fn model(mark: &Mark, models: Models) -> Option<usize> {
-    match mark.role {
-        Role::Model if models == Models::Stay => Some(0),
-        Role::Revision(one) if models == Models::Stay => Some(one.place() + 1),
-        _ => None,
-    }
-}
-
 /// What is drawn at one entity.
 struct Part {
-    key: Key,
+    path: String,
     radius: f32,
-    depth: Depth,
+    /// Whether it is drawn below all else.
+    is_ground: bool,
     rows: Vec<Drawn>,
 }
 
-/// The entities of a drawing, which is made row by row.
-struct Parts {
-    models: Models,
-    rows: usize,
-    all: Vec<Part>,
-}
-
-impl Parts {
-    fn of(layers: &Layers<'_>) -> Self {
-        let models = if layers.is_fixed() { Models::Stay } else { Models::Follow };
-        Self { models, rows: 0, all: Vec::new() }
-    }
-
-    fn add_row<'m>(&mut self, marks: impl Iterator<Item = (&'m Mark, &'m Plot)>) {
-        self.rows += 1;
-        for (mark, plot) in marks {
-            let known = self.all.iter().position(|part| part.key.is_of(mark, self.models));
-            let place = known.unwrap_or(self.all.len());
-            if known.is_none() {
-                self.all.push(Part::of(mark, self.models));
-            }
-            if let Some(part) = self.all.get_mut(place) {
-                part.rows.resize_with(self.rows, Drawn::default);
-                part.rows.last_mut().into_iter().for_each(|row| row.add(mark, plot));
-            }
-        }
-    }
-
-    fn push(self, layers: &mut Layers<'_>, depth: Depth) -> Result<Self, RecordError> {
-        let (now, later): (Vec<_>, Vec<_>) =
-            self.all.into_iter().partition(|part| part.depth == depth);
-        now.into_iter().try_for_each(|part| part.push(layers, self.rows))?;
-        Ok(Self { all: later, ..self })
-    }
-}
-
 impl Part {
-    fn of(mark: &Mark, models: Models) -> Self {
+    fn of(mark: &Mark, path: String) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
         let radius = match mark.shape {
             Shape::Lines(_, width) | Shape::Verticals(_, width) => width as f32,
             Shape::Spans(..) | Shape::Bars(_) => HATCH,
             _ => 1.0,
         };
-        let key = Key { name: name(mark).to_owned(), model: model(mark, models) };
-        let depth = if mark.is_ground() { Depth::Ground } else { Depth::Above };
-        Self { key, radius, depth, rows: Vec::new() }
+        Self { path, radius, is_ground: mark.is_ground(), rows: Vec::new() }
     }
 
-    fn push(mut self, layers: &mut Layers<'_>, rows: usize) -> Result<(), RecordError> {
-        self.rows.resize_with(rows, Drawn::default);
-        let path = self.key.path();
-        let any = |of: fn(&Drawn) -> bool| self.rows.iter().any(of);
-        if any(|row| !row.texts.is_empty()) {
-            return layers.texts(&path, self.rows.into_iter().map(|row| row.texts).collect());
+    fn push(self, layers: &mut Layers<'_>) -> Result<(), RecordError> {
+        let Self { path, radius, rows, .. } = self;
+        if rows.iter().any(|row| !row.texts.is_empty()) {
+            return layers.texts(&path, rows.into_iter().map(|row| row.texts).collect());
         }
-        if any(|row| !row.dots.is_empty()) {
-            return layers.dots(&path, self.rows.into_iter().map(|row| row.dots).collect());
+        if rows.iter().any(|row| !row.dots.is_empty()) {
+            return layers.dots(&path, rows.into_iter().map(|row| row.dots).collect());
         }
-        layers.strips(&path, self.radius, self.rows.into_iter().map(|row| row.strips).collect())
+        layers.strips(&path, radius, rows.into_iter().map(|row| row.strips).collect())
+    }
+}
+
+/// The entities of a drawing, which is made row by row.
+struct Parts {
+    /// Whether the drawing stays, and so do its models.
+    is_fixed: bool,
+    rows: usize,
+    all: Vec<Part>,
+}
+
+impl Parts {
+    fn of(layers: &Layers<'_>) -> Self {
+        Self { is_fixed: layers.is_fixed(), rows: 0, all: Vec::new() }
+    }
+
+    /// Where a mark lies below the drawing: by its name, and of a model in a drawing that stays by its
+    /// number, so that it can be hidden.
+    fn path(&self, mark: &Mark) -> String {
+        let of_shape = match mark.shape {
+            Shape::Lines(..) => "lines",
+            Shape::Dots(..) | Shape::Named(_) => "dots",
+            Shape::Crosses(_) => "crosses",
+            Shape::Verticals(..) => "verticals",
+            Shape::Band(..) => "band",
+            Shape::Spans(..) => "spans",
+            Shape::Bars(_) => "bars",
+            Shape::Spreads(..) => "spreads",
+            Shape::Words(_) => "words",
+            Shape::Flags(_) => "flags",
+        };
+        let letter = |c: char| if c.is_alphanumeric() || c == '/' { c } else { '_' };
+        let name = mark.part.as_deref().or(mark.name.as_deref()).unwrap_or(of_shape);
+        let name: String = name.chars().map(letter).collect();
+        match mark.role {
+            Role::Model if self.is_fixed => of_model(&name, 0),
+            Role::Revision(one) if self.is_fixed => of_model(&name, one.place() + 1),
+            _ => name,
+        }
+    }
+
+    fn add_row<'m>(&mut self, marks: impl Iterator<Item = (&'m Mark, &'m Plot)>) {
+        self.rows += 1;
+        for (mark, plot) in marks {
+            let path = self.path(mark);
+            let place = self.all.iter().position(|part| part.path == path);
+            let place = place.unwrap_or_else(|| {
+                self.all.push(Part::of(mark, path));
+                self.all.len() - 1
+            });
+            let rows = &mut self.all[place].rows;
+            rows.resize_with(self.rows, Drawn::default);
+            rows[self.rows - 1].add(mark, plot);
+        }
+    }
+
+    /// Those that are drawn below all else, and the others.
+    fn divided(mut self) -> (Vec<Part>, Vec<Part>) {
+        for part in &mut self.all {
+            part.rows.resize_with(self.rows, Drawn::default);
+        }
+        self.all.into_iter().partition(|part| part.is_ground)
     }
 }
 
@@ -412,9 +377,10 @@ pub(super) fn add(
         grids.push(grid.concat());
         texts.push(labels.concat());
     }
-    let before = parts.push(layers, Depth::Ground)?;
+    let (ground, above) = parts.divided();
+    ground.into_iter().try_for_each(|part| part.push(layers))?;
     layers.strips("grid", 0.7, grids)?;
-    before.push(layers, Depth::Above)?;
+    above.into_iter().try_for_each(|part| part.push(layers))?;
     layers.texts("texts", texts)
 }
 
@@ -427,7 +393,8 @@ pub(super) fn add_marks(
     for row in rows {
         parts.add_row(row.iter().map(|(mark, plot)| (mark, plot)));
     }
-    parts.push(layers, Depth::Ground)?.push(layers, Depth::Above).map(drop)
+    let (ground, above) = parts.divided();
+    ground.into_iter().chain(above).try_for_each(|part| part.push(layers))
 }
 
 #[cfg(test)]

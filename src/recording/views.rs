@@ -7,14 +7,13 @@ use rerun::datatypes::Utf8;
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     DataframeQuery, PlotLegend, ScalarAxis,
 };
-use rerun::external::re_sdk_types::blueprint::components::{Corner2D, PlayState};
+use rerun::external::re_sdk_types::blueprint::components::Corner2D;
 use rerun::external::re_sdk_types::blueprint::datatypes::{
     ComponentColumnSelector, SelectedColumns,
 };
 
 use super::blueprint::{Blueprint, Page};
 use super::canvas::{SHEET, TAB};
-use super::content::Growth;
 use super::overview::{LARGE_HEIGHT, MAP_HEIGHT};
 use super::paths::{self, at, child, joint_root, of_model};
 use super::{delay_state, difference, palette, revision, segment_view};
@@ -23,69 +22,58 @@ use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::report::decisions::{by_doubt, doubtful_lines};
 use crate::report::estimate::summary_cells;
-use crate::report::{ComparedJoint, EstimatedJoint, JointSummary, Recording};
+use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint, JointSummary, Recording};
 use crate::wording::number;
 
 /// What decides which views there are.
-pub(super) fn in_words(recording: &Recording<'_>, growth: Growth) -> String {
+pub(super) fn in_words(recording: &Recording<'_>) -> String {
     let name = |joint: &EstimatedJoint<'_>| match joint.estimate.dead_time {
         Some(_) => format!("{} without steps", joint.joint.name),
         None => joint.joint.name.clone(),
     };
     let joints: Vec<_> = recording.joints.iter().map(name).collect();
     let models: Vec<_> = recording.models.iter().map(|m| (&m.joint.name, m.model)).collect();
-    let counted = recording.revisions.iter().map(|improved| improved.revisions.len().min(2));
-    match growth {
-        Growth::Growing => format!("{joints:?} {models:?}"),
-        Growth::Finished => format!("{joints:?} {models:?} {:?}", counted.collect::<Vec<_>>()),
-    }
+    let revised: Vec<_> = recording.revisions.iter().map(ImprovedJoint::name).collect();
+    format!("{joints:?} {models:?} {revised:?}")
 }
 
 /// A tab per joint and one about it all.
-pub(super) fn blueprint(recording: &Recording<'_>, growth: Growth) -> Blueprint {
+pub(super) fn blueprint(recording: &Recording<'_>) -> Blueprint {
     let tab = |joint: &EstimatedJoint<'_>| {
         let name = &joint.joint.name;
         let models = recording.models.iter().filter(|m| m.joint.name == *name).collect();
         let improved = recording.revisions_of(joint.joint);
-        // The first one is on its way, at least.
-        let expected = usize::from(growth == Growth::Growing);
-        let revisions = improved.map_or(expected, |improved| improved.revisions.len());
+        let revisions = improved.map_or(0, |improved| improved.revisions.len());
         let is_compared = recording.also.iter().any(|it| it.joint(name).is_some());
         Tab { estimated: *joint, models, revisions, is_compared }.page()
     };
     // One revision alone is there on every timeline.
     let is_ladder = recording.revisions.iter().any(|improved| improved.revisions.len() > 1);
     let has_steps = recording.joints.iter().any(|joint| joint.estimate.dead_time.is_none());
-    let (timeline, play) = match growth {
-        Growth::Growing => ("revision", PlayState::Following),
-        // Paused, so that the first arrow moves the cursor: at the tick that shows the last one.
-        Growth::Finished if is_ladder => ("revision", PlayState::Paused),
-        Growth::Finished if !recording.also.is_empty() => ("difference", PlayState::Paused),
+    let timeline = if is_ladder {
+        "revision"
+    } else if !recording.also.is_empty() {
+        "difference"
+    } else if !has_steps || !recording.models.is_empty() {
         // A model is seen along its record.
-        Growth::Finished if !has_steps || !recording.models.is_empty() => {
-            ("time", PlayState::Paused)
-        }
-        Growth::Finished => ("decision", PlayState::Paused),
+        "time"
+    } else {
+        "decision"
     };
     let tabs = recording.joints.iter().map(tab).collect();
-    Blueprint { tabs, about: about(recording, growth), timeline, play }
+    Blueprint { tabs, about: about(recording), timeline }
 }
 
 /// The name of the page on it all: of one joint how many steps were accepted, of several how many
 /// decisions are doubtful, which no page of a joint says.
-fn about(recording: &Recording<'_>, growth: Growth) -> String {
-    let doubtful = match growth {
-        Growth::Finished => doubtful_lines(recording.joints).len(),
-        Growth::Growing => 0,
-    };
-    match (recording.joints.len(), doubtful) {
+fn about(recording: &Recording<'_>) -> String {
+    match (recording.joints.len(), doubtful_lines(recording.joints).len()) {
         (0 | 1, _) => match recording.joints.first().map(|joint| JointSummary::of(*joint)) {
             Some(JointSummary { steps, accepted, .. }) if steps > 0 => {
                 format!("About: {accepted} of {steps} accepted")
             }
             _ => "About".to_owned(),
         },
-        (_, 0) if growth == Growth::Growing => "All joints".to_owned(),
         (_, 0) if !recording.joints.iter().any(has_decisions) => {
             "All joints: no decisions".to_owned()
         }

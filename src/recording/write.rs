@@ -9,7 +9,7 @@ use rerun::{RecordingStream, StoreId, StoreKind};
 
 use super::chunk::{Ids, chunk_message};
 use super::content::{
-    Content, Growth, Part, activation, application, first_messages, for_each_chunk, view_messages,
+    Content, Part, activation, application, first_messages, for_each_chunk, view_messages,
 };
 use super::end::EndHeld;
 use super::error::RecordError;
@@ -42,7 +42,7 @@ fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {
     let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, options, EndHeld::new(out, &at_end))?;
     let store = StoreId::new(StoreKind::Recording, application.clone(), id.clone());
     // The views come first: a viewer that has none yet makes its own of what it has read.
-    let views = view_messages(content, Growth::Finished, (&application, &id))?;
+    let views = view_messages(content, (&application, &id))?;
     for message in views.into_iter().chain(first_messages(&store, name)?) {
         encoder.append(&message)?;
     }
@@ -71,7 +71,7 @@ pub fn log_recording(
     };
     let id = recording.id();
     let application = info.store_id.application_id().clone();
-    let messages = recording.blueprint(Growth::Finished).messages(&application, &id)?;
+    let messages = recording.blueprint().messages(&application, &id)?;
     if let Some(blueprint_id) = messages.first().map(|message| message.store_id().clone()) {
         stream.send_blueprint(messages, activation(blueprint_id));
     }

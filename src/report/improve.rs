@@ -9,7 +9,7 @@ use super::explain::finding_json;
 use super::json::{document, joined};
 use super::ladder::{LadderRow, change_in_words, errors_of, figures, ladder_table};
 use super::parameters::{model_text, parameters_json};
-use super::{Before, Finding, History};
+use super::{Before, ComparedJoint, Finding, History};
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
 use crate::wording::effect_ids;
@@ -49,8 +49,19 @@ impl<'a> ImprovedJoint<'a> {
     }
 
     /// The revisions with their numbers.
-    pub fn numbered(&self) -> impl Iterator<Item = (u32, &'a Revision)> {
+    pub fn numbered(&self) -> impl Iterator<Item = (u32, &'a Revision)> + use<'a> {
         (self.first_revision..).zip(self.revisions)
+    }
+
+    /// Each revision as a model beside the measurement.
+    pub(crate) fn compared(&self) -> impl Iterator<Item = ComparedJoint<'a>> + use<'a> {
+        let last = self.finding.compared;
+        let compared = move |(revision, step): (u32, &'a Revision)| ComparedJoint {
+            revision,
+            comparison: &step.comparison,
+            ..last
+        };
+        self.numbered().map(compared)
     }
 
     /// The candidate of the revision at `index` that the next one took, or would take.

@@ -3,15 +3,13 @@
 use crate::batch::Threads;
 use crate::experiment::Joint;
 use crate::explain::{Addition, Change, Improvement, Revision as Step, Verdict};
-use crate::report::ImprovedJoint;
 use crate::report::add::{AddedJoint, add_json, add_text};
 use crate::study::{Mode, add_to_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{DataArgs, ModelFileArgs, ProtocolArgs, ResultArgs, find};
 use crate::cli::exit::Completion;
-use crate::cli::failure::outcomes;
-use crate::cli::run::{Shown, Start, Study};
+use crate::cli::run::{Start, Study};
 
 /// Add an effect to a model, and write its next revision
 ///
@@ -41,8 +39,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let effect = find(&args.effect, file.candidates())?;
     let target = args.model.target();
     let (data, output) = (&args.data, &args.output);
-    let study =
-        Study::begin(("add", Shown::AtTheEnd), data, output, (Some(target), args.model.kept()))?;
+    let study = Study::begin("add", data, output, (Some(target), args.model.kept()))?;
     let start = Start::of(&study, &file, Some(target), Vec::new())?;
     args.model.check_target(&file, study.joints())?;
     let starts = |joint: &Joint| start.model(joint);
@@ -51,34 +48,28 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         let watched = protocol.watched(bar).beside(others);
         add_to_joints(study.joints(), &study.estimates, starts, watched, effect, &Threads)
     })?;
-    let (model, effect) = (start.name.as_str(), effect.spec().id);
-    let (joints, failures) = outcomes(&study.experiment, &added, |_, joint, addition| {
-        let revision = start.revision(joint) + 1;
-        AddedJoint { joint, model, effect, revision, addition }
-    })?;
-    let improvements: Vec<Improvement> = joints.iter().map(improvement).collect();
-    let improved = joints.iter().zip(&improvements).enumerate();
-    let improved: Vec<ImprovedJoint<'_>> = improved
-        .filter_map(|(index, (added, found))| start.improved(index, added.joint, found))
-        .collect();
+    let effect = effect.spec().id;
+    let p_values: Vec<_> = added.iter().flatten().flatten().map(|it| it.p_value).collect();
+    let added = added.into_iter().map(|found| Some(found?.map(|it| improvement(effect, it))));
+    let added: Vec<_> = added.collect();
+    let (improved, failures) = start.outcomes(&added)?;
     // What the model still lacks was not looked for.
     let revised = start.revised(&improved, |_| None)?;
     study.record_revisions(output.recording.as_deref(), &improved)?;
     args.model.write(&file, &revised, study.verbosity())?;
+    let joints = improved.into_iter().zip(p_values);
+    let joints = joints.map(|(improved, p_value)| AddedJoint { improved, effect, p_value });
+    let joints: Vec<_> = joints.collect();
     let text = || add_text(&joints);
     study.end(&failures, text, || add_json(&target.display().to_string(), &joints, &failures))
 }
 
 /// Both models as revisions. What the second one still lacks was not looked for.
-fn improvement(added: &AddedJoint<'_>) -> Improvement {
-    let Addition { before, after, attribution, .. } = added.addition;
-    let steps = [(Change::Start, before), (Change::Added(added.effect), after)];
-    let step = |(change, comparison): (Change, &_)| {
-        let comparison = Clone::clone(comparison);
-        Step { change, comparison, ranking: Vec::new() }
-    };
+fn improvement(effect: &'static str, added: Addition) -> Improvement {
+    let Addition { before, after, attribution, .. } = added;
     let is_adequate = after.is_adequate();
     let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
-    let (revisions, attribution) = (steps.map(step).into(), attribution.clone());
-    Improvement { revisions, verdict, attribution }
+    let steps = [(Change::Start, before), (Change::Added(effect), after)];
+    let step = |(change, comparison)| Step { change, comparison, ranking: Vec::new() };
+    Improvement { revisions: steps.map(step).into(), verdict, attribution }
 }

@@ -15,7 +15,7 @@ use clap::Args as ClapArgs;
 use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs, check_known, read_model};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures};
-use crate::cli::run::{Shown, Study};
+use crate::cli::run::Study;
 
 /// Compare a model with the measurement
 ///
@@ -57,8 +57,7 @@ struct Named<'a> {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let models = models(&args.model, &args.against)?;
     let inputs = [args.model.as_slice(), &args.against].concat();
-    let study =
-        Study::begin(("compare", Shown::AtTheEnd), &args.data, &args.output, (None, inputs))?;
+    let study = Study::begin("compare", &args.data, &args.output, (None, inputs))?;
     for (_, file) in models.iter().filter_map(|named| named.file.as_ref()) {
         check_known(file, study.joints(), study.verbosity())?;
     }

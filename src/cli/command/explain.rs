@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use crate::batch::Threads;
 use crate::experiment::Joint;
-use crate::report::ImprovedJoint;
 use crate::report::explain::{explain_json, explain_text};
 use crate::study::{Mode, explain_joints};
 use clap::Args as ClapArgs;
@@ -13,8 +12,7 @@ use crate::cli::args::{
     DataArgs, EffectArgs, ProtocolArgs, ResultArgs, add_arguments, fresh_name, read_model,
 };
 use crate::cli::exit::Completion;
-use crate::cli::failure::outcomes;
-use crate::cli::run::{Shown, Start, Study, as_it_is};
+use crate::cli::run::{Start, Study, as_it_is};
 
 /// Say which physical effect a model lacks
 ///
@@ -46,7 +44,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let options = args.effects.options(file.candidates())?;
     let (data, output) = (&args.data, &args.output);
     let inputs = args.model.iter().cloned().collect();
-    let study = Study::begin(("explain", Shown::AtTheEnd), data, output, (None, inputs))?;
+    let study = Study::begin("explain", data, output, (None, inputs))?;
     let joints = study.joints();
     let start = Start::of(&study, &file, args.model.as_deref(), args.add_arguments(joints))?;
     let starts = |joint: &Joint| start.model(joint);
@@ -57,9 +55,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     })?;
     let explained = explained.into_iter().map(|found| Some(found?.map(as_it_is)));
     let explained: Vec<_> = explained.collect();
-    let improved = |index, joint, found| start.improved(index, joint, found);
-    let (improved, failures) = outcomes(&study.experiment, &explained, improved)?;
-    let improved: Vec<ImprovedJoint<'_>> = improved.into_iter().flatten().collect();
+    let (improved, failures) = start.outcomes(&explained)?;
     let findings: Vec<_> = improved.iter().map(|joint| joint.finding).collect();
     let models: Vec<_> = findings.iter().map(|finding| finding.compared).collect();
     study.record(output.recording.as_deref(), &models, &improved)?;

@@ -17,8 +17,7 @@ use crate::cli::args::{
 use crate::cli::console::{Interrupt, STOPPING, message};
 use crate::cli::each_log::{Each, FolderArgs};
 use crate::cli::exit::Completion;
-use crate::cli::failure::outcomes;
-use crate::cli::run::{Shown, Start, Study, ended};
+use crate::cli::run::{Start, Study, ended};
 
 /// Add to a model what it lacks, effect by effect
 ///
@@ -79,12 +78,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let target = args.model.target();
     let (data, output) = (&args.data, &args.output);
     let interrupt = Interrupt::watch(STOPPING);
-    let study = Study::begin(
-        ("improve", Shown::ByRevision),
-        data,
-        output,
-        (Some(target), args.model.kept()),
-    )?;
+    let study = Study::begin("improve", data, output, (Some(target), args.model.kept()))?;
     let joints = study.joints();
     let arguments = add_arguments(data, &target.display().to_string(), joints);
     let start = Start::of(&study, &file, Some(target), arguments)?;
@@ -101,10 +95,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         let watched = protocol.watched(bar).beside(others);
         improve_joints(joints, &study.estimates, starts, watched, &options, done, &Threads)
     })?;
-    let improved = |index, joint, found| start.improved(index, joint, found);
-    let (improved, failures) = outcomes(&study.experiment, &results, improved)?;
-    let improved = improved.into_iter().flatten();
-    let improved: Vec<_> = improved.map(|joint| ended(joint, interrupt)).collect();
+    let (improved, failures) = start.outcomes(&results)?;
+    let improved: Vec<_> = improved.into_iter().map(|it| ended(it, interrupt)).collect();
     study.record_revisions(output.recording.as_deref(), &improved)?;
     let revised = start.revised(&improved, |joint| Some(joint.finding.verdict))?;
     args.model.write(&file, &revised, study.verbosity())?;
@@ -130,13 +122,17 @@ struct Stage<'a> {
     study: &'a Study<'a>,
     start: &'a Start<'a>,
     /// Per joint.
-    steps: Vec<Mutex<Vec<Step>>>,
+    so_far: Mutex<Vec<Improvement>>,
 }
 
 impl<'a> Stage<'a> {
     fn new(study: &'a Study<'a>, start: &'a Start<'a>) -> Self {
-        let steps = study.joints().iter().map(|_| Mutex::default()).collect();
-        Self { study, start, steps }
+        let none = |_| Improvement {
+            revisions: Vec::new(),
+            verdict: Verdict::Unexplained,
+            attribution: Attribution::default(),
+        };
+        Self { study, start, so_far: Mutex::new(study.joints().iter().map(none).collect()) }
     }
 
     /// Shows one more revision of a joint. What goes wrong is reported, and is no reason to stop:
@@ -145,22 +141,24 @@ impl<'a> Stage<'a> {
         if !self.study.stream.is_open() {
             return;
         }
-        let of_joint = self.study.joints().get(index).zip(self.steps.get(index));
-        let Some((joint, steps)) = of_joint else { return };
-        let Ok(mut steps) = steps.lock() else { return };
-        steps.push(revision.clone());
-        let (revisions, attribution) = (steps.clone(), Attribution::default());
-        let improvement = Improvement { revisions, verdict: so_far(revision), attribution };
-        let improved = self.start.improved(index, joint, &improvement);
-        let revisions: Vec<_> = improved.into_iter().collect();
-        if let Err(error) = self.study.show(&[], &revisions, Some(&joint.name)) {
+        let joints = self.study.joints();
+        let Ok(mut so_far) = self.so_far.lock() else { return };
+        let Some((joint, own)) = joints.get(index).zip(so_far.get_mut(index)) else { return };
+        own.revisions.push(revision.clone());
+        own.verdict = verdict_so_far(revision);
+        // Of the other joints as well: on them it depends which views there are.
+        let all = joints.iter().zip(&*so_far).enumerate();
+        let improved =
+            all.filter_map(|(index, (joint, found))| self.start.improved(index, joint, found));
+        let improved: Vec<_> = improved.collect();
+        if let Err(error) = self.study.show(&[], &improved, Some(&joint.name)) {
             message("warning", &format!("{error:#}"));
         }
     }
 }
 
 /// What is to be said of a revision that may not be the last.
-fn so_far(revision: &Step) -> Verdict {
+fn verdict_so_far(revision: &Step) -> Verdict {
     match (revision.comparison.is_adequate(), revision.ranking.is_empty()) {
         (true, _) => Verdict::Adequate,
         (false, true) => Verdict::Unexplained,

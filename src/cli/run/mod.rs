@@ -10,4 +10,4 @@ pub(crate) use against::{compared, others};
 pub(crate) use estimates::{Estimates, estimated, failures, notes};
 pub(crate) use revisions::{Start, as_it_is, ended, log_hashes};
 pub(crate) use session::Session;
-pub(crate) use study::{Shown, Study};
+pub(crate) use study::Study;

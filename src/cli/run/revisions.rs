@@ -5,6 +5,7 @@ use std::path::Path;
 use super::study::Study;
 use crate::cli::args::{check_models, name_of};
 use crate::cli::console::Interrupt;
+use crate::cli::failure::{joint_left_out, nothing_usable, read_failures};
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Source};
 use crate::explain::{Change, Explanation, Improvement, Revision as Step, Verdict};
@@ -20,7 +21,7 @@ pub(crate) struct Start<'a> {
     study: &'a Study<'a>,
     file: &'a ModelFile,
     /// The name of the model in the output.
-    pub(crate) name: String,
+    name: String,
     /// Per joint, what follows the effect in the command that adds one.
     arguments: Vec<String>,
 }
@@ -43,7 +44,7 @@ impl<'a> Start<'a> {
     }
 
     /// The number of its revision.
-    pub(crate) fn revision(&self, joint: &Joint) -> u32 {
+    fn revision(&self, joint: &Joint) -> u32 {
         self.file.revision(&joint.name).unwrap_or(0)
     }
 
@@ -80,6 +81,29 @@ impl<'a> Start<'a> {
         let history =
             History { revisions: file.history(&joint.name), fitted: file.fitted(&joint.name) };
         Some(ImprovedJoint { first_revision, history, ..improved })
+    }
+
+    /// What is to be said of each joint that has a result, and messages on the others.
+    ///
+    /// # Errors
+    /// The first message when there is nothing else.
+    pub(crate) fn outcomes<'b, E: std::error::Error + 'static>(
+        &'b self,
+        results: &'b [Option<Result<Improvement, E>>],
+    ) -> anyhow::Result<(Vec<ImprovedJoint<'b>>, Vec<String>)> {
+        let mut failures = read_failures(&self.study.experiment);
+        let mut improved = Vec::new();
+        for (index, (joint, result)) in self.study.joints().iter().zip(results).enumerate() {
+            match result {
+                Some(Ok(found)) => improved.extend(self.improved(index, joint, found)),
+                Some(Err(error)) => failures.push(joint_left_out(&joint.name, error)),
+                None => failures.push(format!("joint `{}` has no model", joint.name)),
+            }
+        }
+        match failures.first() {
+            Some(first) if improved.is_empty() => Err(nothing_usable(Some(first))),
+            _ => Ok((improved, failures)),
+        }
     }
 
     /// The file with all revisions of all joints, and with the verdict on each where `judged` has one. A

@@ -13,7 +13,6 @@ use crate::cli::exit::Completion;
 use crate::cli::output::{OutputKind, Outputs, of_delays};
 use crate::delay::Settings;
 use crate::experiment::{Joint, Other};
-use crate::explain::Revision as Step;
 use crate::fit::Mended;
 use crate::report::{ComparedJoint, ImprovedJoint, Recording};
 use crate::study::others_of;
@@ -35,20 +34,11 @@ impl<'a> Deref for Study<'a> {
     }
 }
 
-/// When a viewer that looks on is shown models.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shown {
-    /// When all of them are there.
-    AtTheEnd,
-    /// Each revision when it is there.
-    ByRevision,
-}
-
 impl<'a> Study<'a> {
     /// The logs and delays for a `command` that fits models. Before that it refuses outputs that cannot be
     /// written, where the model file `written` is one and those of `inputs` are read, too.
     pub(crate) fn begin(
-        (command, shown): (&'static str, Shown),
+        command: &'static str,
         data: &DataArgs,
         args: &'a ResultArgs,
         (written, inputs): (Option<&Path>, Vec<PathBuf>),
@@ -56,10 +46,7 @@ impl<'a> Study<'a> {
         let outputs = Outputs::default().with(OutputKind::Recording, &args.recording);
         let outputs = outputs.with(OutputKind::Toml, written);
         outputs.check(&[data.files(), inputs].concat())?;
-        let mut stream = args.stream.open(args.run.verbosity())?;
-        if shown == Shown::ByRevision {
-            stream = stream.expecting_revisions()?;
-        }
+        let stream = args.stream.open(args.run.verbosity())?;
         let options = data.options_with_others()?;
         let session = Session::begin(command, data, &options, (&args.run, stream))?;
         let study = Self::of(session, &Settings { lines: args.lines(), ..Settings::default() })?;
@@ -144,8 +131,14 @@ impl<'a> Study<'a> {
         path: Option<&Path>,
         improved: &[ImprovedJoint<'_>],
     ) -> anyhow::Result<()> {
-        let names = revision_names(improved);
-        let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
+        let last = improved.iter().map(|joint| joint.finding.compared.revision).max().unwrap_or(0);
+        let names: Vec<String> = (0..=last).map(|number| format!("revision {number}")).collect();
+        let compared = improved.iter().flat_map(ImprovedJoint::compared);
+        let models = compared.filter_map(|one| {
+            let model = names.get(one.revision as usize)?;
+            Some(ComparedJoint { model, ..one })
+        });
+        let models: Vec<_> = models.collect();
         self.record(path, &models, improved)
     }
 
@@ -176,23 +169,4 @@ fn note_on_noisy_input(joint: &Joint) -> Option<String> {
             joint.name
         )
     })
-}
-
-/// `revision 0` and so on, to the last number there is.
-fn revision_names(improved: &[ImprovedJoint<'_>]) -> Vec<String> {
-    let last = improved.iter().map(|joint| joint.finding.compared.revision).max().unwrap_or(0);
-    (0..=last).map(|number| format!("revision {number}")).collect()
-}
-
-/// The revisions of a joint, each as a model.
-fn models<'a>(improved: &ImprovedJoint<'a>, names: &'a [String]) -> Vec<ComparedJoint<'a>> {
-    let joint = improved.finding.compared.joint;
-    let numbered = (improved.first_revision..).zip(improved.revisions);
-    let named = (0..).zip(names).map(|(number, name)| (number, name.as_str()));
-    let compared = |(number, revision): (u32, &'a Step)| {
-        let model = named.clone().find(|(own, _)| *own == number)?.1;
-        let comparison = &revision.comparison;
-        Some(ComparedJoint { joint, model, revision: number, comparison })
-    };
-    numbered.filter_map(compared).collect()
 }

@@ -98,13 +98,6 @@ pub(crate) struct Stream(());
 
 #[cfg(feature = "rrd")]
 impl Stream {
-    /// Shows a page of revisions for every joint, which are yet to come.
-    pub(crate) fn expecting_revisions(self) -> anyhow::Result<Self> {
-        let Some(live) = self.0 else { return Ok(self) };
-        let live = live.into_inner().map_err(|_poisoned| bug())?;
-        Ok(Self(Some(live.expecting_revisions().into())))
-    }
-
     pub(crate) fn is_open(&self) -> bool {
         self.0.is_some()
     }
@@ -164,10 +157,6 @@ fn bug() -> anyhow::Error {
 #[cfg(not(feature = "rrd"))]
 #[expect(clippy::unused_self, clippy::unnecessary_wraps, reason = "with recordings they are used")]
 impl Stream {
-    pub(crate) fn expecting_revisions(self) -> anyhow::Result<Self> {
-        Ok(self)
-    }
-
     pub(crate) fn is_open(&self) -> bool {
         false
     }

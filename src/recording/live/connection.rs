@@ -13,7 +13,7 @@ use super::address;
 use super::sent::Sent;
 use crate::recording::chunk::{Ids, chunk_message};
 use crate::recording::content::{
-    Content, Growth, Part, application, first_messages, for_each_chunk, view_messages,
+    Content, Part, application, first_messages, for_each_chunk, view_messages,
 };
 use crate::recording::error::RecordError;
 use crate::report::{Recording, SweepRecording};
@@ -37,7 +37,6 @@ pub(crate) struct Live {
     sent: Sent,
     /// Namespaces of ids that were used: what is sent later has higher ones, and wins.
     used: u64,
-    growth: Growth,
     /// The views that the viewer was sent last, in words.
     views: Option<String>,
 }
@@ -96,14 +95,7 @@ impl Live {
     fn with(sink: Sink, url: String) -> Self {
         // A run of its own: two runs are side by side in the viewer.
         let store = StoreId::random(StoreKind::Recording, "tauscope");
-        let (sent, growth) = (Sent::default(), Growth::Finished);
-        Self { sink: Some(sink), url, store, sent, used: 0, growth, views: None }
-    }
-
-    /// Shows a page of revisions for every joint, which are yet to come.
-    #[must_use]
-    pub(crate) fn expecting_revisions(self) -> Self {
-        Self { growth: Growth::Growing, ..self }
+        Self { sink: Some(sink), url, store, sent: Sent::default(), used: 0, views: None }
     }
 
     /// Where the viewer is, or where viewers are served.
@@ -150,7 +142,7 @@ impl Live {
             self.open(content)?;
         }
         let ids = Ids::of(self.store.recording_id().as_str());
-        let part = Part { ids, growth: self.growth, used: self.used, joint };
+        let part = Part { ids, used: self.used, joint };
         self.send_views(content)?;
         self.sent.begin();
         self.used += for_each_chunk(content, part, &mut |chunk| match self.sent.news_of(chunk) {
@@ -185,12 +177,12 @@ impl Live {
     /// Which view shows what, unless the viewer knows: when it is sent again, the viewer forgets where
     /// its user is.
     fn send_views(&mut self, content: &dyn Content) -> Result<(), RecordError> {
-        let views = content.views_in_words(self.growth);
+        let views = content.views_in_words();
         if self.views.as_ref() == Some(&views) {
             return Ok(());
         }
         let id = format!("{}-{}", self.store.recording_id().as_str(), self.used);
-        let messages = view_messages(content, self.growth, (self.store.application_id(), &id))?;
+        let messages = view_messages(content, (self.store.application_id(), &id))?;
         for message in messages {
             self.post(message);
         }

@@ -47,12 +47,7 @@ pub(in crate::recording) fn add(
     let mut steps = Steps { chunks, numbers, index, opens_on_last };
     steps.figures(improved)?;
     steps.words(layout, improved)?;
-    let models = improved.numbered().map(|(revision, step)| ComparedJoint {
-        revision,
-        comparison: &step.comparison,
-        ..improved.finding.compared
-    });
-    let models: Vec<ComparedJoint<'_>> = models.collect();
+    let models: Vec<ComparedJoint<'_>> = improved.compared().collect();
     record::add(&mut steps.layers(paths::REVISION_RECORD), layout, &models)?;
     let ladders = Ladders::new(improved);
     let rows = models.iter().enumerate().map(|(at, compared)| {

@@ -6,14 +6,14 @@ use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::report::ladder::change_in_words;
 use crate::report::parameters::parameter_table;
-use crate::report::{ComparedJoint, Finding, ImprovedJoint};
+use crate::report::{Finding, ImprovedJoint};
 use crate::wording::{rounded, times_noise, unit_suffix};
 
 /// The page of the revision at `place`: what is concluded of the last; then what changed at this one,
 /// how large its error is and where it arises.
 pub(super) fn page(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>, place: usize) -> String {
     let Some((revision, step)) = improved.numbered().nth(place) else { return String::new() };
-    let last = improved.numbered().last().map_or(revision, |(number, _)| number);
+    let last = improved.finding.compared.revision;
     let conclusion = improved.conclusion();
     let line = |question: &str, answer: &str| format!("**{question}:** {}\n", prose(answer));
     let mut lines = vec![
@@ -22,8 +22,7 @@ pub(super) fn page(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>, place
         format!("**{}**\n", plain(&fall(improved, place))),
     ];
     if let Some(next) = improved.revisions.get(place + 1) {
-        let compared =
-            ComparedJoint { revision, comparison: &step.comparison, ..improved.finding.compared };
+        let compared = improved.compared().nth(place).unwrap_or(improved.finding.compared);
         let fails = Finding { compared, ..improved.finding }.fails();
         lines.extend(fails.iter().map(|one| line(one.topic.0, &one.text())));
         lines.push(line("Next", &change_in_words(next)));

@@ -2,14 +2,12 @@
 
 use std::fmt::Write as _;
 
-use rerun::external::re_sdk_types::blueprint::components::PlayState;
-
 use super::swept::Swept;
 use super::{data, sheet, words};
 use crate::delay::sweep::Factor;
 use crate::recording::blueprint::{Blueprint, Page};
 use crate::recording::chunk::Chunks;
-use crate::recording::content::{Content, Growth, Tab, hashed, name_of};
+use crate::recording::content::{Content, Tab, hashed, name_of};
 use crate::recording::error::RecordError;
 use crate::recording::layout::TrialStarts;
 use crate::recording::markdown::plain;
@@ -36,7 +34,7 @@ impl Content for SweepRecording<'_> {
         page(self).unwrap_or_default()
     }
 
-    fn tabs(&self, _: Growth) -> Vec<Tab<'_>> {
+    fn tabs(&self) -> Vec<Tab<'_>> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
         let tab = |joint| {
             let swept = Swept::of(self.grid, joint, &starts);
@@ -45,10 +43,10 @@ impl Content for SweepRecording<'_> {
         self.joints.iter().copied().map(tab).collect()
     }
 
-    fn blueprint(&self, _: Growth) -> Blueprint {
+    fn blueprint(&self) -> Blueprint {
         let tabs = self.joints.iter().map(|joint| tab(&joint.joint.name)).collect();
         let about = "About".to_owned();
-        Blueprint { tabs, about, timeline: "setting", play: PlayState::Paused }
+        Blueprint { tabs, about, timeline: "setting" }
     }
 }
 

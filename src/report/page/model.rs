@@ -135,16 +135,13 @@ fn beside_the_measurement(improved: &ImprovedJoint<'_>) -> Vec<Block> {
 
 /// Where the last revision that fails does so; nothing where none fails.
 fn failures(improved: &ImprovedJoint<'_>) -> Vec<Block> {
-    let fails = |revision: &Revision| revision.comparison.failure.is_some();
-    let failing =
-        improved.numbered().enumerate().filter(|(_, (_, revision))| fails(revision)).last();
-    let Some((place, (revision, step))) = failing else { return Vec::new() };
-    let last = improved.finding.compared;
-    let compared = ComparedJoint { revision, comparison: &step.comparison, ..last };
-    let heading = if revision == last.revision {
+    let models = improved.compared().enumerate();
+    let failing = models.filter(|(_, compared)| compared.comparison.failure.is_some()).last();
+    let Some((place, compared)) = failing else { return Vec::new() };
+    let heading = if compared.revision == improved.finding.compared.revision {
         "Where the error arises".to_owned()
     } else {
-        format!("Where the error of revision {revision} arose")
+        format!("Where the error of revision {} arose", compared.revision)
     };
     let said = failure_sentences(compared.joint, compared.comparison)
         .into_iter()
