@@ -1,4 +1,4 @@
-//! What is said of errors, joints and logs that failed.
+//! What is said of errors, joints and logs that failed, and how completely a command was done.
 
 use anyhow::anyhow;
 
@@ -29,4 +29,20 @@ pub(crate) fn read_failures(experiment: &Experiment) -> Vec<String> {
 /// The error of a command none of whose joints is of use; `failure` is a reason.
 pub(crate) fn nothing_usable(failure: Option<&String>) -> anyhow::Error {
     anyhow!(failure.map_or("no joint in the logs", String::as_str).to_owned())
+}
+
+/// What became of a command that ran to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Completion {
+    /// Everything was done.
+    Whole,
+    /// Some joints or files failed; the rest is in the output.
+    Partial,
+}
+
+impl Completion {
+    /// Whole where nothing failed.
+    pub(crate) fn without(failures: &[String]) -> Self {
+        if failures.is_empty() { Self::Whole } else { Self::Partial }
+    }
 }

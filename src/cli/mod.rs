@@ -18,7 +18,6 @@ mod args;
 mod command;
 mod console;
 mod each_log;
-mod exit;
 mod failure;
 mod importer;
 mod output;

@@ -16,8 +16,7 @@ use crate::cli::command::{
     importer, improve, report, simulate, sweep,
 };
 use crate::cli::console::{Ended, Host, Hosting, message};
-use crate::cli::exit::Completion;
-use crate::cli::failure::said;
+use crate::cli::failure::{Completion, said};
 use crate::cli::output::meet_file_limits;
 use crate::cli::unknown::{neither_log_nor_command, with_tip};
 use crate::experiment::{Experiment, ReadError, is_named_like_a_log};

@@ -1,6 +1,9 @@
-//! The options of every command that reads logs.
+//! The options of every command that reads logs, and what is held beside their decisions.
 
 use std::path::PathBuf;
+
+use anyhow::{Context as _, bail};
+use clap::{Args, Args as ClapArgs};
 
 use super::number;
 use crate::cli::console::Host;
@@ -10,9 +13,8 @@ use crate::experiment::{
     ColumnMap, Experiment, JointColumns, MemoryLimit, ReadOptions, Repair, expand_folders,
     format_names, notes_on_subfolders,
 };
+use crate::study::Review;
 use crate::units::SamplePeriod;
-use anyhow::{Context as _, bail};
-use clap::Args;
 
 /// Where the logs are and how they are read.
 #[derive(Args, Debug)]
@@ -243,4 +245,31 @@ fn read_or_take(data: &[PathBuf], options: &ReadOptions) -> Experiment {
     experiment.failures.splice(0..0, unlisted);
     experiment.notes.extend(notes_on_subfolders(data));
     experiment
+}
+
+/// Results to compare with.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct AgainstArgs {
+    /// Show where decisions differ from those of another result: the JSON of an earlier
+    /// `estimate --format json`, its table of `--decisions`, or another log of the experiment,
+    /// which is estimated with the same settings. May be repeated
+    #[arg(long, value_name = "FILE")]
+    pub(crate) against: Vec<PathBuf>,
+}
+
+/// A review of the decisions.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct ReviewArgs {
+    /// Apply a person's review, which overrides the conditions: a table with the columns
+    /// `joint,trial,i,verdict,delay_s,note,reviewer`, as `estimate --review-sheet` writes it and
+    /// `report --interactive` saves it
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) review: Option<PathBuf>,
+}
+
+impl ReviewArgs {
+    /// What was said; nothing where no file is given.
+    pub(crate) fn read(&self) -> anyhow::Result<Review> {
+        Ok(self.review.as_deref().map(Review::read).transpose()?.unwrap_or_default())
+    }
 }

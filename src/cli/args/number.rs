@@ -1,6 +1,8 @@
-//! Numbers on the command line, and what is said of those that cannot be used.
+//! Numbers and words on the command line, and what is said of those that cannot be used.
 
 use std::str::FromStr;
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::batch::MOST_THREADS;
 use crate::experiment::is_period;
@@ -121,6 +123,30 @@ pub(crate) fn threshold(text: &str) -> Result<f64, String> {
 /// A probability that is neither 0 nor 1.
 pub(crate) fn probability(text: &str) -> Result<f64, String> {
     number_where(text, |x| x > 0.0 && x < 1.0, "expected a number between 0 and 1, as in 0.99")
+}
+
+/// Words, what the help says of each, and what it stands for.
+pub(crate) type Choices<T> = &'static [(&'static str, &'static str, T)];
+
+/// Takes one of `choices`, which the help lists.
+pub(crate) fn one_of<T: Copy + Send + Sync>(
+    choices: Choices<T>,
+) -> impl TypedValueParser<Value = T> {
+    let known = choices.iter().map(|(word, help, _)| {
+        let help = Some(*help).filter(|help| !help.is_empty());
+        PossibleValue::new(*word).help(help)
+    });
+    PossibleValuesParser::new(known).try_map(|word| chosen(choices, &word))
+}
+
+/// What `word` stands for.
+pub(crate) fn chosen<T: Copy>(choices: Choices<T>, word: &str) -> Result<T, String> {
+    let found = choices.iter().find(|(known, ..)| *known == word);
+    found.map(|(.., value)| *value).ok_or_else(|| {
+        let words: Vec<&str> = choices.iter().map(|(word, ..)| *word).collect();
+        let (last, others) = words.split_last().unwrap_or((&"", &[]));
+        format!("expected {} or {last}", others.join(", "))
+    })
 }
 
 #[cfg(test)]

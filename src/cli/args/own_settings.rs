@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 
 use anyhow::anyhow;
 
-use super::choice::chosen;
-use super::conditions::{FIRST_LAST, INPUT, confidence, limits, low_pass, passband};
-use super::number::{length, length_or_none, probability, threshold};
+use super::algorithm::{FIRST_LAST, INPUT, confidence, limits, low_pass, passband};
+use super::number::{chosen, length, length_or_none, probability, threshold};
 use crate::delay::Settings;
 use crate::experiment::{Experiment, Joint, ReadOptions};
 

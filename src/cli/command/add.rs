@@ -8,7 +8,7 @@ use crate::study::{Mode, add_to_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{DataArgs, ModelFileArgs, ProtocolArgs, ResultArgs, find};
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::run::{Start, Study};
 
 /// Add an effect to a model, and write its next revision

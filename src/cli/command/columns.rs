@@ -8,7 +8,7 @@ use clap::Args as ClapArgs;
 
 use crate::cli::args::{MemoryArgs, RunArgs};
 use crate::cli::console::{Verbosity, warn};
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::output::{OutputKind, Outputs, write_bytes};
 use crate::cli::typed::mapping_options;
 use crate::experiment::{ColumnMap, Experiment, KEPT, MemoryLimit, ReadOptions, Survey};

@@ -2,7 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::Args as ClapArgs;
+
 use crate::batch::Threads;
+use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs, check_known, read_model};
+use crate::cli::failure::{Completion, joint_left_out, nothing_usable, read_failures};
+use crate::cli::run::Study;
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, listed};
 use crate::fit::FitError;
@@ -10,12 +15,6 @@ use crate::model::{JointModel, ModelFile};
 use crate::report::ComparedJoint;
 use crate::report::compare::{compare_json, compare_text};
 use crate::study::{Mode, compare_joints};
-use clap::Args as ClapArgs;
-
-use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs, check_known, read_model};
-use crate::cli::exit::Completion;
-use crate::cli::failure::{joint_left_out, nothing_usable, read_failures};
-use crate::cli::run::Study;
 
 /// Compare a model with the measurement
 ///

@@ -6,7 +6,7 @@ use clap::{Args as ClapArgs, Command};
 use clap_complete::Shell;
 
 use crate::cli::console;
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 
 /// Print the script by which a shell completes commands, options and their values
 ///

@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use crate::cli::args::Format;
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::viewer::{NEWEST, VERSION, installed, on_path};
 use crate::report::json::document;
 

@@ -5,7 +5,7 @@ use crate::report::effects::{effects_json, listing, sheet};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::Format;
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 
 /// List the physical effects that a model can have
 #[derive(ClapArgs, Debug)]

@@ -11,7 +11,7 @@ use clap::Args as ClapArgs;
 use crate::cli::args::{
     DataArgs, EffectArgs, ProtocolArgs, ResultArgs, add_arguments, fresh_name, read_model,
 };
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::run::{Start, Study, as_it_is};
 
 /// Say which physical effect a model lacks

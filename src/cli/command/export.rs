@@ -9,7 +9,7 @@ use clap::Args as ClapArgs;
 
 use crate::cli::args::read_model;
 use crate::cli::console::{Verbosity, message};
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::output::{OutputKind, Outputs, write_bytes};
 use crate::experiment::{did_you_mean, nearest_name};
 use crate::export::{Export, File, Language, Units, by_ending, endings};

@@ -1,14 +1,13 @@
 //! `tauscope importer`: lets the viewer open logs.
 
-use std::env;
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{env, fs};
 
 use anyhow::{Context as _, bail};
 use clap::Args as ClapArgs;
 
 use crate::cli::console;
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::viewer::{IMPORTER, installed, on_path};
 
 /// Let the Rerun viewer open logs: `rerun LOG.csv` shows the whole recording

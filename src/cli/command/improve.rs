@@ -16,7 +16,7 @@ use crate::cli::args::{
 };
 use crate::cli::console::{Interrupt, STOPPING, message};
 use crate::cli::each_log::{Each, FolderArgs};
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::run::{Start, Study, ended};
 
 /// Add to a model what it lacks, effect by effect

@@ -10,7 +10,7 @@ use clap::Args as ClapArgs;
 
 use crate::cli::args::{Choices, number, one_of};
 use crate::cli::console::{Bar, Verbosity};
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::output::{OutputFile, OutputKind, Outputs, filled_file};
 use crate::experiment::read_text;
 

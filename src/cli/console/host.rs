@@ -1,10 +1,9 @@
 //! A program that runs commands inside itself, and takes what a terminal would be shown.
 
 use std::cell::RefCell;
-use std::fmt;
-use std::io;
 use std::ops::Deref;
 use std::sync::Arc;
+use std::{fmt, io};
 
 use crate::effect::Effect;
 use crate::experiment::{Experiment, ReadOptions};

@@ -3,8 +3,6 @@
 //! A log is worked on by this program itself, called for that log alone, so that its result
 //! is what anybody gets who calls it so.
 
-mod each;
-mod options;
 mod store;
 mod work;
 
@@ -16,11 +14,11 @@ use clap::Args;
 
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::console::warn;
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::output::{OutputKind, Outputs, write_table};
 
-pub(crate) use each::Each;
-use options::LogOptions;
+pub(crate) use work::Each;
+use work::{LogOptions, Work};
 
 /// Many logs, each by itself.
 #[derive(Args, Debug)]
@@ -102,7 +100,7 @@ impl FolderArgs {
         let part =
             |(index, _): &(usize, &PathBuf)| self.shard.is_none_or(|shard| shard.has(*index));
         let logs: Vec<&PathBuf> = all.iter().enumerate().filter(part).map(|(_, log)| log).collect();
-        let done = work::Work { each, results, options: &options }.run(&logs)?;
+        let done = Work { each, results, options: &options }.run(&logs)?;
         failures.extend(done.failures);
         if let Some(Shard { number, of }) = self.shard {
             warn(&failures);

@@ -1,4 +1,4 @@
-//! The work on the logs: which are done, and this program on each of the others.
+//! What is to be done with each log: which are done, and this program on each of the others.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -9,14 +9,14 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use crate::report::folder::LogResult;
 use anyhow::{Context as _, anyhow, bail};
 use sha2::{Digest as _, Sha256};
 
-use super::each::Each;
-use super::options::LogOptions;
 use super::store::{Kept, check_own_file, is_foreign, name_of, text_of};
+use crate::cli::args::{DataArgs, RunArgs};
 use crate::cli::console::{Bar, Verbosity};
+use crate::cli::typed::Typed;
+use crate::report::folder::LogResult;
 
 /// What is to be done, and where results are kept.
 pub(crate) struct Work<'a> {
@@ -208,5 +208,47 @@ fn hash_of(path: &Path) -> anyhow::Result<[u8; 32]> {
         hash.update(bytes);
         let count = bytes.len();
         file.consume(count);
+    }
+}
+
+/// A command that is to run for each log.
+pub(crate) struct Each<'a> {
+    pub(crate) command: &'static str,
+    pub(crate) data: &'a DataArgs,
+    /// Where all decisions go, where the command has any.
+    pub(crate) decisions: Option<&'a Path>,
+    /// Options that make no sense for many logs, and whether they were given.
+    pub(crate) refused: &'a [(&'static str, bool)],
+    pub(crate) run: &'a RunArgs,
+}
+
+/// Options that do not change the result of a log, and the logs.
+const WITHOUT_EFFECT: [&str; 8] =
+    ["data", "results", "shard", "summary", "decisions", "format", "threads", "quiet"];
+
+/// Options that name a file, whose content counts.
+const FILES: [&str; 2] = ["columns", "model"];
+
+/// What was typed beside the logs that changes the result of one.
+pub(crate) struct LogOptions {
+    /// Options and their values.
+    pub(crate) words: Vec<OsString>,
+    /// Files that they name.
+    pub(crate) files: Vec<PathBuf>,
+}
+
+impl LogOptions {
+    pub(super) fn of(typed: &Typed) -> Self {
+        let mut options = Self { words: Vec::new(), files: Vec::new() };
+        for (name, value) in typed.of(|name| !WITHOUT_EFFECT.contains(&name)) {
+            let mut word = OsString::from(format!("--{name}"));
+            if let Some(value) = value {
+                word.push("=");
+                word.push(value);
+                options.files.extend(FILES.contains(&name).then(|| PathBuf::from(value)));
+            }
+            options.words.push(word);
+        }
+        options
     }
 }

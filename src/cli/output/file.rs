@@ -1,4 +1,4 @@
-//! Files that bear their final name only when they are whole.
+//! Files that bear their final name only when they are whole, and tables as CSV or Parquet by the name.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use tempfile::NamedTempFile;
+
+use crate::report::DataTable;
 
 /// A file that is being written. Dropped before [`commit`](Self::commit), it leaves
 /// nothing behind and what stood under the name before stays.
@@ -190,6 +192,57 @@ impl Write for OutputFile {
             Target::Direct(file) => file.flush(),
         }
     }
+}
+
+/// Makes a file that may not grow further (`ulimit -f`) an error of whoever writes it. As the system
+/// has it the program would end at once, without a message, and leave a part behind.
+pub(crate) fn meet_file_limits() {
+    #[cfg(unix)]
+    {
+        use std::sync::Arc;
+        use std::sync::atomic::AtomicBool;
+
+        use signal_hook::consts::SIGXFSZ;
+        use signal_hook::flag::register;
+
+        // Where it cannot be done the program ends as ever.
+        register(SIGXFSZ, Arc::new(AtomicBool::new(false))).map(drop).unwrap_or_default();
+    }
+}
+
+/// What a table is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FileKind {
+    Csv,
+    Parquet,
+}
+
+impl FileKind {
+    /// Parquet where the name ends so, else CSV.
+    pub(crate) fn of(path: &Path) -> Self {
+        let ending = path.extension().unwrap_or_default();
+        let parquet = ["parquet", "pq"].iter().any(|name| ending.eq_ignore_ascii_case(name));
+        if parquet { Self::Parquet } else { Self::Csv }
+    }
+}
+
+/// Writes a table as Parquet.
+#[cfg(feature = "parquet")]
+pub(crate) fn write_parquet(table: &DataTable, file: &mut OutputFile) -> anyhow::Result<()> {
+    Ok(table.write_parquet(file)?)
+}
+
+#[cfg(not(feature = "parquet"))]
+pub(crate) fn write_parquet(_: &DataTable, _: &mut OutputFile) -> anyhow::Result<()> {
+    anyhow::bail!("Parquet is not in this build of tauscope")
+}
+
+/// Writes a table as what its name says.
+pub(crate) fn write_table(table: &DataTable, path: &Path) -> anyhow::Result<()> {
+    write_file(path, |file| match FileKind::of(path) {
+        FileKind::Csv => Ok(table.write_csv(file)?),
+        FileKind::Parquet => write_parquet(table, file),
+    })
 }
 
 #[cfg(test)]

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-use super::file::{OutputFile, place_of, target_of};
-use super::table::FileKind;
+use super::file::{FileKind, OutputFile, place_of, target_of};
 use crate::experiment::{MemoryLimit, Survey, is_named_like_a_log};
 
 /// What an output is written as.

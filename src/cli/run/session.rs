@@ -8,7 +8,7 @@ use super::estimates::Estimates;
 use crate::batch::Threads;
 use crate::cli::args::{DataArgs, OwnSettings, RunArgs, read};
 use crate::cli::console::{Bar, Verbosity, warn};
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::viewer::Stream;
 use crate::delay::Settings;
 use crate::experiment::{Experiment, Joint, ReadOptions};

@@ -9,7 +9,7 @@ use super::estimates::{Estimates, estimated, spikes_of};
 use super::session::Session;
 use crate::cli::args::{DataArgs, ResultArgs};
 use crate::cli::console::Bar;
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::output::{OutputKind, Outputs, of_delays};
 use crate::delay::Settings;
 use crate::experiment::{Joint, Other};

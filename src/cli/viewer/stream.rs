@@ -8,7 +8,7 @@ use super::program::PORT;
 use crate::cli::console::Verbosity;
 #[cfg(feature = "rrd")]
 use crate::cli::console::{self, Interrupt};
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 #[cfg(feature = "rrd")]
 use crate::cli::failure::said;
 use crate::report::{Recording, SweepRecording};

@@ -14,7 +14,7 @@ use crate::report::design_words::design_text;
 use crate::report::page::design::design_document;
 
 use crate::cli::console::{Bar, warn};
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::failure::{nothing_usable, read_failures, said};
 use crate::cli::output::{OutputKind, Outputs, write_bytes, write_file};
 

@@ -1,22 +1,22 @@
 //! The shortest input that distinguishes two effects, for each joint.
 
+use anyhow::{Context as _, anyhow, bail};
+
+use super::args::Args;
+use super::known::{Known, PROTOCOL};
 use crate::batch::Threads;
-use crate::design::shortest;
+use crate::cli::args::find;
+use crate::cli::console::Bar;
+use crate::cli::failure::said;
 use crate::design::{
-    Limits, Logged, RandomSteps, Suspects, TestRig, default_hold_s, default_largest, default_levels,
+    Limits, Logged, RandomSteps, Suspects, TestRig, default_hold_s, default_largest,
+    default_levels, shortest,
 };
 use crate::effect::Effect;
 use crate::experiment::Joint;
 use crate::model::JointModel;
 use crate::report::design::{DesignedJoint, Discrimination};
 use crate::study::suspect_joints;
-use anyhow::{Context as _, anyhow, bail};
-
-use super::args::Args;
-use super::known::{Known, PROTOCOL};
-use crate::cli::args::find;
-use crate::cli::console::Bar;
-use crate::cli::failure::said;
 
 /// Longest input that is tried where no other is given.
 const LONGEST_S: f64 = 60.0;

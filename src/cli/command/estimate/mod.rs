@@ -5,7 +5,7 @@ mod files;
 mod follow;
 
 use crate::cli::each_log::Each;
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::failure::nothing_usable;
 use crate::cli::run::{Session, compared, estimated, failures, notes, others};
 use crate::delay::Settings;

@@ -3,8 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::args::Args;
-use super::target::Target;
+use super::args::{Args, Target};
 use crate::cli::args::{DataArgs, Format, read_model};
 use crate::cli::console;
 use crate::cli::run::{Study, estimated};

@@ -2,7 +2,6 @@
 
 mod args;
 mod first_look;
-mod target;
 
 use std::path::Path;
 
@@ -19,11 +18,11 @@ use crate::study::{Known, Mode, OfJoints, explain_unknown_joints, improve_joints
 use anyhow::bail;
 pub(crate) use args::Args;
 use args::ModelArgs;
-use target::{Target, file_name};
+use args::{Target, file_name};
 
 use crate::cli::args::{add_arguments, read_model};
 use crate::cli::console::{Bar, Interrupt, STOPPING, Verbosity};
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::failure::{nothing_usable, said};
 use crate::cli::output::write_bytes;
 use crate::cli::run::{

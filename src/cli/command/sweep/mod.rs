@@ -18,7 +18,7 @@ use clap::Args as ClapArgs;
 use crate::cli::args::number::{self, OrNone};
 use crate::cli::args::{ConditionArgs, DataArgs, ResultArgs, ids_with, low_pass};
 use crate::cli::console::Bar;
-use crate::cli::exit::Completion;
+use crate::cli::failure::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures, said};
 use crate::cli::output::{OutputKind, Outputs, Recorded};
 use crate::cli::run::Session;
