@@ -8,10 +8,9 @@ use super::chunk::{Chunks, Index, Moment, Opening};
 use super::content::{Content, Tab, hashed, name_of};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
-use super::paths;
 use super::{
-    about, decisions, delay_state, difference, doubt, headline, model, overview, place, revision,
-    segment_view, signals, verdict, views,
+    about, decisions, delay_state, difference, doubt, headline, model, overview, paths, place,
+    revision, segment_view, signals, verdict, views,
 };
 use crate::report::settings::settings_in_short;
 use crate::report::{ImprovedJoint, Recording};

@@ -12,7 +12,7 @@ use super::palette::{self, color};
 use super::paths;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
-use crate::report::page::shaded::{named, validation, worst};
+use crate::report::page::timeline::{named, validation, worst};
 
 /// A span of a trial with its name.
 type Named = ((usize, Range<usize>), String);

@@ -1,18 +1,22 @@
-//! `improve` as text and JSON: the ladder of errors.
+//! `explain`, `add` and `improve` as text and JSON: verdict, ranking, the ladder of errors, and what is
+//! concluded.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
-use super::compare::{error_json, errors_note, horizons, model_json};
-use super::conclusion::Conclusion;
-use super::conclusion::{Passage, Topic};
-use super::explain::finding_json;
+use super::compare::{compare_table, error_json, errors_note, horizons, model_json};
+use super::conclusion::{Conclusion, Passage, Topic};
+use super::finding::Consequence;
 use super::json::{document, joined};
 use super::ladder::{LadderRow, change_in_words, errors_of, figures, ladder_table};
 use super::parameters::{model_text, parameters_json};
+use super::ranking::{candidate_json, ranking_table};
 use super::{Before, ComparedJoint, Finding, History};
+use crate::diagnosis::ErrorFigures;
 use crate::experiment::Joint;
-use crate::explain::{Candidate, Change, Revision, Verdict};
-use crate::wording::effect_ids;
+use crate::explain::{Candidate, Change, Contribution, Revision, Verdict};
+use crate::model::JointModel;
+use crate::numerics::to_decimals;
+use crate::wording::{effect_ids, number, p_text, with_unit};
 
 /// A joint whose model was improved.
 #[derive(Clone, Copy, Debug)]
@@ -164,4 +168,170 @@ fn revision(joint: &Joint, number: u32, revision: &Revision) -> Value {
         "error": error_json(&revision.comparison),
         "lack_of_fit": revision.comparison.lack_of_fit,
     })
+}
+
+/// For each joint the verdict, the ranking and what they mean.
+pub(crate) fn explain_text(findings: &[Finding<'_>]) -> String {
+    let joint = |finding: &Finding<'_>| {
+        let ComparedJoint { joint, comparison, .. } = finding.compared;
+        let conclusion = finding.conclusion();
+        let ranking = match finding.ranking {
+            [] => String::new(),
+            ranking => format!("{}\n", ranking_table(joint, ranking)),
+        };
+        let (text, model) = (conclusion.printed(), model_text(joint, comparison, None));
+        format!("{}\n{ranking}\n{text}\n{model}\n", conclusion.headline)
+    };
+    let joints: Vec<String> = findings.iter().map(joint).collect();
+    let horizon = horizons(findings.iter().map(|finding| finding.compared));
+    format!(
+        "{}\nroot-mean-square errors, less the mean of each run between restarts, {horizon}; ± is \
+         one standard error\n",
+        joints.join("\n\n")
+    )
+}
+
+/// Verdict, ranking and words.
+pub(super) fn finding_json(finding: &Finding<'_>, conclusion: &Conclusion) -> Value {
+    let joint = finding.compared.joint;
+    let candidates = finding.ranking.iter();
+    json!({
+        "verdict": finding.verdict.id(),
+        "ranking": candidates.map(|candidate| candidate_json(joint, candidate)).collect::<Value>(),
+        "conclusion": conclusion_json(&conclusion.headline, &finding.consequence()),
+        "headline": conclusion.headline,
+        "in_words": conclusion.sentences(),
+        "commands": conclusion.commands,
+    })
+}
+
+/// What was found, how much it explains, and what remains.
+pub(super) fn conclusion_json(headline: &str, of: &Consequence<'_>) -> Value {
+    let all = parameters_json(of.joint, of.fit);
+    let found = |one: &Contribution| {
+        let prefix = format!("{}.", one.effect);
+        let own = all.iter().filter(|(name, _)| name.starts_with(&prefix));
+        let own = own.map(|(name, value)| (name.clone(), value.clone()));
+        json!({
+            "effect": one.effect,
+            "error_share_percent": 100.0 * one.error_share,
+            "alternatives": one.alternative_names(),
+            "parameters": own.collect::<Map<_, _>>(),
+        })
+    };
+    let remaining = |error: ErrorFigures| {
+        json!({
+            "rmse": error.rmse,
+            "times_sensor_noise": of.times_noise(),
+            "percent_of_motion": 100.0 - error.fit_percent,
+        })
+    };
+    let known = of.attribution.iter();
+    json!({
+        "headline": headline,
+        "found": known.clone().flat_map(|one| &one.found).map(found).collect::<Value>(),
+        "doubtful": known.clone().flat_map(|one| &one.doubtful).map(found).collect::<Value>(),
+        "refinements": known.flat_map(|one| &one.refinements).collect::<Vec<_>>(),
+        "explained_percent": of.explained().map(|share| 100.0 * share),
+        "sensor_noise": of.sensor_noise,
+        "remaining": of.after.map(remaining),
+    })
+}
+
+/// The document of `explain --format json`.
+pub(crate) fn explain_json(findings: &[Finding<'_>], failures: &[String]) -> Value {
+    let joint = |finding: &Finding<'_>| {
+        let found = finding_json(finding, &finding.conclusion());
+        joined([model_json(&finding.compared), found])
+    };
+    let joints: Value = findings.iter().map(joint).collect();
+    document("tauscope/explain/1", json!({ "joints": joints, "failures": failures }))
+}
+
+/// A joint whose model got another effect.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AddedJoint<'a> {
+    /// The model before and after, as revisions.
+    pub(crate) improved: ImprovedJoint<'a>,
+    /// Id of the effect.
+    pub(crate) effect: &'static str,
+    /// Probability of so much or more when the effect is not there; none where the models do not nest.
+    pub(crate) p_value: Option<f64>,
+}
+
+/// Ids of the effects that `after` has no more.
+pub(crate) fn gone(before: &JointModel, after: &JointModel) -> Vec<&'static str> {
+    let left = effect_ids(after);
+    effect_ids(before).into_iter().filter(|id| !left.contains(id)).collect()
+}
+
+impl<'a> AddedJoint<'a> {
+    /// The model before and after.
+    fn compared(&self) -> [ComparedJoint<'a>; 2] {
+        let after = self.improved.finding.compared;
+        [self.improved.compared().next().unwrap_or(after), after]
+    }
+
+    /// `boom: with dead_band the error falls from 2.9 to 0.4 deg, by 87 %`.
+    fn sentence(&self) -> String {
+        let error = |of: ComparedJoint<'_>| of.comparison.judged().map_or(f64::NAN, |it| it.rmse);
+        let ([before, after], joint) = (self.compared().map(error), self.improved.name());
+        let unit = self.improved.finding.compared.joint.output_unit.as_deref();
+        let p_value = self.p_value.map_or_else(String::new, |p| {
+            let verdict = if p < 0.01 { "" } else { ": not significant" };
+            format!(" ({}{verdict})", p_text(p))
+        });
+        format!("{joint}: with {} the error {}{p_value}", self.effect, change(before, after, unit))
+    }
+}
+
+/// `falls from 2.9 to 0.4 deg, by 87 %`; `stays 0 deg` where there is nothing to divide by.
+fn change(before: f64, after: f64, unit: Option<&str>) -> String {
+    let (from, to) = (number(before), with_unit(after, unit));
+    let taken = 100.0 * (1.0 - after / before);
+    if before.total_cmp(&after).is_eq() {
+        return format!("stays {to}");
+    }
+    let falls = if after < before { "falls" } else { "rises" };
+    if !taken.is_finite() {
+        return format!("{falls} from {from} to {to}");
+    }
+    let share = to_decimals(taken.abs(), 1);
+    format!("{falls} from {from} to {to}, by {share} %")
+}
+
+/// Each joint's model before and after, and what it means.
+pub(crate) fn add_text(joints: &[AddedJoint<'_>]) -> String {
+    let revisions = joints.iter().flat_map(|joint| joint.improved.numbered());
+    // `revision 0, integrator` and `revision 1, + dead_band`.
+    let label = |(number, step)| format!("revision {number}, {}", change_in_words(step));
+    let labels: Vec<String> = revisions.map(label).collect();
+    let models = joints.iter().flat_map(|joint| joint.improved.compared());
+    let named = models.zip(&labels).map(|(one, label)| ComparedJoint { model: label, ..one });
+    let compared: Vec<_> = named.collect();
+    let sentences: Vec<_> = joints.iter().map(AddedJoint::sentence).collect();
+    format!("{}\n{}\n", compare_table(&compared), sentences.join("\n"))
+}
+
+/// The document of `add --format json`.
+pub(crate) fn add_json(model_file: &str, joints: &[AddedJoint<'_>], failures: &[String]) -> Value {
+    let joint = |added: &AddedJoint<'_>| {
+        let [before, after] = added.compared();
+        let model = &before.comparison.fit.model;
+        let change = json!({
+            "added": added.effect,
+            "removed": gone(model, &after.comparison.fit.model),
+            "p_value": added.p_value,
+            "before": {
+                "revision": before.revision,
+                "effects": effect_ids(model),
+                "error": error_json(before.comparison),
+            },
+            "conclusion": conclusion_json(&added.sentence(), &added.improved.finding.consequence()),
+        });
+        joined([model_json(&after), change])
+    };
+    let joints: Value = joints.iter().map(joint).collect();
+    let facts = json!({ "model_file": model_file, "joints": joints, "failures": failures });
+    document("tauscope/add/1", facts)
 }

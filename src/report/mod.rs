@@ -5,8 +5,6 @@
 
 #![cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "what only recordings show"))]
 
-pub(crate) mod add;
-pub(crate) mod against;
 pub(crate) mod answer;
 pub(crate) mod columns;
 pub(crate) mod compare;
@@ -19,7 +17,6 @@ pub(crate) mod difference;
 pub(crate) mod effects;
 pub(crate) mod estimate;
 mod estimated;
-pub(crate) mod explain;
 pub(crate) mod facts;
 pub(crate) mod finding;
 pub(crate) mod folder;
@@ -27,7 +24,6 @@ pub(crate) mod improve;
 pub(crate) mod json;
 pub(crate) mod ladder;
 pub(crate) mod lookup;
-mod model_delay;
 pub(crate) mod page;
 pub(crate) mod parameters;
 mod ranking;
@@ -39,11 +35,10 @@ pub(crate) mod summary;
 pub(crate) mod sweep;
 mod table;
 
-pub use against::against_table;
 pub use compare::ComparedJoint;
 pub(crate) use decisions::Doubted;
 pub use decisions::decision_rows;
-pub use delays::write_delays;
+pub use delays::{against_table, write_delays};
 pub use estimated::{EstimatedJoint, Warning};
 pub use finding::Finding;
 pub use improve::ImprovedJoint;

@@ -3,7 +3,7 @@
 use crate::batch::Threads;
 use crate::experiment::Joint;
 use crate::explain::{Addition, Change, Improvement, Revision as Step, Verdict};
-use crate::report::add::{AddedJoint, add_json, add_text};
+use crate::report::improve::{AddedJoint, add_json, add_text};
 use crate::study::{Mode, add_to_joints};
 use clap::Args as ClapArgs;
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::batch::Threads;
 use crate::experiment::Joint;
-use crate::report::explain::{explain_json, explain_text};
+use crate::report::improve::{explain_json, explain_text};
 use crate::study::{Mode, explain_joints};
 use clap::Args as ClapArgs;
 

@@ -8,8 +8,8 @@ use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
 use crate::recording::panels::{self, Placed};
 use crate::report::ComparedJoint;
-use crate::report::page::shaded::named;
 use crate::report::page::simulated::{simulated_panels, worst_panel};
+use crate::report::page::timeline::named;
 
 /// Width and height of the sheet, and of that with ladder, what the model misses and ranking.
 pub(in crate::recording) const SIZE: (f32, f32) = (1860.0, 470.0);

@@ -15,8 +15,7 @@ use crate::recording::origin::made_from;
 use crate::recording::paths::{self, at, joint_root};
 use crate::report::SweepRecording;
 use crate::report::settings::settings_table;
-use crate::report::sweep::level_text;
-use crate::report::sweep::text::sweep_sentences;
+use crate::report::sweep::{level_text, sweep_sentences};
 use crate::wording::number;
 
 impl Content for SweepRecording<'_> {

@@ -17,7 +17,7 @@ use crate::recording::layers::Layers;
 use crate::recording::palette::{self, Rgb, role};
 use crate::recording::panels::{self, Placed};
 use crate::recording::paths;
-use crate::report::sweep::text::sweep_sentences;
+use crate::report::sweep::sweep_sentences;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1130.0);

@@ -8,8 +8,7 @@ use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
 use crate::recording::markdown::plain;
 use crate::recording::paths;
-use crate::report::sweep::level_text;
-use crate::report::sweep::text::{depends_on, level_cell, sweep_sentences};
+use crate::report::sweep::{depends_on, level_cell, level_text, sweep_sentences};
 use crate::wording::{capitalized, number};
 
 /// Adds all words below `root`.

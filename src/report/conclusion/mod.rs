@@ -1,17 +1,18 @@
 //! A verdict in words that an engineer can act on.
 
-mod figures;
+use super::finding::added;
+use crate::delay;
+use crate::effect::Stage;
+use crate::explain::{Candidate, Verdict};
+use crate::fit::{AssessedModel, Status};
+use crate::report::{DelayRange, EstimatedJoint, Finding, JointSummary};
+use crate::wording::{hanging, parameter_value};
+
 mod passage;
 mod verdict;
 
-use figures::first_order;
+use passage::first_order;
 pub(crate) use passage::{Passage, Topic};
-
-use super::finding::added;
-use super::model_delay::model_delay;
-use super::{EstimatedJoint, Finding};
-use crate::explain::{Candidate, Verdict};
-use crate::wording::hanging;
 
 /// What is concluded of a joint.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -104,4 +105,29 @@ impl Finding<'_> {
         let measured = EstimatedJoint { joint: self.joint(), estimate };
         model_delay(self.consequence().fit, measured)
     }
+}
+
+/// What is to be said of the delay of a model: its value beside the measured ones, where it is one
+/// number that a fit found, or that is fixed.
+fn model_delay(of: &AssessedModel, measured: EstimatedJoint<'_>) -> Option<String> {
+    let is_law =
+        of.model.components().iter().any(|part| part.effect().spec().stage == Stage::Transport);
+    let delay =
+        of.parameters.iter().find(|parameter| parameter.name == "delay").filter(|_| !is_law)?;
+    let measured = match measured.estimate.dead_time.as_ref().map(|found| found.finding) {
+        Some(delay::Finding::Known(bounds) | delay::Finding::LagOnly(bounds)) => {
+            format!("the dead time of the record is {:.3} to {:.3} s", bounds.low_s, bounds.high_s)
+        }
+        Some(delay::Finding::Unknown(_)) => return None,
+        None => {
+            let DelayRange { min, median, max } = JointSummary::of(measured).delay_s?;
+            format!("those measured at the steps are {min:.3} to {max:.3} s, median {median:.3} s")
+        }
+    };
+    let fitted = if delay.status == Status::Fixed {
+        ""
+    } else {
+        " A measured delay includes lags after it, which a model may describe by another effect."
+    };
+    Some(format!("The delay of the model is {}; {measured}.{fitted}", parameter_value(delay, "s")))
 }

@@ -1,8 +1,7 @@
 //! What is said where no effect is missing, where one is, and where none that was tried accounts for the
 //! error.
 
-use super::figures::{ABOVE_NOISE, first_order};
-use super::passage::{Passage, Topic};
+use super::passage::{ABOVE_NOISE, Passage, Topic, first_order};
 use crate::diagnosis::failure::Region;
 use crate::diagnosis::{Comparison, LackOfFit, NEGLIGIBLE, SIGNIFICANCE};
 use crate::experiment::Trial;

@@ -2,12 +2,11 @@
 
 use serde_json::{Value, json};
 
-use super::document::{Block, Document, Entry, slug};
-use super::report::Report;
+use super::document::{Block, Document, Entry, Report, slug};
 use super::{delays, joint};
 use crate::experiment::{Joint, Source, Trial};
 use crate::report::difference::differences_json;
-use crate::report::explain::conclusion_json;
+use crate::report::improve::conclusion_json;
 use crate::report::json::{document, without_empty};
 use crate::report::settings::settings_table;
 use crate::report::{EstimatedJoint, ImprovedJoint, TextTable};

@@ -7,9 +7,9 @@ use crate::experiment::Trial;
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, Span, delay_levels};
 use crate::numerics::quantile;
 use crate::report::EstimatedJoint;
-use crate::report::against::variable_text;
 use crate::report::answer::dead_time_sentences;
 use crate::report::decisions::doubted;
+use crate::report::delays::variable_text;
 use crate::wording::bracketed;
 
 /// Input and output over time.

@@ -1,7 +1,10 @@
-//! What a report says, before it is written down as a page.
+//! What a report is made from, and what it says, before it is written down as a page.
 
+use crate::delay::Settings;
+use crate::experiment::{Experiment, Joint};
 use crate::figure::Panel;
-use crate::report::TextTable;
+use crate::report::difference::Against;
+use crate::report::{EstimatedJoint, ImprovedJoint, TextTable};
 
 /// Width of a drawing by itself, in pixels.
 pub(super) const WIDTH: u32 = 760;
@@ -85,4 +88,40 @@ impl Block {
 pub(super) fn slug(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     name.chars().map(plain).collect()
+}
+
+/// What a report is about.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Report<'a> {
+    /// What stands above it, instead of the name of the log.
+    pub(crate) title: Option<&'a str>,
+    /// What was read.
+    pub(crate) experiment: &'a Experiment,
+    /// The joints with their delays.
+    pub(crate) joints: &'a [EstimatedJoint<'a>],
+    /// How the delays were found.
+    pub(crate) settings: &'a Settings,
+    /// The models of joints that have one, each with its revisions.
+    pub(crate) models: &'a [ImprovedJoint<'a>],
+    /// Other results that the decisions are compared with.
+    pub(crate) against: &'a [Against<'a>],
+    /// The model file with what was found, as text.
+    pub(crate) revised: Option<&'a str>,
+    /// The command that makes this report.
+    pub(crate) command: &'a str,
+    /// The command that also reports models, where none were asked for.
+    pub(crate) with_models: Option<&'a str>,
+    /// The name of the recording beside it.
+    pub(crate) recording: Option<&'a str>,
+    /// What a person should know who looks at the numbers.
+    pub(crate) notes: &'a [String],
+    /// Messages on joints and files that failed.
+    pub(crate) failures: &'a [String],
+}
+
+impl Report<'_> {
+    /// The model of a joint.
+    pub(super) fn model_of(&self, joint: &Joint) -> Option<&ImprovedJoint<'_>> {
+        self.models.iter().find(|model| model.finding.compared.joint.name == joint.name)
+    }
 }

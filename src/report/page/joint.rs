@@ -1,14 +1,14 @@
 //! What is said of one joint.
 
 use super::delays::{dead_time_blocks, record_figure};
-use super::document::Block;
-use super::report::Report;
+use super::document::{Block, Report};
 use super::{delays, model, segment};
 use crate::delay::{AgainstState, Condition, DelayTable};
-use crate::report::against::{AGAINST_HEADER, CORRECTED, against_rows, confounded_sentences};
 use crate::report::answer::{delay_answer, doubtful_count};
 use crate::report::decisions::{by_doubt, decision_names, decision_text, doubted};
-use crate::report::delays::{levels_text, neutral_sentence};
+use crate::report::delays::{
+    AGAINST_HEADER, CORRECTED, against_rows, confounded_sentences, levels_text, neutral_sentence,
+};
 use crate::report::difference::difference_table;
 use crate::report::estimate::{onset_line, tracking_line};
 use crate::report::facts::Place;

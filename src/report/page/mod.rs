@@ -6,13 +6,11 @@
 pub(crate) mod compose;
 pub(crate) mod delays;
 pub(crate) mod design;
-mod document;
+pub(crate) mod document;
 mod joint;
 mod model;
 mod plot;
 mod render;
-pub(crate) mod report;
 mod segment;
-pub(crate) mod shaded;
 pub(crate) mod simulated;
 pub(crate) mod timeline;

@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use super::document::{Figure, HALF, WIDTH};
-use super::shaded::{self, Spans, validation};
-use super::timeline::{Timeline, values_of};
+use super::timeline::{self, Spans, Timeline, validation, values_of};
 use crate::diagnosis::failure::WorstSegment;
 use crate::diagnosis::sensor_noise;
 use crate::experiment::Trial;
@@ -158,7 +157,7 @@ fn noise_edges(compared: &ComparedJoint<'_>, (from, to): (f64, f64)) -> Option<M
 
 /// Where the worst segments are, where there are any.
 fn worst_mark(compared: &ComparedJoint<'_>, timeline: &Timeline<'_>) -> Option<Mark> {
-    let worst = shaded::worst(compared.joint, compared.comparison);
+    let worst = timeline::worst(compared.joint, compared.comparison);
     let is_any = !worst.is_empty();
     is_any.then(|| timeline.shaded(Role::Attention, worst, 0.3).named("worst segments"))
 }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::decisions::by_doubt;
 use super::json::joined;
-use super::page::report::Report;
+use super::page::document::Report;
 use super::review::review_json;
 use super::{Doubted, EstimatedJoint};
 use crate::delay::{Check, Decision, Outcome};

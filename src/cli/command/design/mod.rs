@@ -1,24 +1,21 @@
 //! `tauscope design`: the next experiment.
 
-mod args;
-mod known;
-mod random;
-mod separate;
-
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
+use known::Known;
 
+use crate::cli::console::{Bar, warn};
+use crate::cli::failure::{Completion, nothing_usable, read_failures, said};
+use crate::cli::output::{OutputKind, Outputs, write_bytes, write_file};
 use crate::report::design::{DesignedJoint, design_json, input_table, preview_table};
 use crate::report::design_words::design_text;
 use crate::report::page::design::design_document;
 
-use crate::cli::console::{Bar, warn};
-use crate::cli::failure::Completion;
-use crate::cli::failure::{nothing_usable, read_failures, said};
-use crate::cli::output::{OutputKind, Outputs, write_bytes, write_file};
-
-use known::Known;
+mod args;
+mod known;
+mod random;
+mod separate;
 
 pub(crate) use args::Args;
 

@@ -1,12 +1,9 @@
 //! `tauscope estimate`: read, estimate, write, print.
 
-mod args;
-mod files;
-mod follow;
+use files::{Estimated, Files, Run};
 
 use crate::cli::each_log::Each;
-use crate::cli::failure::Completion;
-use crate::cli::failure::nothing_usable;
+use crate::cli::failure::{Completion, nothing_usable};
 use crate::cli::run::{Session, compared, estimated, failures, notes, others};
 use crate::delay::Settings;
 use crate::report::against_table;
@@ -14,7 +11,10 @@ use crate::report::decisions::steps_table;
 use crate::report::delays::delay_levels_text;
 use crate::report::difference::against_text;
 use crate::report::estimate::{EstimateJson, estimate_table};
-use files::{Estimated, Files, Run};
+
+mod args;
+mod files;
+mod follow;
 
 pub(crate) use args::Args;
 

@@ -11,7 +11,7 @@ use crate::cli::typed::quoted;
 use crate::report::columns::extent_table;
 use crate::report::estimate::estimate_table;
 use crate::report::improve::improve_text;
-use crate::report::page::report::Report;
+use crate::report::page::document::Report;
 
 /// Prints how the log was read, what was measured and its delays, as soon as they are known: models
 /// take longer.

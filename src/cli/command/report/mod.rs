@@ -11,7 +11,7 @@ use crate::explain::{Improvement, Options, Revision, Verdict};
 use crate::model::{LogHash, ModelFile};
 use crate::report::answer::input_note;
 use crate::report::page::compose::{report_json, report_text};
-use crate::report::page::report::Report;
+use crate::report::page::document::Report;
 use crate::report::review_page::review_page;
 use crate::report::{EstimatedJoint, ImprovedJoint};
 use crate::study::{Known, Mode, OfJoints, explain_unknown_joints, improve_joints};

@@ -1,28 +1,26 @@
 //! `tauscope sweep`: every delay with every setting.
 
-mod values;
+use anyhow::bail;
+use clap::Args as ClapArgs;
+use values::{Values, lengths, methods, passbands};
 
 use crate::batch::Threads;
+use crate::cli::args::number::{self, OrNone};
+use crate::cli::args::{ConditionArgs, DataArgs, ResultArgs, ids_with, low_pass};
+use crate::cli::console::Bar;
+use crate::cli::failure::{Completion, joint_left_out, nothing_usable, read_failures, said};
+use crate::cli::output::{OutputKind, Outputs, Recorded};
+use crate::cli::run::Session;
 use crate::delay::sweep::{Base, Grid};
 use crate::delay::{EstimateError, Method};
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::numerics::LowPass;
-use crate::report::sweep::sweep_json;
-use crate::report::sweep::text::{StepsShown, sweep_text};
+use crate::report::sweep::{StepsShown, sweep_json, sweep_text};
 use crate::report::{ReportedSweep, SweepRecording};
 use crate::study::{SweptJoint, sweep_joints};
 use crate::units::Length;
-use anyhow::bail;
-use clap::Args as ClapArgs;
 
-use crate::cli::args::number::{self, OrNone};
-use crate::cli::args::{ConditionArgs, DataArgs, ResultArgs, ids_with, low_pass};
-use crate::cli::console::Bar;
-use crate::cli::failure::Completion;
-use crate::cli::failure::{joint_left_out, nothing_usable, read_failures, said};
-use crate::cli::output::{OutputKind, Outputs, Recorded};
-use crate::cli::run::Session;
-use values::{Values, lengths, methods, passbands};
+mod values;
 
 /// Estimate every delay with many settings, and say which of them it depends on
 ///
