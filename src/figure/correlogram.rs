@@ -1,7 +1,6 @@
 //! How the residual is correlated with itself and with the input, lag by lag.
 
-use super::panel::{Axis, Mark, Panel, Place, Shape};
-use super::role::Role;
+use super::panel::{Axis, Mark, Panel, Place, Role, Shape};
 use super::span::Span;
 use crate::diagnosis::Comparison;
 

@@ -1,7 +1,6 @@
 //! The curves of the speed as they were measured, with their bands, beside those of a model.
 
-use super::panel::{Axis, Mark, Panel, Place};
-use super::role::Role;
+use super::panel::{Axis, Mark, Panel, Place, Role};
 use super::span::Span;
 use crate::diagnosis::{Curve, CurveOf};
 use crate::experiment::Joint;

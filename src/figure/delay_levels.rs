@@ -1,8 +1,7 @@
 //! The delay table as a drawing: the median delay over the level, by the kind of step; and which way a
 //! step goes.
 
-use super::panel::{Axis, Mark, Panel, Place, Shape};
-use super::role::Role;
+use super::panel::{Axis, Mark, Panel, Place, Role, Shape};
 use super::span::Span;
 use crate::delay::{DelayRow, DelayTable, Transition};
 use crate::wording::bracketed;

@@ -1,7 +1,6 @@
 //! Where the error arises: its share in each part of a feature, beside the share of the time.
 
-use super::panel::{Axis, Mark, Panel, Place, Shape};
-use super::role::Role;
+use super::panel::{Axis, Mark, Panel, Place, Role, Shape};
 use super::span::Span;
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::{Feature, Region};

@@ -1,7 +1,6 @@
 //! The errors of revisions of a model, or of candidates, as bars one below another, down to the noise.
 
-use super::panel::{Axis, Mark, Panel, Shape};
-use super::role::Role;
+use super::panel::{Axis, Mark, Panel, Role, Shape};
 use super::span::Span;
 use crate::wording::measure;
 

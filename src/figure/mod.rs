@@ -14,10 +14,8 @@ pub(crate) mod delay_levels;
 pub(crate) mod error_share;
 pub(crate) mod ladder;
 mod panel;
-mod role;
 pub(crate) mod segment;
 mod span;
 
-pub(crate) use panel::{Axis, Mark, Panel, Place, Shape, within};
-pub(crate) use role::{Revision, Role};
+pub(crate) use panel::{Axis, Mark, Panel, Place, Revision, Role, Shape, within};
 pub(crate) use span::{Span, thinned_places, thinned_to};

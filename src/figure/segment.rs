@@ -4,8 +4,7 @@
 //! Places along the trial are samples, counted from 1, which may lie between two; a [`Scale`] says where
 //! they are on the horizontal axis.
 
-use super::panel::{Axis, Mark, Panel, Place, Shape};
-use super::role::Role;
+use super::panel::{Axis, Mark, Panel, Place, Role, Shape};
 use super::span::{Span, thinned_places, thinned_to};
 use crate::delay::{Candidate, Decision, Line, Verdict};
 use crate::experiment::Trial;

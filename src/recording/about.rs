@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use super::layout::JointLayout;
 use super::markdown::{plain, prose};
-use super::origin::made_from;
 use super::revision::judged;
+use crate::experiment::{ReadOptions, Source};
 use crate::report::answer::dead_time_sentences;
 use crate::report::decisions::doubtful_lines;
 use crate::report::delays::levels_text;
@@ -141,5 +141,41 @@ fn detail(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> String {
             "**{kept} of {all} candidates are recorded** (`--detail full` records all): all of \
              rejected and doubtful segments, of the others the best, its neighbours, and some more."
         ),
+    }
+}
+
+/// The files, how they were read, and the program.
+pub(super) fn made_from(
+    page: &mut String,
+    sources: &[Source],
+    reading: &ReadOptions,
+) -> std::fmt::Result {
+    writeln!(page, "\n## Made from\n")?;
+    for source in sources {
+        let path = source.path.display();
+        writeln!(page, "- `{path}`, {} bytes, SHA-256 `{}`", source.bytes, source.sha256)?;
+    }
+    writeln!(page, "\n{}", read_with(reading))?;
+    writeln!(page, "\nMade by tauscope {}.\n", env!("CARGO_PKG_VERSION"))
+}
+
+/// How the files were read, where it was not as they are.
+fn read_with(reading: &ReadOptions) -> String {
+    let ReadOptions { columns, repair, .. } = reading;
+    let mut parts = Vec::new();
+    parts.extend(repair.resample.map(|period| format!("resampled to {period}")));
+    parts.extend(
+        repair.fill_s.map(|fill| format!("gaps up to {fill} s filled, split at longer ones")),
+    );
+    parts.extend(columns.sample_period_s.map(|s| format!("a sample period of {s} s given")));
+    parts.extend(columns.time.iter().map(|time| format!("time from column `{time}`")));
+    parts.extend(columns.trial.iter().map(|trial| format!("trials from column `{trial}`")));
+    parts.extend(columns.joints.iter().map(|joint| {
+        format!("{} from `{}` and `{}`", plain(&joint.name), joint.input, joint.output)
+    }));
+    if parts.is_empty() {
+        "Read as they are.".to_owned()
+    } else {
+        format!("Read with: {}.", parts.join("; "))
     }
 }

@@ -2,15 +2,15 @@
 
 use std::iter::once;
 
-use super::beside::{Other, weight};
 use super::blueprint::Blueprint;
 use super::chunk::{Chunks, Index, Moment, Opening};
 use super::content::{Content, Tab, hashed, name_of};
+use super::difference::{Other, weight};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
 use super::{
-    about, decisions, delay_state, difference, doubt, headline, model, overview, paths, place,
-    revision, segment_view, signals, verdict, views,
+    about, decisions, delay_state, difference, headline, model, overview, paths, revision,
+    segment_view, verdict, views,
 };
 use crate::report::settings::settings_in_short;
 use crate::report::{ImprovedJoint, Recording};
@@ -83,15 +83,14 @@ fn add_joint(
     others: &[Other<'_>],
 ) -> Result<(), RecordError> {
     let joint = layout.joint;
-    place::add(chunks, layout)?;
+    headline::add_place(chunks, layout)?;
     headline::add(chunks, layout, recording.sources, recording.revisions_of(joint))?;
-    signals::add(chunks, layout)?;
+    overview::add_signals(chunks, layout)?;
     decisions::add(chunks, layout)?;
     verdict::add(chunks, layout, others)?;
     segment_view::add(chunks, layout, (recording.settings.method, others))?;
     overview::add(chunks, layout)?;
     delay_state::add(chunks, layout)?;
-    doubt::add(chunks, layout)?;
     difference::add(chunks, layout, others)?;
     let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
     let models: Vec<_> = models.collect();

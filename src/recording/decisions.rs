@@ -1,4 +1,4 @@
-//! The numbers of every candidate and every decision.
+//! The numbers of every candidate and every decision, and the decisions by doubt: lines to click.
 
 use rerun::SeriesLines;
 use serde_json::Value;
@@ -14,12 +14,14 @@ use crate::report::Kind::{self, Real, Whole};
 use crate::report::decisions::{DECISION, decision_text};
 use crate::report::facts::Place;
 use crate::units::signed;
+use crate::wording::doubt_percent;
 
 /// Adds `/decision/sse` and `/decision/table`.
 pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
     add_errors(chunks, layout)?;
     add_page(chunks, layout)?;
-    add_table(chunks, layout)
+    add_table(chunks, layout)?;
+    add_doubts(chunks, layout)
 }
 
 /// All decisions as a person reads them: what the table has, in five digits.
@@ -147,4 +149,37 @@ fn add_table(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), Record
     let rounded = rounded.map(|(name, value)| shown(name, rows.iter().map(value)));
     let all = facts.chain(columns(&rows, OWN)).chain(rounded);
     chunks.push(paths::DECISION_TABLE, moments.into_iter().collect(), all)
+}
+
+/// Adds `/doubt/log`.
+fn add_doubts(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
+    let ranked = layout.ranked(|segment| segment.rank);
+    if ranked.is_empty() {
+        return Ok(());
+    }
+    let index = layout
+        .at_the_end(ranked.len())
+        .all_at("revision", layout.last_revision)
+        .with("doubt", ranked.iter().map(|(_, segment)| segment.rank))
+        .all_at("difference", layout.first.is_compared.then_some(1));
+    let level = |segment: &SegmentLayout<'_>| match segment.doubt.value() {
+        doubt if doubt >= LIKELY => "ERROR",
+        _ if segment.doubt.is_doubtful() => "WARN",
+        _ => "INFO",
+    };
+    let lines = ranked.iter().map(|(trial, segment)| (Some(level(segment)), line(trial, segment)));
+    chunks.lines(paths::DOUBT_LOG, index, lines)
+}
+
+/// Doubt from which on a line is red; what is doubtful below it is yellow. Chosen: on synthetic
+/// records about every second accepted step above it is off by more than one and a half rows of β.
+const LIKELY: f64 = 0.6;
+
+fn line(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+    let doubt = doubt_percent(&segment.doubt);
+    let not = if segment.doubt.is_doubtful() { "" } else { " (not doubtful)" };
+    // A line is cut where its list ends: the delay is in the verdict, the whole reason on the page.
+    let mark = if segment.is_accepted() { '✓' } else { '✗' };
+    let (step, why) = (trial.step(segment), trial.reason(segment));
+    format!("{doubt:>5} {mark} {step}: {why}{not}")
 }

@@ -1,18 +1,22 @@
 //! Models beside the measurement: what they simulate, and the residual.
 
-use rerun::EntityPath;
+use std::ops::Range;
 
-use super::chunk::{Chunks, Index, line, list, words};
+use rerun::{EntityPath, StateConfiguration};
+
+use super::chunk::{Chunks, Index, Moment, line, list, words};
 use super::error::RecordError;
 use super::layers::Layers;
 use super::layout::JointLayout;
 use super::markdown::plain;
+use super::palette::{self, color};
 use super::paths::{self, at, child};
-use super::{correlogram, error_share, model_lanes, palette, revision, scatter};
+use super::{residual, revision};
 use crate::diagnosis::failure::Region;
 use crate::diagnosis::{Comparison, sensor_noise};
+use crate::experiment::Joint;
 use crate::report::compare::{Section, difference_section, errors_note, model_table, sections};
-use crate::report::page::timeline::worst;
+use crate::report::page::timeline::{named, validation, worst};
 use crate::report::parameters::parameter_table;
 use crate::report::{ComparedJoint, TextTable};
 use crate::wording::{capitalized, measure, number, percent};
@@ -51,13 +55,13 @@ pub(super) fn add(
         )
     });
     chunks.page(paths::MODEL_PARAMETERS, of_each.collect())?;
-    scatter::add(chunks, models, judged)?;
-    error_share::add(chunks, models)?;
-    correlogram::add(chunks, models)?;
+    residual::add(chunks, models, judged)?;
+    residual::add_shares(chunks, models)?;
+    residual::add_correlograms(chunks, models)?;
     if is_first(models, judged) {
         differences(chunks, layout, models)?;
     }
-    model_lanes::add(chunks, layout, (judged.joint, judged.comparison))
+    add_lanes(chunks, layout, (judged.joint, judged.comparison))
 }
 
 /// Adds what is seen of the record on every timeline of a model that has no revisions, whose own
@@ -228,4 +232,59 @@ fn worst_segments(layout: &JointLayout<'_>, judged: &ComparedJoint<'_>) -> Strin
 /// Whether models are compared with the first one; revisions of a model are shown by their ladder.
 fn is_first(models: &[&ComparedJoint<'_>], judged: &ComparedJoint<'_>) -> bool {
     models.first().is_some_and(|first| first.model == judged.model)
+}
+
+/// A span of a trial with its name.
+type Named = ((usize, Range<usize>), String);
+
+/// Adds `/worst`, `/part` and `/fails`.
+fn add_lanes(
+    chunks: &mut Chunks,
+    layout: &JointLayout<'_>,
+    (joint, comparison): (&Joint, &Comparison),
+) -> Result<(), RecordError> {
+    // A longer name would be cut off: a segment is narrow.
+    let ranked = worst(joint, comparison).into_iter().zip(1_u32..);
+    let ranked: Vec<Named> = ranked.map(|(span, rank)| (span, rank.to_string())).collect();
+    let mut marks = marks(layout, ranked);
+    if marks.is_empty() {
+        let adequate = "none: the model is adequate".to_owned();
+        marks.extend(layout.start().map(|start| (start, adequate)));
+    }
+    push_marks(chunks, paths::WORST, marks)?;
+    let hint = ["on `sample`, `time` or `decision`: choose it at the bottom left"];
+    chunks.states(paths::WORST, Index::off_the_record(layout.first), hint)?;
+    let unfitted = Some(("not fitted".to_owned(), validation(comparison)));
+    let grey = palette::dimmed(palette::SMOOTHED);
+    let fails = named(joint, comparison);
+    for (path, rgb, lane) in
+        [(paths::PART, grey, unfitted), (paths::FAILS, palette::REJECTED, fails)]
+    {
+        let Some((name, spans)) = lane.filter(|(_, spans)| !spans.is_empty()) else { continue };
+        let style = StateConfiguration::new().with_values([name.clone()]);
+        chunks.push_static(path, &style.with_colors([color(rgb)]))?;
+        let spans = spans.into_iter().map(|span| (span, name.clone())).collect();
+        push_marks(chunks, path, self::marks(layout, spans))?;
+    }
+    Ok(())
+}
+
+/// Where each span begins, with its name, and where it ends.
+fn marks(layout: &JointLayout<'_>, spans: Vec<Named>) -> Vec<(Moment, String)> {
+    let marks = spans.into_iter().filter_map(|((index, span), name)| {
+        let trial = layout.trial(index)?;
+        let [begin, end] = [span.start, span.end].map(|k| trial.moment_of(k + 1));
+        Some([(begin, name), (end, String::new())])
+    });
+    marks.flatten().collect()
+}
+
+fn push_marks(
+    chunks: &mut Chunks,
+    path: &str,
+    mut marks: Vec<(Moment, String)>,
+) -> Result<(), RecordError> {
+    marks.sort_by_key(|(moment, name)| (moment.sample, !name.is_empty()));
+    let (moments, names): (Vec<_>, Vec<_>) = marks.into_iter().unzip();
+    chunks.states(path, moments.into_iter().collect::<Index>().without_segment(), names)
 }

@@ -1,19 +1,20 @@
-//! The whole record of a joint: chosen lines, breakpoints, delays; and maps of it, a small and a
-//! large one, on which the segment under the cursor is framed.
+//! The whole record of a joint: its signals, sample by sample; chosen lines, breakpoints, delays; and maps
+//! of it, a small and a large one, on which the segment under the cursor is framed.
 
-use rerun::components::MarkerShape;
-use rerun::{Boxes2D, SeriesPoints};
+use rerun::components::{InterpolationMode, MarkerShape};
+use rerun::{Boxes2D, SeriesLines, SeriesPoints};
 
 use super::canvas::{Plot, SHEET};
 use super::chunk::{Chunks, Index, line};
 use super::error::RecordError;
 use super::layers::Layers;
-use super::layout::{JointLayout, SegmentLayout};
+use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, Rgb, color};
 use super::panels::{self, Placed};
-use super::paths;
+use super::paths::{self, child};
 use crate::delay::{Candidate, Line};
 use crate::report::page::delays::{dead_time_panel, delay_panel, record_panels};
+use crate::wording::bracketed;
 
 /// Adds everything of the overview below `root`.
 pub(super) fn add(chunks: &mut Chunks, layout: &JointLayout<'_>) -> Result<(), RecordError> {
@@ -156,4 +157,56 @@ fn add_frames(
     layers.stays("here", &style.with_radii([1.5]))?;
     let boxes = Boxes2D::update_fields().with_centers(centers).with_half_sizes(halves);
     layers.push("here", &boxes, &lengths)
+}
+
+/// Adds all signals of `joint` below the entity `root`.
+pub(super) fn add_signals(
+    chunks: &mut Chunks,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    type Values = fn(&TrialLayout<'_>) -> Vec<Option<f64>>;
+    type Drawn = (&'static str, String, (Rgb, f32), InterpolationMode, Values);
+    // Input and delay are held between samples; what was measured is drawn from point to point.
+    let (held, drawn) = (InterpolationMode::StepAfter, InterpolationMode::Linear);
+    let joint = layout.joint;
+    let unit = |unit: &Option<String>| bracketed("", unit.as_deref());
+    let (input, output) = (unit(&joint.input_unit), unit(&joint.output_unit));
+    let signals: [Drawn; 4] = [
+        (paths::INPUT, format!("input{input}"), (palette::INPUT, 1.5), held, |trial| {
+            known(trial.trial.input())
+        }),
+        (paths::OUTPUT_RAW, format!("measured{output}"), (palette::RAW, 1.0), drawn, |trial| {
+            trial.logged(trial.trial.output())
+        }),
+        (
+            paths::OUTPUT_SMOOTHED,
+            format!("smoothed{output}"),
+            (palette::SMOOTHED, 1.5),
+            drawn,
+            |trial| known(trial.output()),
+        ),
+        (paths::TAU, "delay τ [samples]".to_owned(), (palette::ACCEPTED, 1.5), held, |trial| {
+            trial.estimate.profile.iter().collect()
+        }),
+    ];
+    for (path, name, (rgb, width), mode, values) in signals {
+        let style = line(name, rgb, width).with_interpolation_mode(mode);
+        chunks.series(path, &style, layout.series(values))?;
+    }
+    for (index, signal) in joint.covariates.iter().enumerate() {
+        let entity = child(paths::COVARIATE, &signal.name);
+        let style =
+            SeriesLines::new().with_names([format!("{}{}", signal.name, unit(&signal.unit))]);
+        let values = layout.series(|trial| {
+            let values = trial.trial.covariates().get(index);
+            values.into_iter().flatten().map(|v| (!v.is_nan()).then_some(*v)).collect()
+        });
+        chunks.series(entity, &style, values)?;
+    }
+    Ok(())
+}
+
+/// Values at every sample.
+fn known(values: &[f64]) -> Vec<Option<f64>> {
+    values.iter().copied().map(Some).collect()
 }

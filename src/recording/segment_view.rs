@@ -5,9 +5,9 @@
 //! what belongs to a candidate is set at each of its ticks and cleared before and after,
 //! so that nothing leaks into the next segment.
 
-use super::beside::{Other, in_short};
 use super::canvas::Plot;
 use super::chunk::Chunks;
+use super::difference::{Other, in_short};
 use super::error::RecordError;
 use super::layers::Layers;
 use super::layout::{JointLayout, Placed as Step};

@@ -4,8 +4,8 @@ use std::iter::once;
 
 use rerun::{Color, StateConfiguration};
 
-use super::beside::{Other, row};
 use super::chunk::{Chunks, Index};
+use super::difference::{Other, row};
 use super::error::RecordError;
 use super::layout::{JointLayout, Placed, SegmentLayout, TrialLayout};
 use super::markdown::plain;

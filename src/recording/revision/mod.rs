@@ -7,7 +7,6 @@
 mod ladder;
 mod pages;
 mod record;
-mod words;
 
 pub(super) use ladder::judged;
 pub(super) use pages::add;

@@ -2,19 +2,24 @@
 
 use rerun::TextDocument;
 
-use super::ladder::Ladders;
-use super::{record, words};
+use super::ladder::{Ladders, judged, noise};
+use super::record;
 use crate::diagnosis::Comparison;
 use crate::explain::{Change, Revision};
 use crate::figure::curves::Curves;
 use crate::figure::{Panel, Role};
+use crate::fit::Termination;
 use crate::recording::chunk::{Chunks, Index, Moment};
 use crate::recording::error::RecordError;
 use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
+use crate::recording::markdown::{plain, prose};
 use crate::recording::panels::Placed;
-use crate::recording::{error_share, panels, paths, scatter};
-use crate::report::{ComparedJoint, ImprovedJoint};
+use crate::recording::{panels, paths, residual};
+use crate::report::ladder::change_in_words;
+use crate::report::parameters::parameter_table;
+use crate::report::{ComparedJoint, Finding, ImprovedJoint};
+use crate::wording::{rounded, times_noise, unit_suffix};
 
 /// Rows of the joint that is recorded.
 struct Steps<'c> {
@@ -100,7 +105,7 @@ impl Steps<'_> {
         let last = improved.revisions.len().checked_sub(1).filter(|_| self.opens_on_last);
         let shown: Vec<_> = last.into_iter().chain(0..improved.revisions.len()).collect();
         let pages: [(&str, Page); 2] =
-            [(paths::REVISION_WORDS, words::page), (paths::REVISION_PARAMETERS, words::parameters)];
+            [(paths::REVISION_WORDS, page), (paths::REVISION_PARAMETERS, parameters)];
         for (path, page) in pages {
             let texts = shown.iter().map(|at| page(layout, improved, *at));
             self.chunks.pages(path, self.index.clone(), texts)?;
@@ -112,7 +117,7 @@ impl Steps<'_> {
     fn shares(&mut self, models: &[ComparedJoint<'_>]) -> Result<(), RecordError> {
         let of_each = models.iter().enumerate().map(|(place, compared)| {
             let model = (Role::of_revision(place), compared.comparison);
-            error_share::placed(compared.joint, &[model])
+            residual::placed_shares(compared.joint, &[model])
         });
         panels::add(&mut self.layers(paths::REVISION_SHARE), of_each)
     }
@@ -124,7 +129,7 @@ fn what_misses(compared: &ComparedJoint<'_>, model: Role) -> Option<Panel> {
     let curves = Curves::all(&compared.comparison.curves).filter(|one| one.departure() > 0.0);
     match curves.max_by(|a, b| a.departure().total_cmp(&b.departure())) {
         Some(curves) => Some(curves.panel(compared.joint, model)),
-        None => scatter::clearest(compared, model),
+        None => residual::clearest(compared, model),
     }
 }
 
@@ -139,5 +144,67 @@ fn removed(revision: &Revision) -> Option<&'static str> {
     match revision.change {
         Change::Removed(id) | Change::Replaced { old: id, .. } => Some(id),
         Change::Start | Change::Added(_) => None,
+    }
+}
+
+/// The page of the revision at `place`: what is concluded of the last; then what changed at this one,
+/// how large its error is and where it arises.
+fn page(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>, place: usize) -> String {
+    let Some((revision, step)) = improved.numbered().nth(place) else { return String::new() };
+    let last = improved.finding.compared.revision;
+    let conclusion = improved.conclusion();
+    let line = |question: &str, answer: &str| format!("**{question}:** {}\n", prose(answer));
+    let mut lines = vec![
+        format!("**{}**\n", prose(&conclusion.headline)),
+        format!("## Revision {revision} of {last}: {}\n", plain(&change_in_words(step))),
+        format!("**{}**\n", plain(&fall(improved, place))),
+    ];
+    if let Some(next) = improved.revisions.get(place + 1) {
+        let compared = improved.compared().nth(place).unwrap_or(improved.finding.compared);
+        let fails = Finding { compared, ..improved.finding }.fails();
+        lines.extend(fails.iter().map(|one| line(one.topic.0, &one.text())));
+        lines.push(line("Next", &change_in_words(next)));
+    } else {
+        lines.extend(conclusion.passages.iter().map(|one| line(one.topic.0, &one.text())));
+        lines.extend(conclusion.commands.iter().map(|command| format!("    {command}\n")));
+    }
+    let several = if improved.revisions.len() > 1 { SEVERAL } else { "" };
+    let decision = if layout.segments().next().is_some() { "`decision`, " } else { "" };
+    lines.push(format!("*{several}The pages after this one follow {decision}{HOW}*"));
+    lines.join("\n") + "\n"
+}
+
+/// The parameters of the revision at `place`: on a page of their own, since below the words they
+/// are off a small window.
+fn parameters(_layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>, place: usize) -> String {
+    let Some((revision, step)) = improved.numbered().nth(place) else { return String::new() };
+    let joint = improved.finding.compared.joint;
+    let fit = match step.comparison.termination {
+        Termination::Converged | Termination::NothingToFit => String::new(),
+        stopped => format!("; its fit {stopped}"),
+    };
+    format!(
+        "**Revision {revision}**{fit}\n\n{}",
+        parameter_table(joint, &step.comparison.fit).markdown(plain)
+    )
+}
+
+const SEVERAL: &str = "This opens on the last revision; the right arrow begins with the first one, on \
+the timeline `revision`. ";
+
+const HOW: &str = "`sample` or `time`: choose it at the bottom.";
+
+/// What the error is, and what it was before.
+fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {
+    let unit = unit_suffix(improved.finding.compared.joint.output_unit.as_deref());
+    let error = |place: usize| Some(judged(&improved.revisions.get(place)?.comparison));
+    let Some(now) = error(place) else { return String::new() };
+    let times = noise(improved).map(|noise| format!(", {}", times_noise(now / noise)));
+    let times = times.unwrap_or_default();
+    match place.checked_sub(1).and_then(error) {
+        Some(before) => {
+            format!("Error: {} → {}{unit}{times}", rounded(before), rounded(now))
+        }
+        None => format!("Error: {}{unit}{times}", rounded(now)),
     }
 }

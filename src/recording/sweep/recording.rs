@@ -3,15 +3,15 @@
 use std::fmt::Write as _;
 
 use super::swept::Swept;
-use super::{data, sheet, words};
+use super::{sheet, words};
 use crate::delay::sweep::Factor;
+use crate::recording::about::made_from;
 use crate::recording::blueprint::{Blueprint, Page};
 use crate::recording::chunk::Chunks;
 use crate::recording::content::{Content, Tab, hashed, name_of};
 use crate::recording::error::RecordError;
 use crate::recording::layout::TrialStarts;
 use crate::recording::markdown::plain;
-use crate::recording::origin::made_from;
 use crate::recording::paths::{self, at, joint_root};
 use crate::report::SweepRecording;
 use crate::report::settings::settings_table;
@@ -50,7 +50,7 @@ impl Content for SweepRecording<'_> {
 }
 
 fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
-    data::add(chunks, swept)?;
+    words::add_numbers(chunks, swept)?;
     sheet::add(chunks, swept)?;
     words::add(chunks, swept)
 }

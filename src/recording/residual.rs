@@ -1,11 +1,15 @@
-//! The residual against what it may depend on: input, output, speed, time since the step.
+//! What the residual of models depends on: four quantities, sample by sample; where the error arises, its
+//! share in each part of each feature beside the share of time; itself and the input, lag by lag.
 
+use super::canvas::TAB;
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layers::Layers;
 use super::panels::{self, Placed};
 use super::paths;
-use crate::figure::{Axis, Mark, Panel, Place, Role, Span};
+use crate::diagnosis::Comparison;
+use crate::experiment::Joint;
+use crate::figure::{Axis, Mark, Panel, Place, Role, Span, correlogram, error_share};
 use crate::numerics::quantile;
 use crate::report::ComparedJoint;
 use crate::wording::bracketed;
@@ -122,6 +126,50 @@ fn curve(pairs: &Pairs) -> Vec<Place> {
         bin.iter().fold((0.0, 0.0), |(x, r), pair| (x + pair.0 / n, r + pair.1 / n))
     };
     sorted.chunks(size).map(mean).collect()
+}
+
+/// Plots in a row.
+const COLUMNS: usize = 4;
+
+/// Draws the regions of `models` below `root`.
+pub(super) fn add_shares(
+    chunks: &mut Chunks,
+    models: &[&ComparedJoint<'_>],
+) -> Result<(), RecordError> {
+    let Some(first) = models.first() else { return Ok(()) };
+    let models = models.iter().enumerate();
+    let models: Vec<_> = models.map(|(n, one)| (Role::of_revision(n), one.comparison)).collect();
+    let placed = placed_shares(first.joint, &models);
+    panels::add(&mut Layers::fixed(chunks, paths::ERROR_SHARE), [placed])
+}
+
+/// Each panel in one of eight places on the sheet, below its quantity: the name of the view says what
+/// its bars and lines are, for which there is no room above each.
+pub(super) fn placed_shares(joint: &Joint, models: &[(Role, &Comparison)]) -> Vec<Placed> {
+    let place = |(place, mut panel): (usize, Panel)| {
+        panel.y.name.clear();
+        panel.marks.iter_mut().for_each(Mark::unname);
+        let rows = if place < COLUMNS { 46.0..=140.0 } else { 232.0..=326.0 };
+        let width = TAB.0 / COLUMNS as f32;
+        let left = (place % COLUMNS) as f32 * width;
+        Placed::new(panel, (left + 95.0, left + width - 20.0), rows)
+    };
+    error_share::panels(joint, models).into_iter().enumerate().map(place).collect()
+}
+
+/// Draws the correlations of `models`: a curve and a band per model.
+pub(super) fn add_correlograms(
+    chunks: &mut Chunks,
+    models: &[&ComparedJoint<'_>],
+) -> Result<(), RecordError> {
+    let models = models.iter().enumerate();
+    let models: Vec<_> = models.map(|(n, one)| (Role::of_revision(n), one.comparison)).collect();
+    let mut left = -505.0;
+    let placed = correlogram::panels(&models).map(|panel| {
+        left += 615.0;
+        Placed::new(panel, (left, left + 490.0), 46.0..=324.0)
+    });
+    panels::add(&mut Layers::fixed(chunks, paths::CORRELATION), [placed.into()])
 }
 
 #[cfg(test)]
