@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::layout::JointLayout;
 use super::markdown::{plain, prose};
 use super::revision::judged;
+use crate::delay::Doubt;
 use crate::experiment::{ReadOptions, Source};
 use crate::report::answer::dead_time_sentences;
 use crate::report::decisions::doubtful_lines;
@@ -15,7 +16,7 @@ use crate::report::ladder::change_in_words;
 use crate::report::review::ReviewCount;
 use crate::report::settings::settings_table;
 use crate::report::{Detail, EstimatedJoint, JointSummary, Recording, TextTable};
-use crate::wording::{DOUBT_MEANS, counted, doubtful_sentence, measure};
+use crate::wording::{counted, measure, number};
 
 /// The page on `recording`, whose joints have these layouts.
 pub(super) fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> String {
@@ -64,6 +65,21 @@ fn written(
     writeln!(page, "{HOW_TO_READ}")?;
     Ok(page)
 }
+
+/// How many decisions are doubtful, and when one is: `6 of 587 decisions are doubtful (…)`.
+fn doubtful_sentence<'d>(all: impl Iterator<Item = &'d Doubt>) -> String {
+    let (doubtful, all) = all.fold((0_usize, 0_usize), |(doubtful, all), doubt| {
+        (doubtful + usize::from(doubt.is_doubtful()), all + 1)
+    });
+    let (decisions, are) = (counted(all, "decision"), if doubtful == 1 { "is" } else { "are" });
+    let from = number(Doubt::DOUBTFUL_PERCENT);
+    format!("{doubtful} of {decisions} {are} doubtful (doubt of {from} % or more)")
+}
+
+/// What the number says.
+const DOUBT_MEANS: &str = "\
+Doubt is 0 % where nothing speaks against a decision and 100 % where the smallest change of the \
+data would reverse it; it is not a probability.";
 
 /// What was found of models and dead times, first of all: a headline per joint, and how the error
 /// fell.

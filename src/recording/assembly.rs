@@ -4,7 +4,7 @@ use std::iter::once;
 
 use super::blueprint::Blueprint;
 use super::chunk::{Chunks, Index, Moment, Opening};
-use super::content::{Content, Tab, hashed, name_of};
+use super::content::{Content, Tab, hashed};
 use super::difference::{Other, weight};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
@@ -12,6 +12,7 @@ use super::{
     about, decisions, delay_state, difference, headline, model, overview, paths, revision,
     segment_view, verdict, views,
 };
+use crate::report::recorded::names_of;
 use crate::report::settings::settings_in_short;
 use crate::report::{ImprovedJoint, Recording};
 use crate::units::signed;
@@ -42,7 +43,7 @@ impl<'a> Content for Recording<'a> {
     fn name(&self) -> String {
         let others = self.also.iter().map(|other| other.name.clone());
         let settings: Vec<_> = once(settings_in_short(self.settings)).chain(others).collect();
-        let (log, command) = (name_of(self.sources), self.command);
+        let (log, command) = (names_of(self.sources), self.command);
         format!("{log} · {command} · {}", settings.join(" | "))
     }
 

@@ -126,12 +126,6 @@ fn plain_words(name: &str) -> String {
     name.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The names of the files that were read.
-pub(super) fn name_of(sources: &[Source]) -> String {
-    let names = sources.iter().filter_map(|source| source.path.file_stem());
-    names.map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", ")
-}
-
 /// An id that is the same for the same logs, read in the same way, the same version and
 /// what else `settings` hands over.
 pub(super) fn hashed<'a>(

@@ -18,7 +18,6 @@ use std::collections::HashMap;
 
 use super::chunk::{Index, Moment, Opening};
 use crate::delay::{Candidate, Decision, Doubt, TrialEstimate, Verdict, doubts};
-use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Trial};
 use crate::report::page::timeline::Timeline;
 use crate::report::{Detail, Doubted, EstimatedJoint};
@@ -336,15 +335,6 @@ impl<'a> TrialLayout<'a> {
     /// The smoothed output, or the measured one where nothing was smoothed.
     pub(super) fn output(&self) -> &'a [f64] {
         self.estimate.smoothed.as_deref().unwrap_or(self.trial.output())
-    }
-
-    /// What the model of `comparison` simulates, and what it leaves.
-    pub(super) fn simulated<'c>(&self, comparison: &'c Comparison) -> &'c [f64] {
-        comparison.fit.evaluation.simulated.get(self.index).map_or(&[], |found| &found.output)
-    }
-
-    pub(super) fn residual<'c>(&self, comparison: &'c Comparison) -> &'c [f64] {
-        comparison.fit.evaluation.residuals.get(self.index).map_or(&[], Vec::as_slice)
     }
 
     /// Values at every sample; none at those that were filled in while nothing was logged.

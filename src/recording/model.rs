@@ -33,15 +33,15 @@ pub(super) fn add(
     judged: &ComparedJoint<'_>,
 ) -> Result<(), RecordError> {
     for (compared, rgb) in models.iter().zip(palette::models()) {
-        let (name, comparison) = (compared.model, compared.comparison);
+        let name = compared.model;
         let model = child(paths::MODEL, name);
-        let simulated = layout.series(|trial| trial.logged(trial.simulated(comparison)));
+        let simulated = layout.series(|trial| trial.logged(compared.simulated(trial.index)));
         let style = line(format!("{name}: simulated"), rgb, 1.5);
         chunks.series(at(&model, paths::SIMULATED), &style, simulated)?;
-        let residual = layout.series(|trial| trial.logged(trial.residual(comparison)));
+        let residual = layout.series(|trial| trial.logged(compared.residual(trial.index)));
         let style = line(format!("{name}: measured − simulated"), rgb, 1.5);
         chunks.series(at(&model, paths::RESIDUAL), &style, residual)?;
-        figures(chunks, &model, comparison)?;
+        figures(chunks, &model, compared.comparison)?;
     }
     band(chunks, layout, sensor_noise(&judged.joint.trials))?;
     // Each on a page of its own: below one another the last is off a small window.
@@ -150,8 +150,8 @@ fn differences(
     for (other, rgb) in others.iter().zip(palette::models().skip(1)) {
         let mut sum = 0.0;
         let sums = layout.series(|trial| {
-            let own = trial.residual(first.comparison).iter();
-            let pairs = trial.residual(other.comparison).iter().zip(own);
+            let own = first.residual(trial.index).iter();
+            let pairs = other.residual(trial.index).iter().zip(own);
             let sums = pairs.map(|(other, own)| {
                 sum += other * other - own * own;
                 Some(sum)

@@ -28,6 +28,19 @@ pub struct ComparedJoint<'a> {
     pub comparison: &'a Comparison,
 }
 
+impl<'a> ComparedJoint<'a> {
+    /// What the model simulates in the trial with this place among those of the joint.
+    pub(crate) fn simulated(&self, trial: usize) -> &'a [f64] {
+        let all = &self.comparison.fit.evaluation.simulated;
+        all.get(trial).map_or(&[], |simulated| simulated.output.as_slice())
+    }
+
+    /// What it leaves of the measured output there.
+    pub(crate) fn residual(&self, trial: usize) -> &'a [f64] {
+        self.comparison.fit.evaluation.residuals.get(trial).map_or(&[], Vec::as_slice)
+    }
+}
+
 /// A heading, and a line for each joint and model of which there is something to say.
 pub(crate) type Section = (String, Vec<String>);
 
@@ -56,7 +69,9 @@ pub(crate) fn sections(joints: &[ComparedJoint<'_>]) -> [Section; 2] {
 /// How the first model of each joint compares with its others.
 pub(crate) fn difference_section(joints: &[ComparedJoint<'_>]) -> Section {
     let differences = model_differences(joints);
-    let lines = differences.iter().flat_map(ComparedModels::lines).collect();
+    let line = |of: &ComparedModels<'_>, said| format!("{}: {said}", of.joint.name);
+    let lines = differences.iter().flat_map(|of| of.sentences().into_iter().map(|it| line(of, it)));
+    let lines = lines.collect();
     ("one model against another".to_owned(), lines)
 }
 
@@ -132,11 +147,6 @@ impl ComparedModels<'_> {
             format!("where {name} is better (error of {model}, of {other}): {}", places.join("; "))
         });
         [errors, test].into_iter().chain(places).collect()
-    }
-
-    fn lines(&self) -> Vec<String> {
-        let name = &self.joint.name;
-        self.sentences().into_iter().map(|sentence| format!("{name}: {sentence}")).collect()
     }
 }
 

@@ -27,7 +27,7 @@ pub(crate) mod lookup;
 pub(crate) mod page;
 pub(crate) mod parameters;
 mod ranking;
-mod recorded;
+pub(crate) mod recorded;
 pub(crate) mod review;
 pub(crate) mod review_page;
 pub(crate) mod settings;

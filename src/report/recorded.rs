@@ -17,6 +17,12 @@ pub enum Detail {
     Lean,
 }
 
+/// The names of the files that were read, without folders and endings.
+pub(crate) fn names_of(sources: &[Source]) -> String {
+    let stems = sources.iter().filter_map(|source| source.path.file_stem());
+    stems.map(|stem| stem.to_string_lossy()).collect::<Vec<_>>().join(", ")
+}
+
 /// Everything that a recording of decisions and models holds.
 #[derive(Clone, Copy, Debug)]
 pub struct Recording<'a> {

@@ -178,23 +178,22 @@ fn hanging_json(grid: &Grid, found: &Sensitivity) -> Value {
     json!({ "setting": id(found.factor), "gap_samples": found.gap, "levels": levels })
 }
 
-/// How many steps that depend on a setting are shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum StepsShown {
-    /// Those that depend on it most: ten, three of a joint.
-    Worst,
-    /// All of them.
-    All,
-}
+/// How many of the steps that depend on a setting are shown where not all are asked for, and how many
+/// of one joint: where all its steps depend on the method the first ones show it.
+pub(crate) const WORST: [usize; 2] = [10, 3];
 
 /// The text of `sweep`.
 pub(crate) fn sweep_text(
     grid: &Grid,
     tolerance: f64,
     joints: &[ReportedSweep<'_>],
-    shown: StepsShown,
+    shown: [usize; 2],
 ) -> String {
-    let paragraphs: Vec<String> = joints.iter().map(|joint| paragraph(grid, joint)).collect();
+    // A joint in sentences each.
+    let paragraphs = joints.iter().map(|reported| {
+        let sentences = sweep_sentences(grid, reported).join(" ");
+        wrapped(&format!("{}: {sentences}", reported.joint.name))
+    });
     let note = format!(
         "{} combinations of settings. Two delays agree if they differ by no more than {} samples \
          beyond the resolution of each: ± β/2, or its interval.",
@@ -204,18 +203,13 @@ pub(crate) fn sweep_text(
     let of_values = "Median delay with each value of a setting, and the percentage of its delays \
                      that differ from the majority:";
     [
-        paragraphs.join("\n"),
+        paragraphs.collect::<Vec<_>>().join("\n"),
         format!("{}\n{}", wrapped(of_values), levels_table(grid, joints)),
         steps_part(grid, joints, shown),
         wrapped(&note),
     ]
     .join("\n\n")
         + "\n"
-}
-
-/// A joint in sentences.
-fn paragraph(grid: &Grid, reported: &ReportedSweep<'_>) -> String {
-    wrapped(&format!("{}: {}", reported.joint.name, sweep_sentences(grid, reported).join(" ")))
 }
 
 /// How many delays are the same, what the others depend on, and which settings agree.
@@ -344,12 +338,8 @@ pub(crate) fn level_cell(summary: &LevelSummary) -> String {
 }
 
 /// The steps that depend on a setting, worst first.
-fn steps_part(grid: &Grid, joints: &[ReportedSweep<'_>], shown: StepsShown) -> String {
-    /// Steps that are shown where not all are asked for, and how many of one joint: where
-    /// all its steps depend on the method the first ones show it.
-    const WORST: [usize; 2] = [10, 3];
+fn steps_part(grid: &Grid, joints: &[ReportedSweep<'_>], [most, of_one]: [usize; 2]) -> String {
     let all: usize = joints.iter().map(|joint| joint.sweep.sensitive().len()).sum();
-    let [most, of_one] = if shown == StepsShown::All { [all; 2] } else { WORST };
     let mut steps: Vec<(&str, &SweptStep)> = Vec::new();
     for ReportedSweep { joint, sweep } in joints {
         let worst = sweep.sensitive().into_iter().take(of_one);
@@ -405,8 +395,9 @@ fn odd_levels(grid: &Grid, found: &Sensitivity, period_s: f64) -> String {
     /// Values that are shown.
     const SHOWN: usize = 2;
     let name = |level: usize| level_text(grid, found.factor, level);
-    let known: Vec<(usize, f64, f64)> =
-        found.levels.iter().enumerate().filter_map(numbered).collect();
+    let known = found.levels.iter().enumerate();
+    let known = known.filter_map(|(level, seen)| seen.map(|(delay, agree)| (level, delay, agree)));
+    let known: Vec<(usize, f64, f64)> = known.collect();
     let odd = known.iter().filter(|(_, _, agree)| *agree < 0.5);
     let odd =
         odd.map(|(level, delay, _)| format!("{} says {:.3} s", name(*level), delay * period_s));
@@ -424,9 +415,4 @@ fn odd_levels(grid: &Grid, found: &Sensitivity, period_s: f64) -> String {
         Factor::Method | Factor::Passband => format!("{}: {odd}", found.factor),
         Factor::Alpha | Factor::Beta => odd,
     }
-}
-
-/// A value's index, its delay and how much of it agrees.
-fn numbered((level, found): (usize, &Option<(f64, f64)>)) -> Option<(usize, f64, f64)> {
-    found.map(|(delay, agree)| (level, delay, agree))
 }

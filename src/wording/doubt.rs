@@ -1,8 +1,6 @@
 //! The doubt of a decision in words, and what would have accepted its step.
 
 use super::to_place;
-#[cfg(feature = "rrd")]
-use super::{counted, number};
 use crate::delay::{Condition, Doubt, Flag, Remedy, Verdict};
 
 /// Margin of a condition that failed up to which it failed by little.
@@ -61,23 +59,6 @@ fn by_little(condition: Condition) -> String {
     };
     format!("{words} ({condition})")
 }
-
-/// How many decisions are doubtful, and when one is: `6 of 587 decisions are doubtful (…)`.
-#[cfg(feature = "rrd")]
-pub(crate) fn doubtful_sentence<'d>(all: impl Iterator<Item = &'d Doubt>) -> String {
-    let (doubtful, all) = all.fold((0_usize, 0_usize), |(doubtful, all), doubt| {
-        (doubtful + usize::from(doubt.is_doubtful()), all + 1)
-    });
-    let (decisions, are) = (counted(all, "decision"), if doubtful == 1 { "is" } else { "are" });
-    let from = number(Doubt::DOUBTFUL_PERCENT);
-    format!("{doubtful} of {decisions} {are} doubtful (doubt of {from} % or more)")
-}
-
-/// What the number says.
-#[cfg(feature = "rrd")]
-pub(crate) const DOUBT_MEANS: &str = "\
-Doubt is 0 % where nothing speaks against a decision and 100 % where the smallest change of the \
-data would reverse it; it is not a probability.";
 
 /// The doubt in percent.
 pub(crate) fn doubt_percent(doubt: &Doubt) -> String {

@@ -13,8 +13,6 @@ pub(crate) use difference::verdict_in_short;
 pub(crate) use difference::{
     difference_in_short, difference_sentences, result_in_short, step_name,
 };
-#[cfg(feature = "rrd")]
-pub(crate) use doubt::{DOUBT_MEANS, doubtful_sentence};
 pub(crate) use doubt::{doubt_percent, doubt_sentence, remedy_text};
 pub(crate) use misfit::{
     correlation_sentences, fails_or_errs, failure_sentences, feature_with_level, feature_with_unit,

@@ -46,7 +46,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let inputs = args.model.iter().cloned().collect();
     let study = Study::begin("explain", data, output, (None, inputs))?;
     let joints = study.joints();
-    let start = Start::of(&study, &file, args.model.as_deref(), args.add_arguments(joints))?;
+    let given = args.model.as_ref().map(|model| model.display().to_string());
+    let arguments = add_arguments(data, &given.unwrap_or_else(fresh_name), joints);
+    let start = Start::of(&study, &file, args.model.as_deref(), arguments)?;
     let starts = |joint: &Joint| start.model(joint);
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
     let explained = study.work("explaining", |bar, others| {
@@ -61,12 +63,4 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     study.record(output.recording.as_deref(), &models, &improved)?;
     let text = || explain_text(&findings);
     study.end(&failures, text, || explain_json(&findings, &failures))
-}
-
-impl Args {
-    /// What follows the effect in the command that adds it, for each joint.
-    fn add_arguments(&self, joints: &[Joint]) -> Vec<String> {
-        let given = self.model.as_ref().map(|model| model.display().to_string());
-        add_arguments(&self.data, &given.unwrap_or_else(fresh_name), joints)
-    }
 }

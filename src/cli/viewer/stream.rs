@@ -110,10 +110,7 @@ impl Stream {
     ) -> anyhow::Result<()> {
         let Some(live) = &self.0 else { return Ok(()) };
         let mut live = live.lock().map_err(|_poisoned| bug())?;
-        Ok(match joint {
-            Some(joint) => live.send_joint(recording, joint),
-            None => live.send(recording),
-        }?)
+        Ok(live.send(recording, joint)?)
     }
 
     /// Shows delays over all settings.

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use rerun::external::re_uri::{ProxyUri, RedapUri, Scheme};
 use rerun::grpc_server::GrpcServerSink;
-use rerun::log::{Chunk, LogMsg};
+use rerun::log::LogMsg;
 use rerun::sink::{GrpcSink, GrpcSinkConnectionState, LogSink as _};
 use rerun::{MemoryLimit, ServerOptions, StoreId, StoreKind};
 use sent::Sent;
@@ -111,25 +111,17 @@ impl Live {
         matches!(self.sink, Some(Sink::Server(_)))
     }
 
-    /// Sends what is new of `recording`: all of it at first.
+    /// Sends what is new of `recording`: all of it at first; of one joint alone where it is named.
     ///
     /// # Errors
     /// [`RecordError::Value`], which would be a bug. Whether
     /// it arrives, [`flush`](Self::flush) reports.
-    pub(crate) fn send(&mut self, recording: &Recording<'_>) -> Result<(), RecordError> {
-        self.send_part(recording, None)
-    }
-
-    /// Sends what is new of `joint` alone.
-    ///
-    /// # Errors
-    /// As [`send`](Self::send).
-    pub(crate) fn send_joint(
+    pub(crate) fn send(
         &mut self,
         recording: &Recording<'_>,
-        joint: &str,
+        joint: Option<&str>,
     ) -> Result<(), RecordError> {
-        self.send_part(recording, Some(joint))
+        self.send_part(recording, joint)
     }
 
     /// Sends delays over all settings.
@@ -149,7 +141,10 @@ impl Live {
         self.send_views(content)?;
         self.sent.begin();
         self.used += for_each_chunk(content, part, &mut |chunk| match self.sent.news_of(chunk) {
-            Some(news) => self.send_chunk(&news),
+            Some(news) => {
+                self.post(chunk_message(&self.store, &news)?);
+                Ok(())
+            }
             None => Ok(()),
         })?;
         Ok(())
@@ -161,11 +156,6 @@ impl Live {
         let application = application(&name, id.as_str());
         self.store = StoreId::new(StoreKind::Recording, application, id.clone());
         first_messages(&self.store, name)?.into_iter().for_each(|message| self.post(message));
-        Ok(())
-    }
-
-    fn send_chunk(&self, chunk: &Chunk) -> Result<(), RecordError> {
-        self.post(chunk_message(&self.store, chunk)?);
         Ok(())
     }
 

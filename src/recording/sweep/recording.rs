@@ -8,19 +8,20 @@ use crate::delay::sweep::Factor;
 use crate::recording::about::made_from;
 use crate::recording::blueprint::{Blueprint, Page};
 use crate::recording::chunk::Chunks;
-use crate::recording::content::{Content, Tab, hashed, name_of};
+use crate::recording::content::{Content, Tab, hashed};
 use crate::recording::error::RecordError;
 use crate::recording::layout::TrialStarts;
 use crate::recording::markdown::plain;
 use crate::recording::paths::{self, at, joint_root};
 use crate::report::SweepRecording;
+use crate::report::recorded::names_of;
 use crate::report::settings::settings_table;
 use crate::report::sweep::{level_text, sweep_sentences};
 use crate::wording::number;
 
 impl Content for SweepRecording<'_> {
     fn name(&self) -> String {
-        format!("{} · sweep · {} settings", name_of(self.sources), self.grid.runs().len())
+        format!("{} · sweep · {} settings", names_of(self.sources), self.grid.runs().len())
     }
 
     fn id(&self) -> String {

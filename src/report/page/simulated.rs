@@ -47,7 +47,7 @@ pub(crate) fn simulated_panels(
             unfitted.clone().named("not fitted"),
             borders.clone(),
             Mark::lines(Role::Measured, 3.0, timeline.lines(|_, t| t.output())).named("measured"),
-            Mark::lines(role, 1.3, timeline.lines(|index, _| simulated(compared, index)))
+            Mark::lines(role, 1.3, timeline.lines(|index, _| compared.simulated(index)))
                 .named("simulated"),
         ],
     };
@@ -55,7 +55,7 @@ pub(crate) fn simulated_panels(
     let fails = fails.map(|(when, spans)| timeline.shaded(Role::Rejected, spans, 0.2).named(when));
     marks.extend(fails.into_iter().chain(worst_mark(compared, timeline)));
     marks.extend(noise(compared).map(|mark| mark.named("95 % of the noise")));
-    let left = timeline.lines(|index, _| residual(compared, index));
+    let left = timeline.lines(|index, _| compared.residual(index));
     marks.push(Mark::lines(role, 1.0, left).named("residual"));
     marks.extend(noise_edges(compared, timeline.ends()));
     let y = Axis::new(residuals(compared), bracketed("residual", unit), 6.0);
@@ -91,7 +91,7 @@ pub(crate) fn worst_panel(
         lines.iter_mut().flatten().for_each(|place| place.0 = timeline.of_log(index, place.0));
         lines
     };
-    let [measured, simulated] = [trial.output(), simulated(compared, index)].map(cut);
+    let [measured, simulated] = [trial.output(), compared.simulated(index)].map(cut);
     let ends = [worst.start_s, worst.end_s].map(|end| timeline.of_log(index, end));
     let x = Span::around(measured.iter().flatten().map(|place| place.0), 0.0);
     let y = Span::around(measured.iter().chain(&simulated).flatten().map(|place| place.1), 0.08);
@@ -120,24 +120,14 @@ fn around(values: &[f64], trial: &Trial, worst: &WorstSegment) -> Vec<Vec<Place>
     trial.logged().map(line).filter(|line| !line.is_empty()).collect()
 }
 
-fn simulated<'a>(compared: &ComparedJoint<'a>, trial: usize) -> &'a [f64] {
-    let all = &compared.comparison.fit.evaluation.simulated;
-    all.get(trial).map_or(&[], |simulated| simulated.output.as_slice())
-}
-
-fn residual<'a>(compared: &ComparedJoint<'a>, trial: usize) -> &'a [f64] {
-    let all = &compared.comparison.fit.evaluation.residuals;
-    all.get(trial).map_or(&[], Vec::as_slice)
-}
-
 fn outputs(compared: &ComparedJoint<'_>) -> Span {
     let measured = values_of(compared.joint, |_, trial| trial.output());
-    let simulated = values_of(compared.joint, |index, _| simulated(compared, index));
+    let simulated = values_of(compared.joint, |index, _| compared.simulated(index));
     Span::around(measured.chain(simulated), 0.06)
 }
 
 fn residuals(compared: &ComparedJoint<'_>) -> Span {
-    let all = values_of(compared.joint, |index, _| residual(compared, index));
+    let all = values_of(compared.joint, |index, _| compared.residual(index));
     let band = sensor_noise(&compared.joint.trials).unwrap_or(0.0) * BAND;
     Span::around(all.chain([-band, band]), 0.06)
 }

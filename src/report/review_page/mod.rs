@@ -6,10 +6,10 @@ use serde_json::{Value, json};
 use super::decisions::by_doubt;
 use super::json::joined;
 use super::page::document::Report;
+use super::recorded::names_of;
 use super::review::review_json;
 use super::{Doubted, EstimatedJoint};
 use crate::delay::{Check, Decision, Outcome};
-use crate::experiment::Source;
 use crate::figure::segment::window;
 use crate::numerics::as_written;
 use crate::wording::legible;
@@ -19,7 +19,7 @@ const MOST: usize = 4000;
 
 /// The page on the decisions of `report`, the most doubtful ones first.
 pub(crate) fn review_page(report: &Report<'_>) -> String {
-    let name = name_of(&report.experiment.sources);
+    let name = names_of(&report.experiment.sources);
     page(&name, report.joints)
 }
 
@@ -38,12 +38,6 @@ fn page(name: &str, joints: &[EstimatedJoint<'_>]) -> String {
     let page = include_str!("page.html").to_owned();
     let page = parts.into_iter().fold(page, |page, (place, text)| page.replacen(place, text, 1));
     legible(&page)
-}
-
-/// The log, without its folder.
-fn name_of(sources: &[Source]) -> String {
-    let stems = sources.iter().filter_map(|source| source.path.file_stem());
-    stems.map(|stem| stem.to_string_lossy()).collect::<Vec<_>>().join(", ")
 }
 
 fn html(text: &str) -> String {

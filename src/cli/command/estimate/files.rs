@@ -39,28 +39,25 @@ pub(super) struct Estimated<'a> {
     pub(super) against: &'a [Against<'a>],
 }
 
-/// The files that were asked for, found to be writable before the work starts.
-pub(crate) struct Files<'a>(&'a OutputArgs);
-
-impl<'a> Files<'a> {
+impl OutputArgs {
     /// Refuses what cannot be written, or would replace an input or another output.
-    pub(crate) fn check(args: &'a OutputArgs, inputs: &[PathBuf]) -> anyhow::Result<Self> {
+    pub(super) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
         let outputs = Outputs::default()
-            .with(OutputKind::Recording, &args.to.recording)
-            .with(OutputKind::Table, args.decisions.iter().chain(&args.delays).chain(&args.table))
-            .with(OutputKind::Csv, &args.review_sheet)
-            .with(OutputKind::Other, &args.export);
+            .with(OutputKind::Recording, &self.to.recording)
+            .with(OutputKind::Table, self.decisions.iter().chain(&self.delays).chain(&self.table))
+            .with(OutputKind::Csv, &self.review_sheet)
+            .with(OutputKind::Other, &self.export);
         outputs.check(inputs)?;
-        if let Some(sheet) = &args.review_sheet {
+        if let Some(sheet) = &self.review_sheet {
             check_sheet(sheet)?;
         }
-        args.export.as_deref().map(named_lookup).transpose()?;
-        Ok(Self(args))
+        self.export.as_deref().map(named_lookup).transpose()?;
+        Ok(())
     }
 
     /// Why a file that was asked for is not written, where nothing would be in it.
-    pub(crate) fn left_out(&self, result: &Estimated<'_>) -> Vec<String> {
-        let path = self.0.export.as_ref().filter(|_| lookup(result).is_empty());
+    pub(super) fn left_out(&self, result: &Estimated<'_>) -> Vec<String> {
+        let path = self.export.as_ref().filter(|_| lookup(result).is_empty());
         let why = |path: &PathBuf| {
             format!("{}: not written: no joint has an accepted delay to look up", path.display())
         };
@@ -68,37 +65,37 @@ impl<'a> Files<'a> {
     }
 
     /// Writes each file whole and gives it its name; shows the recording to who looks on.
-    pub(crate) fn write(
+    pub(super) fn write(
         &self,
         result: &Estimated<'_>,
         stream: &Stream,
         verbosity: Verbosity,
     ) -> anyhow::Result<()> {
-        if let Some(path) = &self.0.decisions {
+        if let Some(path) = &self.decisions {
             write_table(&decision_table(result.runs), path)?;
         }
-        if let Some(path) = &self.0.review_sheet {
+        if let Some(path) = &self.review_sheet {
             write_table(&review_sheet(result.joints), path)?;
         }
-        if let Some(path) = &self.0.delays {
+        if let Some(path) = &self.delays {
             write_file(path, |file| match FileKind::of(path) {
                 FileKind::Csv => Ok(write_delays(result.joints, file)?),
                 FileKind::Parquet => write_parquet(&delay_table(result.joints), file),
             })?;
         }
-        if let Some(path) = &self.0.table {
+        if let Some(path) = &self.table {
             write_table(&level_table(result.joints), path)?;
         }
-        if let Some(path) = self.0.export.as_ref().filter(|_| !lookup(result).is_empty()) {
+        if let Some(path) = self.export.as_ref().filter(|_| !lookup(result).is_empty()) {
             let (language, name) = named_lookup(path)?;
             let source = language.source(&lookup(result), name)?;
             write_bytes(path, source)?;
         }
         let delays = (result.joints, result.settings);
         let recording = of_delays("estimate", result.experiment, delays);
-        let detail = self.0.detail.of(result.joints);
+        let detail = self.detail.of(result.joints);
         let recording = Recording { also: result.others, detail, ..recording };
-        if let Some(path) = &self.0.to.recording {
+        if let Some(path) = &self.to.recording {
             recording.record(path, verbosity)?;
         }
         stream.send(&recording, None)

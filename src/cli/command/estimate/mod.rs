@@ -1,6 +1,6 @@
 //! `tauscope estimate`: read, estimate, write, print.
 
-use files::{Estimated, Files, Run};
+use files::{Estimated, Run};
 
 use crate::cli::each_log::Each;
 use crate::cli::failure::{Completion, nothing_usable};
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let with_lines = |settings| Settings { lines, ..settings };
     let settings: Vec<_> = args.runs().into_iter().map(with_lines).collect();
     let inputs = args.inputs();
-    let files = Files::check(&args.output, &inputs)?;
+    args.output.check(&inputs)?;
     let review = args.review.read()?;
     let stream = args.output.to.stream.open(verbosity)?;
     let followed =
@@ -59,14 +59,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         others: &others,
         against: &against,
     };
-    failures.extend(files.left_out(&result));
+    failures.extend(args.output.left_out(&result));
     let notes = notes(first_joints);
     session.warn(&failures, &notes);
     if args.follow.is_on {
         // The log may have come as a link to what is written.
-        Files::check(&args.output, &args.inputs())?;
+        args.output.check(&args.inputs())?;
     }
-    files.write(&result, &session.stream, verbosity)?;
+    args.output.write(&result, &session.stream, verbosity)?;
     let all_notes: Vec<_> = experiment.notes.iter().cloned().chain(notes).collect();
     let json = || EstimateJson::new(experiment, &runs, &against, (&all_notes, &failures));
     session.end(Completion::without(&failures), || text(&args.output, &result), json)

@@ -93,8 +93,28 @@ fn report(args: &Args, target: Option<&Target>, shown: Shown) -> anyhow::Result<
     let path = path.map_or_else(|| "model.toml".to_owned(), |path| path.display().to_string());
     let arguments = add_arguments(&args.data, &path, study.joints());
     let start = Start::of(&study, &file, args.model.model.as_deref(), arguments)?;
-    let models = args.model.improved(&start, &file, &study, &options)?;
-    Reported { args, start: &start, study: &study, shown }.report(&models, target)
+    let (results, interrupt) = args.model.improved(&start, &file, &study, &options)?;
+    let mut failures = run::failures(&study.experiment, &study.estimates);
+    let joints = estimated(&study.experiment, &study.estimates);
+    if joints.is_empty() {
+        return Err(nothing_usable(failures.last()));
+    }
+    let mut models = Vec::new();
+    for (index, (joint, result)) in study.joints().iter().zip(&results).enumerate() {
+        match result {
+            Some(Ok(found)) => models.extend(start.improved(index, joint, found)),
+            Some(Err(error)) => {
+                failures.push(format!("joint `{}`: no model: {}", joint.name, said(error)));
+            }
+            None => {}
+        }
+    }
+    for model in &mut models {
+        let searched = interrupt.map_or(*model, |interrupt| ended(*model, interrupt));
+        *model = searched.since_its_beginning();
+    }
+    Reported { args, start: &start, study: &study, shown }
+        .write(&joints, &models, &failures, target)
 }
 
 impl ModelArgs {
@@ -169,35 +189,6 @@ struct Reported<'a> {
 
 impl Reported<'_> {
     /// Writes the report of what was found.
-    fn report(
-        &self,
-        (results, interrupt): &Improved,
-        target: Option<&Target>,
-    ) -> anyhow::Result<Completion> {
-        let study = self.study;
-        let experiment = &study.experiment;
-        let mut failures = run::failures(experiment, &study.estimates);
-        let joints = estimated(experiment, &study.estimates);
-        if joints.is_empty() {
-            return Err(nothing_usable(failures.last()));
-        }
-        let mut models = Vec::new();
-        for (index, (joint, result)) in study.joints().iter().zip(results).enumerate() {
-            match result {
-                Some(Ok(found)) => models.extend(self.start.improved(index, joint, found)),
-                Some(Err(error)) => {
-                    failures.push(format!("joint `{}`: no model: {}", joint.name, said(error)));
-                }
-                None => {}
-            }
-        }
-        for model in &mut models {
-            let searched = interrupt.map_or(*model, |interrupt| ended(*model, interrupt));
-            *model = searched.since_its_beginning();
-        }
-        self.write(&joints, &models, &failures, target)
-    }
-
     fn write(
         &self,
         joints: &[EstimatedJoint<'_>],

@@ -15,7 +15,7 @@ use crate::delay::sweep::{Base, Grid};
 use crate::delay::{EstimateError, Method};
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::numerics::LowPass;
-use crate::report::sweep::{StepsShown, sweep_json, sweep_text};
+use crate::report::sweep::{WORST, sweep_json, sweep_text};
 use crate::report::{ReportedSweep, SweepRecording};
 use crate::study::{SweptJoint, sweep_joints};
 use crate::units::Length;
@@ -115,7 +115,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         Recorded::Sweep(&contents).record(path, verbosity)?;
     }
     session.stream.send_sweep(&contents)?;
-    let shown = if args.steps { StepsShown::All } else { StepsShown::Worst };
+    let shown = if args.steps { [usize::MAX; 2] } else { WORST };
     session.end(
         Completion::without(&failures),
         || sweep_text(&grid, args.tolerance, &swept, shown),
