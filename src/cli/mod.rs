@@ -24,7 +24,6 @@ mod output;
 mod program;
 mod run;
 mod typed;
-mod unknown;
 mod viewer;
 
 pub use console::Hosting;

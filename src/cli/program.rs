@@ -18,7 +18,7 @@ use crate::cli::command::{
 use crate::cli::console::{Ended, Host, Hosting, message};
 use crate::cli::failure::{Completion, said};
 use crate::cli::output::meet_file_limits;
-use crate::cli::unknown::{neither_log_nor_command, with_tip};
+use crate::cli::typed::{neither_log_nor_command, with_tip};
 use crate::experiment::{Experiment, ReadError, is_named_like_a_log};
 
 /// Estimate the variable delay of hydraulic joints, record every decision, and find the physics that

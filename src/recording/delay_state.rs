@@ -8,10 +8,9 @@ use std::ops::RangeInclusive;
 use rerun::datatypes::Vec2D;
 use serde_json::Value;
 
-use super::canvas::{Plot, SHEET, Text};
+use super::canvas::{Layers, Plot, SHEET, Text};
 use super::chunk::{Chunks, columns};
 use super::error::RecordError;
-use super::layers::Layers;
 use super::layout::{JointLayout, Placed as Segment};
 use super::palette::{self, role};
 use super::panels::{self, Placed, rgb};

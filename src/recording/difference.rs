@@ -1,10 +1,9 @@
 //! What other methods, settings or logs gave for a step, beside the decision; the decisions by how much
 //! they differ from that: both delays over the record and by rank, lines to click, and what there is to say.
 
-use super::canvas::{Plot, SHEET, Span};
+use super::canvas::{Layers, Plot, SHEET, Span};
 use super::chunk::Chunks;
 use super::error::RecordError;
-use super::layers::Layers;
 use super::layout::{JointLayout, Placed as Segment};
 use super::markdown::plain;
 use super::palette::{self, Rgb, role};

@@ -29,7 +29,6 @@ mod delay_state;
 mod difference;
 mod error;
 mod headline;
-mod layers;
 mod layout;
 mod live;
 mod markdown;

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use rerun::{EntityPath, StateConfiguration};
 
+use super::canvas::Layers;
 use super::chunk::{Chunks, Index, Moment, line, list, words};
 use super::error::RecordError;
-use super::layers::Layers;
 use super::layout::JointLayout;
 use super::markdown::plain;
 use super::palette::{self, color};

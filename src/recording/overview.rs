@@ -4,10 +4,9 @@
 use rerun::components::{InterpolationMode, MarkerShape};
 use rerun::{Boxes2D, SeriesLines, SeriesPoints};
 
-use super::canvas::{Plot, SHEET};
+use super::canvas::{Layers, Plot, SHEET};
 use super::chunk::{Chunks, Index, line};
 use super::error::RecordError;
-use super::layers::Layers;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, Rgb, color};
 use super::panels::{self, Placed};

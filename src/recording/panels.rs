@@ -5,9 +5,8 @@ use std::ops::RangeInclusive;
 
 use rerun::datatypes::Vec2D;
 
-use super::canvas::{Dot, LINE, Plot, Strip, Text, simplified, width};
+use super::canvas::{Dot, LINE, Layers, Plot, Strip, Text, simplified, width};
 use super::error::RecordError;
-use super::layers::Layers;
 use super::palette::{self, Rgb};
 use super::paths::of_model;
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape, within};

@@ -1,10 +1,9 @@
 //! What the residual of models depends on: four quantities, sample by sample; where the error arises, its
 //! share in each part of each feature beside the share of time; itself and the input, lag by lag.
 
-use super::canvas::TAB;
+use super::canvas::{Layers, TAB};
 use super::chunk::Chunks;
 use super::error::RecordError;
-use super::layers::Layers;
 use super::panels::{self, Placed};
 use super::paths;
 use crate::diagnosis::Comparison;

@@ -5,11 +5,10 @@
 //! what belongs to a candidate is set at each of its ticks and cleared before and after,
 //! so that nothing leaks into the next segment.
 
-use super::canvas::Plot;
+use super::canvas::{Layers, Plot};
 use super::chunk::Chunks;
 use super::difference::{Other, in_short};
 use super::error::RecordError;
-use super::layers::Layers;
 use super::layout::{JointLayout, Placed as Step};
 use super::palette::{self, role};
 use super::panels::{self, Placed};

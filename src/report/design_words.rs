@@ -2,7 +2,7 @@
 
 use super::TextTable;
 use super::design::{Basis, DesignedJoint, Discrimination, kept_until_s, order};
-use super::ranking::levels_text;
+use super::finding::levels_text;
 use crate::design::{
     Expected, FreeRunError, OpenThreshold, Prediction, Rehearsal, Schedule, transitions,
 };

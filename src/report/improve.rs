@@ -5,11 +5,10 @@ use serde_json::{Map, Value, json};
 
 use super::compare::{compare_table, error_json, errors_note, horizons, model_json};
 use super::conclusion::{Conclusion, Passage, Topic};
-use super::finding::Consequence;
+use super::finding::{Consequence, candidate_json, ranking_table};
 use super::json::{document, joined};
 use super::ladder::{LadderRow, change_in_words, errors_of, figures, ladder_table};
 use super::parameters::{model_text, parameters_json};
-use super::ranking::{candidate_json, ranking_table};
 use super::{Before, ComparedJoint, Finding, History};
 use crate::diagnosis::ErrorFigures;
 use crate::experiment::Joint;

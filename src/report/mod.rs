@@ -26,7 +26,6 @@ pub(crate) mod ladder;
 pub(crate) mod lookup;
 pub(crate) mod page;
 pub(crate) mod parameters;
-mod ranking;
 pub(crate) mod recorded;
 pub(crate) mod review;
 pub(crate) mod review_page;

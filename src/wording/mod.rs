@@ -1,7 +1,6 @@
 //! What numbers, units, probabilities, parameters, effects and test results are called: one
 //! place for the words that reports, recordings and the command line share.
 
-mod difference;
 mod doubt;
 mod misfit;
 mod model;
@@ -9,10 +8,8 @@ mod number;
 mod prose;
 
 #[cfg(feature = "rrd")]
-pub(crate) use difference::verdict_in_short;
-pub(crate) use difference::{
-    difference_in_short, difference_sentences, result_in_short, step_name,
-};
+pub(crate) use doubt::verdict_in_short;
+pub(crate) use doubt::{difference_in_short, difference_sentences, result_in_short, step_name};
 pub(crate) use doubt::{doubt_percent, doubt_sentence, remedy_text};
 pub(crate) use misfit::{
     correlation_sentences, fails_or_errs, failure_sentences, feature_with_level, feature_with_unit,

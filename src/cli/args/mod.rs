@@ -4,15 +4,15 @@ mod algorithm;
 mod data;
 mod models;
 pub(crate) mod number;
-mod own_settings;
 mod results;
 
-pub(crate) use algorithm::{AlgorithmArgs, ConditionArgs, ids_with, low_pass, passband};
+pub(crate) use algorithm::{
+    AlgorithmArgs, ConditionArgs, OwnSettings, ids_with, low_pass, passband,
+};
 pub(crate) use data::{AgainstArgs, DataArgs, MemoryArgs, ReadingArgs, ReviewArgs, read};
 pub(crate) use models::{
     EffectArgs, ModelFileArgs, ProtocolArgs, add_arguments, check_known, check_models, find,
     fresh_name, name_of, read_model,
 };
 pub(crate) use number::{Choices, one_of};
-pub(crate) use own_settings::OwnSettings;
 pub(crate) use results::{Format, ResultArgs, RunArgs};

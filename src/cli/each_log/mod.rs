@@ -3,7 +3,6 @@
 //! A log is worked on by this program itself, called for that log alone, so that its result
 //! is what anybody gets who calls it so.
 
-mod store;
 mod work;
 
 use std::path::{Path, PathBuf};

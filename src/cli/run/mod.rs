@@ -2,12 +2,10 @@
 
 mod against;
 mod estimates;
-mod revisions;
 mod session;
 mod study;
 
 pub(crate) use against::{compared, others};
 pub(crate) use estimates::{Estimates, estimated, failures, notes};
-pub(crate) use revisions::{Start, as_it_is, ended, log_hashes};
 pub(crate) use session::Session;
-pub(crate) use study::Study;
+pub(crate) use study::{Start, Study, as_it_is, ended, log_hashes};

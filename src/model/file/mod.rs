@@ -1,6 +1,6 @@
 //! Models as users write them: TOML, schema `tauscope/model/1`.
 
-pub(crate) mod document;
+mod document;
 mod edit;
 mod error;
 mod fitted;

@@ -3,8 +3,8 @@
 use std::ops::RangeInclusive;
 
 use crate::figure::Role;
+use crate::recording::canvas::Layers;
 use crate::recording::error::RecordError;
-use crate::recording::layers::Layers;
 use crate::recording::layout::JointLayout;
 use crate::recording::panels::{self, Placed};
 use crate::report::ComparedJoint;

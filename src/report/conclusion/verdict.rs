@@ -9,9 +9,8 @@ use crate::explain::Candidate;
 use crate::fit::{AssessedModel, Status, is_rounding, makes_first_order};
 use crate::model::Component;
 use crate::report::Finding;
-use crate::report::finding::added;
+use crate::report::finding::{added, separation_sentence};
 use crate::report::parameters::equation;
-use crate::report::ranking::separation_sentence;
 use crate::wording::{
     measure, misfit_units, p_text, parameter_units, parameter_value, percent, range_text,
     region_text, rounded, unit_suffix,

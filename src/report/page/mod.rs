@@ -11,6 +11,5 @@ mod joint;
 mod model;
 mod plot;
 mod render;
-mod segment;
 pub(crate) mod simulated;
 pub(crate) mod timeline;

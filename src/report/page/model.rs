@@ -13,9 +13,9 @@ use crate::fit::Termination;
 use crate::model::Component;
 use crate::report::compare::errors_note;
 use crate::report::conclusion::Topic;
+use crate::report::finding::ranking_table;
 use crate::report::ladder::{LadderRow, judged_error, ladder_table};
 use crate::report::parameters::{delay_of_steps, equation, parameter_table};
-use crate::report::ranking::ranking_table;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::{
     bracketed, capitalized, correlation_sentences, failure_sentences, feature_with_unit,
