@@ -57,7 +57,10 @@ pub(super) fn for_each_chunk(
     }
     let tabs = content.tabs();
     let taken = tabs.len() as u64 + 1;
-    for (namespace, tab) in (part.used + 3..).zip(tabs).filter(|(_, tab)| part.has(tab.joint)) {
+    for (namespace, tab) in (part.used + 3..)
+        .zip(tabs)
+        .filter(|(_, tab)| part.joint.is_none_or(|joint| joint == tab.joint))
+    {
         chunks.into_chunks().iter().try_for_each(&mut *take)?;
         chunks = part.ids.chunks(namespace).rooted(joint_root(tab.joint));
         (tab.add)(&mut chunks)?;
@@ -102,10 +105,6 @@ impl Part<'_> {
     /// All of a recording.
     pub(super) fn whole(ids: Ids) -> Self {
         Self { ids, used: 0, joint: None }
-    }
-
-    fn has(self, joint: &str) -> bool {
-        self.joint.is_none_or(|name| joint == name)
     }
 }
 

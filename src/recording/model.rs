@@ -1,6 +1,6 @@
 //! Models beside the measurement: what they simulate, and the residual.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use rerun::{EntityPath, StateConfiguration};
 
@@ -10,12 +10,15 @@ use super::error::RecordError;
 use super::layout::JointLayout;
 use super::markdown::plain;
 use super::palette::{self, color};
+use super::panels::{self, Placed};
 use super::paths::{self, at, child};
-use super::{residual, revision};
+use super::residual;
 use crate::diagnosis::failure::Region;
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
+use crate::figure::Role;
 use crate::report::compare::{Section, difference_section, errors_note, model_table, sections};
+use crate::report::page::simulated::{simulated_panels, worst_panel};
 use crate::report::page::timeline::{named, validation, worst};
 use crate::report::parameters::parameter_table;
 use crate::report::{ComparedJoint, TextTable};
@@ -74,7 +77,7 @@ pub(super) fn add_map(
     let Some(start) = layout.start() else { return Ok(()) };
     let index = Index::everywhere(start, layout.first);
     let mut layers = Layers::rows(chunks, paths::MODEL_MAP, index);
-    revision::add_record(&mut layers, layout, &[*judged])
+    add_record(&mut layers, layout, &[*judged])
 }
 
 /// Regions and correlations as lists of numbers, for programs.
@@ -287,4 +290,34 @@ fn push_marks(
     marks.sort_by_key(|(moment, name)| (moment.sample, !name.is_empty()));
     let (moments, names): (Vec<_>, Vec<_>) = marks.into_iter().unzip();
     chunks.states(path, moments.into_iter().collect::<Index>().without_segment(), names)
+}
+
+/// Width and height of the sheet, and of that with ladder, what the model misses and ranking.
+pub(super) const SIZE: (f32, f32) = (1860.0, 470.0);
+
+/// Top and bottom of the plots of the output: above them their titles.
+const ROWS: RangeInclusive<f32> = 56.0..=198.0;
+
+/// Adds the drawings of models, which follow one another on the timeline of `rows`.
+pub(super) fn add_record(
+    rows: &mut Layers<'_>,
+    layout: &JointLayout<'_>,
+    models: &[ComparedJoint<'_>],
+) -> Result<(), RecordError> {
+    let timeline = layout.timeline();
+    let drawn = |(number, compared): (usize, &ComparedJoint<'_>)| {
+        let role = Role::of_revision(number);
+        let fails = named(compared.joint, compared.comparison);
+        let [output, residual] = simulated_panels(compared, role, &timeline, fails);
+        let close_up = worst_panel(compared, role, &timeline);
+        let end = SIZE.0 - 15.0;
+        let right = if close_up.is_some() { 1060.0 } else { end };
+        let close_up = close_up.map(|panel| Placed::new(panel, (1180.0, end), ROWS));
+        let whole = [
+            Placed::new(output, (120.0, right), ROWS),
+            Placed::new(residual, (120.0, end), 284.0..=426.0),
+        ];
+        whole.into_iter().chain(close_up).collect()
+    };
+    panels::add(rows, models.iter().enumerate().map(drawn))
 }

@@ -16,7 +16,7 @@ use super::blueprint::{Blueprint, Page};
 use super::canvas::{SHEET, TAB};
 use super::overview::{LARGE_HEIGHT, MAP_HEIGHT};
 use super::paths::{self, at, child, joint_root, of_model};
-use super::{delay_state, difference, palette, revision, segment_view};
+use super::{delay_state, difference, model, palette, segment_view};
 use crate::delay::{Decision, Doubt};
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
@@ -314,11 +314,11 @@ impl Tab<'_> {
     /// A model as it grows.
     fn revisions(&self) -> Page {
         let name = "The error falls; what shows it; what was tried";
-        let sheet = self.drawing(name, paths::REVISION_SHEET, revision::SIZE);
+        let sheet = self.drawing(name, paths::REVISION_SHEET, model::SIZE);
         let name =
             "Where the error of the speed arises: its share (bars), share of the time (white)";
         let share = self.drawing(name, paths::REVISION_SHARE, TAB);
-        let record = self.drawing("The whole record", paths::REVISION_RECORD, revision::SIZE);
+        let record = self.drawing("The whole record", paths::REVISION_RECORD, model::SIZE);
         let words = self.text("In words", paths::REVISION_WORDS);
         let parameters = self.text("Parameters", paths::REVISION_PARAMETERS);
         let left = [(1.0, Page::tabs("Ladder", [sheet, share])), (1.0, record)];
@@ -373,7 +373,7 @@ impl Tab<'_> {
         ];
         let plots = Page::stacked(ALONG, plots);
         let map = if self.revisions == 0 { paths::MODEL_MAP } else { paths::REVISION_RECORD };
-        let map = self.drawing("Whole record, on every timeline", map, revision::SIZE);
+        let map = self.drawing("Whole record, on every timeline", map, model::SIZE);
         // Models side by side are compared in the plots: the map is of the first one alone.
         let tabs = if self.are_side_by_side() { [plots, map] } else { [map, plots] };
         let rows = [

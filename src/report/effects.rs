@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::json::{document, joined};
 use crate::effect::{Effect, Parameter, REGISTRY, Spec, UNLIMITED};
-use crate::wording::{Margins, lines};
+use crate::wording::lines;
 
 /// Narrowest text, in columns: below it lines would hold a word or two.
 const NARROWEST: usize = 40;
@@ -79,7 +79,7 @@ fn range(parameter: &Parameter) -> Option<String> {
 
 /// `text` below the head of a sheet.
 fn below(text: &str, width: usize) -> Vec<String> {
-    lines(text, Margins { width: width.max(NARROWEST), first: INDENT, others: 2 * INDENT })
+    lines(text, width.max(NARROWEST), [INDENT, 2 * INDENT])
 }
 
 /// The document of `effects --format json`; `units` are in the order of the parameters.

@@ -16,7 +16,7 @@ use super::summary::Headline;
 use super::{DelayRange, EstimatedJoint, JointSummary, TextTable};
 use crate::delay::{
     AgainstState, Bounds, Condition, DeadTime, DelayTable, Finding, KindDelay, OnsetModel,
-    Settings, Tracking, Unknown, Window,
+    Settings, Unknown, Window,
 };
 use crate::experiment::{Experiment, Joint, Source};
 use crate::wording::{percent, rounded};
@@ -267,6 +267,7 @@ fn facts(estimated: EstimatedJoint<'_>, asked: &Settings, table: &DelayTable) ->
     let rejected = summary.rejected.iter();
     let rejected = rejected.map(|(condition, count)| (condition.to_string(), (*count).into()));
     let rows = table.rows.iter().map(|row| level_json(&joint.name, row));
+    let kind = if estimate.dead_time.is_some() { "continuous" } else { "steps" };
     let facts = json!({
         "joint": joint.name,
         "input_unit": joint.input_unit,
@@ -277,11 +278,13 @@ fn facts(estimated: EstimatedJoint<'_>, asked: &Settings, table: &DelayTable) ->
         "reviewed": summary.reviewed,
         "delay_samples": summary.delay_samples,
         "delay_s": summary.delay_s,
-        "input": input_json(estimated),
+        // What the input is taken for, and what that was decided from.
+        "input": joined([json!({ "kind": kind }), json!(estimate.motion)]),
         "dead_time": estimate.dead_time.as_ref().map(|found| dead_time_json(estimated, found)),
         "settings": is_own.then(|| settings_json(&estimate.settings)),
         "onset_model": estimated.onset_model().map(onset_json),
-        "tracking": estimated.tracking().map(tracking_json),
+        // Where the output comes to rest: at `offset + gain · input`.
+        "tracking": estimated.tracking().map(|it| json!({ "offset": it.offset(), "gain": it.gain() })),
         "warnings": estimated.warnings(),
         "neutral": table.neutral,
         "delay_table": rows.collect::<Value>(),
@@ -289,12 +292,6 @@ fn facts(estimated: EstimatedJoint<'_>, asked: &Settings, table: &DelayTable) ->
     });
     let optional = ["reviewed", "dead_time", "settings", "onset_model", "tracking"];
     without_empty(facts, &optional)
-}
-
-/// What the input is taken for, and what that was decided from.
-fn input_json(EstimatedJoint { estimate, .. }: EstimatedJoint<'_>) -> Value {
-    let kind = if estimate.dead_time.is_some() { "continuous" } else { "steps" };
-    joined([json!({ "kind": kind }), json!(estimate.motion)])
 }
 
 /// The response after the dead times.
@@ -311,11 +308,6 @@ fn onset_json(model: &OnsetModel) -> Value {
             "fits": one.fits,
         })).collect::<Vec<_>>(),
     })
-}
-
-/// Where an output comes to rest: at `offset + gain · input`.
-fn tracking_json(found: Tracking) -> Value {
-    json!({ "offset": found.offset(), "gain": found.gain() })
 }
 
 /// All steps of a kind; a median only where it is typical.

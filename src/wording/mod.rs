@@ -22,5 +22,5 @@ pub(crate) use number::{
     to_place, unit_suffix, with_error, with_unit,
 };
 pub(crate) use prose::{
-    Margins, capitalized, counted, hanging, legible, lines, listed, typed_parts, wrapped,
+    capitalized, counted, hanging, legible, lines, listed, typed_parts, wrapped,
 };

@@ -5,30 +5,19 @@ use crate::experiment::is_control;
 /// Columns of a line of prose.
 const WIDTH: usize = 92;
 
-/// Columns of lines and of what stands before them.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Margins {
-    /// Columns of a line, at most, where words allow.
-    pub(crate) width: usize,
-    /// Columns before the first line.
-    pub(crate) first: usize,
-    /// Columns before the others.
-    pub(crate) others: usize,
-}
-
 /// `text` in lines of at most [`WIDTH`] columns where words allow.
 pub(crate) fn wrapped(text: &str) -> String {
-    lines(text, Margins { width: WIDTH, first: 0, others: 0 }).join("\n")
+    lines(text, WIDTH, [0, 0]).join("\n")
 }
 
 /// `text` in such lines, of which the first stands out by two columns.
 pub(crate) fn hanging(text: &str) -> String {
-    lines(text, Margins { width: WIDTH, first: 0, others: 2 }).join("\n")
+    lines(text, WIDTH, [0, 2]).join("\n")
 }
 
-/// `text` in lines between `margins`.
-pub(crate) fn lines(text: &str, margins: Margins) -> Vec<String> {
-    let Margins { width, first, others } = margins;
+/// `text` in lines of at most `width` columns where words allow; before the first one stand so many
+/// columns, and so many before the others.
+pub(crate) fn lines(text: &str, width: usize, [first, others]: [usize; 2]) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         let length = |line: &str| line.chars().count();

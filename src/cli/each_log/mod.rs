@@ -99,8 +99,8 @@ impl FolderArgs {
         let part =
             |(index, _): &(usize, &PathBuf)| self.shard.is_none_or(|shard| shard.has(*index));
         let logs: Vec<&PathBuf> = all.iter().enumerate().filter(part).map(|(_, log)| log).collect();
-        let done = Work { each, results, options: &options }.run(&logs)?;
-        failures.extend(done.failures);
+        let (found, failed) = Work { each, results, options: &options }.run(&logs)?;
+        failures.extend(failed);
         if let Some(Shard { number, of }) = self.shard {
             warn(&failures);
             let done =
@@ -108,7 +108,7 @@ impl FolderArgs {
             each.run.verbosity().say("done", done);
             return Ok(Completion::without(&failures));
         }
-        present(&FolderReport::new(each.command, done.results), failures, tables, each.run)
+        present(&FolderReport::new(each.command, found), failures, tables, each.run)
     }
 }
 

@@ -28,12 +28,6 @@ pub(crate) struct Work<'a> {
     pub(crate) options: &'a LogOptions,
 }
 
-/// What came of it, in the order of the logs.
-pub(crate) struct Done {
-    pub(crate) results: Vec<LogResult>,
-    pub(crate) failures: Vec<String>,
-}
-
 /// A log and what is known of it.
 struct Known<'a> {
     log: &'a Path,
@@ -44,8 +38,9 @@ struct Known<'a> {
 }
 
 impl Work<'_> {
-    /// Works on each log that has no result yet.
-    pub(crate) fn run(&self, logs: &[&PathBuf]) -> anyhow::Result<Done> {
+    /// Works on each log that has no result yet: all results in the order of the logs, and messages on
+    /// those that have none.
+    pub(crate) fn run(&self, logs: &[&PathBuf]) -> anyhow::Result<(Vec<LogResult>, Vec<String>)> {
         let earlier =
             |log: &&PathBuf| Kept::read(&self.place(log)).ok().map(Kept::without_document);
         let earlier: Vec<Option<Kept>> = logs.iter().map(earlier).collect();
@@ -89,7 +84,7 @@ impl Work<'_> {
         let kept = logs.iter().filter(|known| !failures.contains_key(known.log));
         let results = kept.map(|known| Ok(Kept::read(&self.place(known.log))?.result()));
         let results = results.collect::<anyhow::Result<_>>()?;
-        Ok(Done { results, failures: failures.into_values().collect() })
+        Ok((results, failures.into_values().collect()))
     }
 
     fn verbosity(&self) -> Verbosity {

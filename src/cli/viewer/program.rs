@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn a_program_is_found_in_the_folders_of_a_path() {
-        let path = std::env::var_os("PATH").unwrap();
+        let path = env::var_os("PATH").unwrap();
         assert!(on_path("cargo", Some(&path)).is_some());
         assert_eq!(on_path("no-such-program-here", Some(&path)), None);
     }

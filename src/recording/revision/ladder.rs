@@ -1,11 +1,11 @@
 //! The ladder of errors, a rung per revision, and the candidates for what comes next.
 
-use super::record::SIZE;
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::explain::{Candidate, Verdict};
 use crate::figure::ladder::{Rung, panel, value};
 use crate::figure::{Mark, Role};
 use crate::recording::canvas::{LINE, width};
+use crate::recording::model::SIZE;
 use crate::recording::palette::{self, role};
 use crate::recording::panels::Placed;
 use crate::report::ImprovedJoint;

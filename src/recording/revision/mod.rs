@@ -6,8 +6,6 @@
 
 mod ladder;
 mod pages;
-mod record;
 
 pub(super) use ladder::judged;
 pub(super) use pages::add;
-pub(super) use record::{SIZE, add as add_record};

@@ -3,7 +3,6 @@
 use rerun::TextDocument;
 
 use super::ladder::{Ladders, judged, noise};
-use super::record;
 use crate::diagnosis::Comparison;
 use crate::explain::{Change, Revision};
 use crate::figure::curves::Curves;
@@ -14,6 +13,7 @@ use crate::recording::chunk::{Chunks, Index, Moment};
 use crate::recording::error::RecordError;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
+use crate::recording::model::add_record;
 use crate::recording::panels::Placed;
 use crate::recording::{panels, paths, residual};
 use crate::report::ladder::change_in_words;
@@ -53,7 +53,7 @@ pub(in crate::recording) fn add(
     steps.figures(improved)?;
     steps.words(layout, improved)?;
     let models: Vec<ComparedJoint<'_>> = improved.compared().collect();
-    record::add(&mut steps.layers(paths::REVISION_RECORD), layout, &models)?;
+    add_record(&mut steps.layers(paths::REVISION_RECORD), layout, &models)?;
     let ladders = Ladders::new(improved);
     let rows = models.iter().enumerate().map(|(at, compared)| {
         let what_misses = what_misses(compared, Role::of_revision(at));

@@ -28,7 +28,7 @@ pub(super) fn record_figure(estimated: EstimatedJoint<'_>) -> Figure {
 /// The output with the breakpoints above, the input below.
 pub(crate) fn record_panels(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> [Panel; 2] {
     let joint = estimated.joint;
-    let (accepted, rejected) = breakpoints(estimated, timeline);
+    let [accepted, rejected] = breakpoints(estimated, timeline);
     let span = |values: fn(&Trial) -> &[f64]| {
         Span::around(values_of(joint, |_, trial| values(trial)), 0.06)
     };
@@ -57,40 +57,31 @@ pub(crate) fn record_panels(estimated: EstimatedJoint<'_>, timeline: &Timeline<'
     [output, input]
 }
 
-/// Where each breakpoint is: of accepted decisions, and of rejected ones.
-fn breakpoints(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> (Vec<Place>, Vec<Place>) {
-    let (mut accepted, mut rejected) = (Vec::new(), Vec::new());
+/// All decisions with their trials and the places of these.
+fn placed(
+    estimated: EstimatedJoint<'_>,
+) -> impl Iterator<Item = (usize, &Trial, &Decision)> + use<'_> {
     let trials = estimated.joint.trials.iter().zip(&estimated.estimate.trials).enumerate();
-    for (index, (trial, result)) in trials {
-        for decision in result.iter().flat_map(|estimate| &estimate.decisions) {
-            let Some(place) = breakpoint(decision, trial, index, timeline) else { continue };
-            match decision.verdict() {
-                Verdict::Accepted => accepted.push(place),
-                Verdict::Rejected(_) => rejected.push(place),
-            }
-        }
+    trials.flat_map(|(index, (trial, found))| {
+        let decisions = found.iter().flat_map(|found| &found.decisions);
+        decisions.map(move |decision| (index, trial, decision))
+    })
+}
+
+/// Where each breakpoint is: of accepted decisions, and of rejected ones.
+fn breakpoints(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> [Vec<Place>; 2] {
+    let mut breakpoints = [Vec::new(), Vec::new()];
+    let place = |index: usize, trial: &Trial, decision: &Decision| {
+        let best = decision.breakpoint()?.candidate;
+        let sample = decision.input_step.sample as f64 + decision.delay()?;
+        let output = *trial.output().get(best.breakpoint.checked_sub(1)?)?;
+        Some((timeline.at(index, sample), output))
+    };
+    for (index, trial, decision) in placed(estimated) {
+        let kind = usize::from(decision.verdict() != Verdict::Accepted);
+        breakpoints[kind].extend(place(index, trial, decision));
     }
-    (accepted, rejected)
-}
-
-fn breakpoint(
-    decision: &Decision,
-    trial: &Trial,
-    index: usize,
-    timeline: &Timeline<'_>,
-) -> Option<Place> {
-    let best = decision.breakpoint()?.candidate;
-    let sample = decision.input_step.sample as f64 + decision.delay()?;
-    let output = *trial.output().get(best.breakpoint.checked_sub(1)?)?;
-    Some((timeline.at(index, sample), output))
-}
-
-/// What a joint's delays are over time.
-#[derive(Default)]
-struct Delays {
-    accepted: Vec<Place>,
-    intervals: Vec<Vec<Place>>,
-    rejected: Vec<f64>,
+    breakpoints
 }
 
 /// The delay of each step over time; none where none was accepted.
@@ -104,7 +95,18 @@ pub(super) fn over_time(estimated: EstimatedJoint<'_>) -> Option<Figure> {
 }
 
 pub(crate) fn delay_panel(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> Option<Panel> {
-    let Delays { accepted, intervals, rejected } = delays(estimated, timeline);
+    let (mut accepted, mut intervals, mut rejected) = (Vec::new(), Vec::new(), Vec::new());
+    for (index, trial, decision) in placed(estimated) {
+        let (at, period_s) =
+            (timeline.at(index, decision.input_step.sample as f64), trial.period().seconds());
+        let Some(delay) = decision.accepted_delay() else {
+            rejected.push(at);
+            continue;
+        };
+        accepted.push((at, delay * period_s));
+        let ends = decision.fine.map(|fine| [fine.low, fine.high]);
+        intervals.extend(ends.map(|ends| ends.map(|end| (at, end * period_s)).to_vec()));
+    }
     if accepted.is_empty() {
         return None;
     }
@@ -121,29 +123,6 @@ pub(crate) fn delay_panel(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>
         marks.push(Mark::new(Role::Rejected, Shape::Crosses(rejected)).named("rejected step"));
     }
     Some(Panel { x: timeline.axis(), y: Axis::new(y, "delay [s]", 5.0), height: 150, marks })
-}
-
-fn delays(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> Delays {
-    let mut delays = Delays::default();
-    let trials = estimated.joint.trials.iter().zip(&estimated.estimate.trials).enumerate();
-    for (index, (trial, result)) in trials {
-        let Ok(estimate) = result else { continue };
-        let period_s = trial.period().seconds();
-        for decision in &estimate.decisions {
-            let at = timeline.at(index, decision.input_step.sample as f64);
-            let Some(delay) = decision.accepted_delay() else {
-                delays.rejected.push(at);
-                continue;
-            };
-            delays.accepted.push((at, delay * period_s));
-            delays.intervals.extend(
-                decision
-                    .fine
-                    .map(|fine| vec![(at, fine.low * period_s), (at, fine.high * period_s)]),
-            );
-        }
-    }
-    delays
 }
 
 /// The median delay over the level, by kind of step; none where none was accepted.

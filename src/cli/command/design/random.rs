@@ -82,10 +82,6 @@ fn request(args: &Args, rest: f64) -> PlanRequest {
     }
 }
 
-fn model(uncertain: Option<&Uncertain>) -> Option<&crate::model::JointModel> {
-    uncertain.map(|uncertain| &uncertain.model)
-}
-
 /// What the expectation rests on.
 fn basis(known: &Uncertain, rig: &TestRig, logged: Option<&Logged>, plan: &Plan) -> Basis {
     let effects = known.model.components().iter().map(|component| component.effect().spec().id);
@@ -98,7 +94,7 @@ fn basis(known: &Uncertain, rig: &TestRig, logged: Option<&Logged>, plan: &Plan)
 
 /// What whoever plays it should know.
 fn notes(plan: &Plan, rig: &TestRig, uncertain: Option<&Uncertain>, rest: f64) -> Vec<String> {
-    let response = model(uncertain).map(|model| response_s(model, rig, plan.largest));
+    let response = uncertain.map(|known| response_s(&known.model, rig, plan.largest));
     let short = response.filter(|response| plan.hold_s.0 < *response);
     let short = short.map(|response| hold_note(plan.hold_s.0, response));
     let unit = rig.input_unit.as_deref();
