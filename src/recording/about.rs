@@ -1,69 +1,76 @@
 //! What the recording was made from and with: one page.
 
-use std::fmt::Write as _;
-
 use super::layout::JointLayout;
 use super::markdown::{plain, prose};
 use super::revision::judged;
 use crate::delay::Doubt;
 use crate::experiment::{ReadOptions, Source};
 use crate::report::answer::dead_time_sentences;
+use crate::report::columns::extent;
 use crate::report::decisions::doubtful_lines;
 use crate::report::delays::levels_text;
 use crate::report::estimate::summary_table;
 use crate::report::facts::Place;
 use crate::report::ladder::change_in_words;
+use crate::report::page::compose::files;
 use crate::report::review::ReviewCount;
 use crate::report::settings::settings_table;
-use crate::report::{Detail, EstimatedJoint, JointSummary, Recording, TextTable};
+use crate::report::{Detail, EstimatedJoint, ImprovedJoint, JointSummary, Recording, TextTable};
 use crate::wording::{counted, measure, number};
 
 /// The page on `recording`, whose joints have these layouts.
 pub(super) fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> String {
-    written(recording, layouts).unwrap_or_default()
+    let joints = recording.joints;
+    let dead_times =
+        joints.iter().filter_map(|joint| match dead_time_sentences(joint).as_slice() {
+            [_, finding, ..] => Some(format!("# {}: {}", plain(&joint.joint.name), plain(finding))),
+            _ => None,
+        });
+    let improved = recording.revisions.iter().filter(|improved| !improved.revisions.is_empty());
+    let mut parts: Vec<String> = dead_times.chain(improved.map(ladder)).collect();
+    parts.push(format!("# Delays of {}", counted(joints.len(), "joint")));
+    parts.extend(doubtful(joints, layouts));
+    parts.push(summary_table(joints).markdown(plain));
+    parts.push(joints.iter().map(sentences).collect());
+    parts.extend(delay_levels(joints));
+    parts.push(format!("## Settings\n\n{}", settings_table(recording.settings).markdown(plain)));
+    parts.push(detail(recording, layouts));
+    let extent = extent(joints.iter().map(|joint| joint.joint)).markdown(plain);
+    parts.push(format!("## Signals\n\n{extent}"));
+    parts.push(made_from(recording.sources, recording.reading));
+    parts.push(HOW_TO_READ.to_owned());
+    parts.join("\n\n") + "\n"
 }
 
-fn written(
-    recording: &Recording<'_>,
-    layouts: &[JointLayout<'_>],
-) -> Result<String, std::fmt::Error> {
-    let mut page = String::new();
-    answers(&mut page, recording)?;
-    writeln!(page, "# Delays of {}\n", counted(recording.joints.len(), "joint"))?;
+/// How the error of a model fell.
+fn ladder(improved: &ImprovedJoint<'_>) -> String {
+    let unit = improved.finding.compared.joint.output_unit.as_deref();
+    let rows = improved.numbered().map(|(number, revision)| {
+        let error = measure(judged(&revision.comparison), unit);
+        [number.to_string(), change_in_words(revision), error]
+    });
+    let table = TextTable::of(["revision", "change", "error"], &[], rows).markdown(plain);
+    format!("# {}\n\n{table}", prose(&improved.finding.conclusion().headline))
+}
+
+/// What is said of a joint, a line each.
+fn sentences(joint: &EstimatedJoint<'_>) -> String {
+    let (name, summary) = (plain(&joint.joint.name), JointSummary::of(*joint));
+    let sentences = joint.kind_sentences(summary.headline.kinds()).into_iter();
+    let sentences = sentences.chain(summary.reviewed.map(ReviewCount::sentence));
+    let sentences = sentences.chain(dead_time_sentences(joint));
+    sentences.map(|sentence| ["- ", &name, ": ", &sentence, "\n"].concat()).collect()
+}
+
+/// The most doubtful decisions of all joints.
+fn doubtful(joints: &[EstimatedJoint<'_>], layouts: &[JointLayout<'_>]) -> Option<String> {
+    /// Decisions that are named.
+    const MOST: usize = 10;
     let doubts = || layouts.iter().flat_map(JointLayout::segments).map(|(_, s)| &s.doubt);
-    if doubts().next().is_some() {
-        writeln!(page, "{}. {DOUBT_MEANS}\n", doubtful_sentence(doubts()))?;
-        doubtful(&mut page, recording.joints)?;
-    }
-    writeln!(page, "{}", summary_table(recording.joints).markdown(plain))?;
-    let summary = |joint: &EstimatedJoint<'_>| JointSummary::of(*joint);
-    let summaries: Vec<JointSummary> = recording.joints.iter().map(summary).collect();
-    for (joint, summary) in recording.joints.iter().zip(&summaries) {
-        let name = plain(&joint.joint.name);
-        let sentences = joint.kind_sentences(summary.headline.kinds()).into_iter();
-        let sentences = sentences.chain(summary.reviewed.map(ReviewCount::sentence));
-        for sentence in sentences.chain(dead_time_sentences(joint)) {
-            writeln!(page, "- {name}: {sentence}")?;
-        }
-    }
-    delay_levels(&mut page, recording.joints)?;
-    let settings = settings_table(recording.settings).markdown(plain);
-    writeln!(page, "\n## Settings\n\n{settings}")?;
-    writeln!(page, "\n{}", detail(recording, layouts))?;
-    let row = |EstimatedJoint { joint, .. }: &EstimatedJoint<'_>| {
-        let unit = |unit: &Option<String>| unit.clone().unwrap_or_else(|| "no unit".to_owned());
-        let mut periods: Vec<_> =
-            joint.trials.iter().map(|trial| trial.period().to_string()).collect();
-        periods.dedup();
-        let (input, output) = (unit(&joint.input_unit), unit(&joint.output_unit));
-        [joint.name.clone(), input, output, joint.trials.len().to_string(), periods.join(", ")]
-    };
-    let header = ["joint", "input", "output", "trials", "sample period"];
-    let signals = TextTable::of(header, &[3], recording.joints.iter().map(row)).markdown(plain);
-    writeln!(page, "\n## Signals\n\n{signals}")?;
-    made_from(&mut page, recording.sources, recording.reading)?;
-    writeln!(page, "{HOW_TO_READ}")?;
-    Ok(page)
+    doubts().next()?;
+    let lines = doubtful_lines(joints).into_iter().take(MOST);
+    let lines: String = lines.map(|line| ["1. ", &plain(&line), "\n"].concat()).collect();
+    Some(format!("{}. {DOUBT_MEANS}\n\n{lines}", doubtful_sentence(doubts())))
 }
 
 /// How many decisions are doubtful, and when one is: `6 of 587 decisions are doubtful (…)`.
@@ -81,55 +88,20 @@ const DOUBT_MEANS: &str = "\
 Doubt is 0 % where nothing speaks against a decision and 100 % where the smallest change of the \
 data would reverse it; it is not a probability.";
 
-/// What was found of models and dead times, first of all: a headline per joint, and how the error
-/// fell.
-fn answers(page: &mut String, recording: &Recording<'_>) -> std::fmt::Result {
-    for joint in recording.joints {
-        if let [_, finding, ..] = dead_time_sentences(joint).as_slice() {
-            writeln!(page, "# {}: {}\n", plain(&joint.joint.name), plain(finding))?;
-        }
-    }
-    for improved in recording.revisions.iter().filter(|improved| !improved.revisions.is_empty()) {
-        let unit = improved.finding.compared.joint.output_unit.as_deref();
-        writeln!(page, "# {}\n", prose(&improved.finding.conclusion().headline))?;
-        writeln!(page, "| revision | change | error |\n|---|---|---|")?;
-        for (number, revision) in improved.numbered() {
-            let error = measure(judged(&revision.comparison), unit);
-            let change = plain(&change_in_words(revision));
-            writeln!(page, "| {number} | {change} | {error} |")?;
-        }
-        writeln!(page)?;
-    }
-    Ok(())
-}
-
-/// The most doubtful decisions of all joints.
-fn doubtful(page: &mut String, joints: &[EstimatedJoint<'_>]) -> std::fmt::Result {
-    /// Decisions that are named.
-    const MOST: usize = 10;
-    for line in doubtful_lines(joints).iter().take(MOST) {
-        writeln!(page, "1. {}", plain(line))?;
-    }
-    writeln!(page)
-}
-
 /// The delays by kind of step and levels.
-fn delay_levels(page: &mut String, joints: &[EstimatedJoint<'_>]) -> std::fmt::Result {
+fn delay_levels(joints: &[EstimatedJoint<'_>]) -> Option<String> {
     /// Rows that a person reads, at most.
     const MOST: usize = 200;
     let tables = joints.iter().map(|joint| (joint.joint.name.as_str(), joint.delay_table().rows));
     let tables: Vec<_> = tables.collect();
     let rows = || tables.iter().flat_map(|(name, rows)| rows.iter().map(move |row| (*name, row)));
-    let all = rows().count();
-    if all == 0 {
-        return Ok(());
-    }
     let table = levels_text(Place::Recording, rows().take(MOST)).markdown(plain);
-    writeln!(page, "\n## Delay table\n\n{table}")?;
-    if all > MOST {
-        writeln!(page, "{MOST} of {all} rows; `--table FILE.csv` writes them all.")?;
-    }
-    Ok(())
+    let more = match rows().count() {
+        0 => return None,
+        1..=MOST => String::new(),
+        all => format!("\n{MOST} of {all} rows; `--table FILE.csv` writes them all."),
+    };
+    Some(format!("## Delay table\n\n{table}{more}"))
 }
 
 const HOW_TO_READ: &str = "\
@@ -161,18 +133,10 @@ fn detail(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> String {
 }
 
 /// The files, how they were read, and the program.
-pub(super) fn made_from(
-    page: &mut String,
-    sources: &[Source],
-    reading: &ReadOptions,
-) -> std::fmt::Result {
-    writeln!(page, "\n## Made from\n")?;
-    for source in sources {
-        let path = source.path.display();
-        writeln!(page, "- `{path}`, {} bytes, SHA-256 `{}`", source.bytes, source.sha256)?;
-    }
-    writeln!(page, "\n{}", read_with(reading))?;
-    writeln!(page, "\nMade by tauscope {}.\n", env!("CARGO_PKG_VERSION"))
+pub(super) fn made_from(sources: &[Source], reading: &ReadOptions) -> String {
+    let (table, version) = (files(sources).markdown(plain), env!("CARGO_PKG_VERSION"));
+    let read = read_with(reading);
+    format!("## Made from\n\n{table}\n{read}\n\nMade by tauscope {version}.")
 }
 
 /// How the files were read, where it was not as they are.

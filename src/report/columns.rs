@@ -41,7 +41,7 @@ pub(super) fn role(column: &SurveyedColumn) -> String {
 }
 
 /// A row per joint: how long it was measured, and in which range.
-pub(crate) fn extent_table(joints: &[Joint]) -> String {
+pub(crate) fn extent<'j>(joints: impl Iterator<Item = &'j Joint>) -> TextTable {
     let header = ["joint", "input", "output", "trials", "samples", "period", "duration"];
     let row = |joint: &Joint| {
         let trials = || joint.trials.iter();
@@ -64,7 +64,7 @@ pub(crate) fn extent_table(joints: &[Joint]) -> String {
             measure(duration, Some("s")),
         ]
     };
-    format!("{}\n", TextTable::of(header, &[3, 4, 5, 6], joints.iter().map(row)))
+    TextTable::of(header, &[3, 4, 5, 6], joints.map(row))
 }
 
 /// The JSON of `survey`, with the mappings as `options` on the command line, the likeliest first, and

@@ -1,7 +1,5 @@
 //! A recording of a sweep: what it is made of, its page on all of it, its joints and its views.
 
-use std::fmt::Write as _;
-
 use super::swept::Swept;
 use super::{sheet, words};
 use crate::delay::sweep::Factor;
@@ -13,10 +11,10 @@ use crate::recording::error::RecordError;
 use crate::recording::layout::TrialStarts;
 use crate::recording::markdown::plain;
 use crate::recording::paths::{self, at, joint_root};
-use crate::report::SweepRecording;
 use crate::report::recorded::names_of;
 use crate::report::settings::settings_table;
 use crate::report::sweep::{level_text, sweep_sentences};
+use crate::report::{SweepRecording, TextTable};
 use crate::wording::number;
 
 impl Content for SweepRecording<'_> {
@@ -31,7 +29,7 @@ impl Content for SweepRecording<'_> {
     }
 
     fn about(&self) -> String {
-        page(self).unwrap_or_default()
+        page(self)
     }
 
     fn tabs(&self) -> Vec<Tab<'_>> {
@@ -73,30 +71,34 @@ fn tab(joint: &str) -> Page {
 }
 
 /// What was tried, and what it was made from.
-fn page(sweep: &SweepRecording<'_>) -> Result<String, std::fmt::Error> {
-    let mut page = String::new();
-    writeln!(page, "# Delays of {} joints with every setting\n", sweep.joints.len())?;
-    for joint in sweep.joints {
+fn page(sweep: &SweepRecording<'_>) -> String {
+    let joints = sweep.joints.iter().map(|joint| {
         let sentences = sweep_sentences(sweep.grid, joint).join(" ");
-        writeln!(page, "- **{}**: {}", plain(&joint.joint.name), plain(&sentences))?;
-    }
-    writeln!(page, "\n## What was tried\n\n| setting | values |\n|---|---|")?;
-    for factor in Factor::ALL {
+        format!("- **{}**: {}\n", plain(&joint.joint.name), plain(&sentences))
+    });
+    let tried = Factor::ALL.map(|factor| {
         let level = |level| level_text(sweep.grid, factor, level);
         let levels: Vec<_> = (0..sweep.grid.levels(factor)).map(level).collect();
-        writeln!(page, "| {factor} | {} |", plain(&levels.join(", ")))?;
-    }
+        [factor.to_string(), levels.join(", ")]
+    });
     let (combinations, runs) = (sweep.grid.combinations().len(), sweep.grid.runs().len());
-    writeln!(
-        page,
-        "\n{combinations} combinations, of which {runs} differ. Two delays agree if they differ \
-         by no more than {} samples beyond the resolution of each: ± β/2, or its interval.\n",
+    let note = format!(
+        "{combinations} combinations, of which {runs} differ. Two delays agree if they differ by no \
+         more than {} samples beyond the resolution of each: ± β/2, or its interval.",
         number(sweep.tolerance)
-    )?;
-    for base in sweep.grid.bases() {
-        writeln!(page, "### {}, where nothing else was tried\n", base.settings.method)?;
-        writeln!(page, "{}", settings_table(&base.settings).markdown(plain))?;
-    }
-    made_from(&mut page, sweep.sources, sweep.reading)?;
-    Ok(page)
+    );
+    let settings = sweep.grid.bases().iter().map(|base| {
+        let table = settings_table(&base.settings).markdown(plain);
+        format!("### {}, where nothing else was tried\n\n{table}\n", base.settings.method)
+    });
+    [
+        format!("# Delays of {} joints with every setting", sweep.joints.len()),
+        joints.collect(),
+        "## What was tried".to_owned(),
+        TextTable::of(["setting", "values"], &[], tried).markdown(plain),
+        note,
+        settings.collect(),
+        made_from(sweep.sources, sweep.reading),
+    ]
+    .join("\n\n")
 }

@@ -1,8 +1,6 @@
 //! A joint in words; the setting and the step under the cursor; the steps to look at; and what a program
 //! reads: a row per setting, and a row per step.
 
-use std::fmt::Write as _;
-
 use serde_json::Value;
 
 use super::swept::{Opinion, Swept};
@@ -13,16 +11,17 @@ use crate::recording::error::RecordError;
 use crate::recording::markdown::plain;
 use crate::recording::paths;
 use crate::report::Kind::{self, Real, Text, Whole};
+use crate::report::TextTable;
 use crate::report::sweep::{depends_on, level_cell, level_text, sweep_sentences};
 use crate::units::Length;
-use crate::wording::{capitalized, number};
+use crate::wording::{capitalized, number, percent};
 
 /// Adds all words below `root`.
 pub(super) fn add(chunks: &mut Chunks, swept: &Swept<'_>) -> Result<(), RecordError> {
-    chunks.page(paths::FOUND, found(swept).unwrap_or_default())?;
-    let settings = (0..swept.names.len()).map(|run| setting(swept, run).unwrap_or_default());
+    chunks.page(paths::FOUND, found(swept))?;
+    let settings = (0..swept.names.len()).map(|run| setting(swept, run));
     chunks.pages(paths::HERE, swept.settings(), settings)?;
-    let steps = swept.steps.iter().map(|(step, _)| one_step(swept, step).unwrap_or_default());
+    let steps = swept.steps.iter().map(|(step, _)| one_step(swept, step));
     chunks.pages(paths::HERE, swept.index.clone(), steps)?;
     // A line for each step that is sensitive to a setting, in the order of the record.
     let sensitive: Vec<usize> = (0..swept.steps.len())
@@ -44,25 +43,22 @@ fn line(swept: &Swept<'_>, step: &SweptStep) -> String {
     format!("step {number} at {:.2} s: {on}; most say {agreed:.3} s", step.time_s)
 }
 
-type Written = Result<String, std::fmt::Error>;
-
 /// What the settings make of the joint.
-fn found(swept: &Swept<'_>) -> Written {
-    let mut page = String::new();
-    writeln!(page, "## {}\n", plain(&swept.reported.joint.name))?;
-    for (place, sentence) in sweep_sentences(swept.grid, &swept.reported).iter().enumerate() {
+fn found(swept: &Swept<'_>) -> String {
+    let sentences = sweep_sentences(swept.grid, &swept.reported).into_iter().enumerate();
+    let sentences = sentences.map(|(place, sentence)| {
         let mark = if place == 0 { "**" } else { "" };
-        writeln!(page, "{mark}{}{mark}\n", plain(&capitalized(sentence)))?;
-    }
-    writeln!(page, "| setting | median delay, part that differs from most |\n|---|---|")?;
-    for (factor, levels) in Factor::ALL.into_iter().zip(&swept.reported.sweep.levels) {
-        for (level, summary) in levels.iter().enumerate().filter(|_| levels.len() > 1) {
-            let name = level_text(swept.grid, factor, level);
-            writeln!(page, "| {} | {} |", plain(&name), level_cell(summary))?;
-        }
-    }
-    writeln!(page, "\n{HOW_TO_READ}")?;
-    Ok(page)
+        format!("{mark}{}{mark}\n\n", plain(&capitalized(&sentence)))
+    });
+    let varied = Factor::ALL.into_iter().zip(&swept.reported.sweep.levels);
+    let rows = varied.filter(|(_, levels)| levels.len() > 1).flat_map(|(factor, levels)| {
+        let levels = levels.iter().enumerate();
+        levels.map(move |(level, found)| [level_text(swept.grid, factor, level), level_cell(found)])
+    });
+    let header = ["setting", "median delay, part that differs from most"];
+    let (table, name) = (TextTable::of(header, &[], rows), plain(&swept.reported.joint.name));
+    let (sentences, table) = (sentences.collect::<String>(), table.markdown(plain));
+    format!("## {name}\n\n{sentences}{table}\n{HOW_TO_READ}\n")
 }
 
 const HOW_TO_READ: &str = "\
@@ -71,32 +67,37 @@ low-pass, α and β from top to bottom. A row with much orange or blue is a sett
 such a column is a delay that is sensitive to a setting. Right and left arrow go from setting to setting; \
 on the timeline `segment` from step to step.*";
 
+/// What is said of one thing, a row each, below its name.
+fn table<const N: usize>(header: [&str; N], rows: impl IntoIterator<Item = [String; N]>) -> String {
+    TextTable::of(header, &[], rows).markdown(str::to_owned)
+}
+
 /// A run in numbers.
-fn setting(swept: &Swept<'_>, run: usize) -> Written {
-    let mut page = String::new();
+fn setting(swept: &Swept<'_>, run: usize) -> String {
     let name = swept.names.get(run).map_or("", String::as_str);
-    writeln!(page, "## {name}\n")?;
-    writeln!(page, "| setting {} of {} | |\n|---|---|", run + 1, swept.names.len())?;
     let votes = swept.votes.get(run).copied().unwrap_or(0);
-    writeln!(page, "| combinations that it represents | {votes} |")?;
-    let Some(summary) = swept.reported.sweep.runs.get(run).and_then(Option::as_ref) else {
-        writeln!(page, "| | **it cannot be used on this record** |")?;
-        return Ok(page);
-    };
-    let steps = swept.steps.len();
-    writeln!(page, "| steps accepted | {} of {steps} |", summary.accepted)?;
-    let median = summary.median_s.map_or("-".to_owned(), |s| format!("{} s", number(s)));
-    writeln!(page, "| median delay | {median} |")?;
-    writeln!(page, "| delays that differ from most | {} |", summary.disagreements)?;
-    if let Some(lag_s) = summary.lag_s {
-        writeln!(page, "| lag, apart from the delays | {} s |", number(lag_s))?;
+    let mut rows = vec![["combinations that it represents".to_owned(), votes.to_string()]];
+    let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
+    match swept.reported.sweep.runs.get(run).and_then(Option::as_ref) {
+        None => row("", "**it cannot be used on this record**".to_owned()),
+        Some(found) => {
+            let seconds = |s: f64| format!("{} s", number(s));
+            row("steps accepted", format!("{} of {}", found.accepted, swept.steps.len()));
+            row("median delay", found.median_s.map_or("-".to_owned(), seconds));
+            row("delays that differ from most", found.disagreements.to_string());
+            if let Some(lag_s) = found.lag_s {
+                row("lag, apart from the delays", seconds(lag_s));
+            }
+        }
     }
     let differs: Vec<String> =
         swept.steps.iter().filter_map(|(step, _)| differing(step, run)).collect();
-    if !differs.is_empty() {
-        writeln!(page, "\nIt differs on step {}.", listed(&differs))?;
-    }
-    Ok(page)
+    let differs = match differs.as_slice() {
+        [] => String::new(),
+        differs => format!("\nIt differs on step {}.\n", listed(differs)),
+    };
+    let place = format!("setting {} of {}", run + 1, swept.names.len());
+    format!("## {name}\n\n{}{differs}", table([&place, ""], rows))
 }
 
 /// A step on which a run differs, and what it says.
@@ -120,31 +121,33 @@ fn listed(texts: &[String]) -> String {
 }
 
 /// A step in numbers.
-fn one_step(swept: &Swept<'_>, step: &SweptStep) -> Written {
-    let mut page = String::new();
+fn one_step(swept: &Swept<'_>, step: &SweptStep) -> String {
     let seconds = |samples: f64| format!("{:.3} s", samples * step.period_s);
-    let (number, trial) = (step.number, plain(&step.trial));
-    writeln!(page, "## Step {number} of trial {trial}, at {:.2} s\n", step.time_s)?;
-    writeln!(page, "| p = {} | |\n|---|---|", step.sample)?;
-    writeln!(page, "| settings that accept it | {} of {} |", step.accepted, step.tried)?;
-    if let (Some(agreed), Some(spread)) = (step.agreement, step.spread) {
-        let votes = agreed.combinations;
-        writeln!(page, "| most say | **{}**, {votes} of them |", seconds(agreed.delay))?;
-        writeln!(page, "| range of all | {} to {} |", seconds(spread.min), seconds(spread.max))?;
-    }
     let on = depends_on(swept.grid, step);
-    let on = if on.is_empty() { "no setting".to_owned() } else { on };
-    writeln!(page, "| sensitive to | {} |", plain(&on))?;
-    let Some(hanging) = &step.delay_depends_on else { return Ok(page) };
-    writeln!(page, "\n| {} | median delay | agree with most |\n|---|---|---|", hanging.factor)?;
-    for (level, found) in hanging.levels.iter().enumerate() {
-        let name = level_text(swept.grid, hanging.factor, level);
-        let (delay, agree) = found.map_or(("-".to_owned(), "-".to_owned()), |(delay, agree)| {
-            (seconds(delay), format!("{:.0} %", 100.0 * agree))
-        });
-        writeln!(page, "| {} | {delay} | {agree} |", plain(&name))?;
+    let on = if on.is_empty() { "no setting".to_owned() } else { plain(&on) };
+    let accepted = format!("{} of {}", step.accepted, step.tried);
+    let mut rows = vec![("settings that accept it", accepted)];
+    if let (Some(agreed), Some(all)) = (step.agreement, step.spread) {
+        let most = format!("**{}**, {} of them", seconds(agreed.delay), agreed.combinations);
+        let range = format!("{} to {}", seconds(all.min), seconds(all.max));
+        rows.extend([("most say", most), ("range of all", range)]);
     }
-    Ok(page)
+    rows.push(("sensitive to", on));
+    let rows = rows.into_iter().map(|(name, value)| [name.to_owned(), value]);
+    let numbers = table([&format!("p = {}", step.sample), ""], rows);
+    let hanging = step.delay_depends_on.as_ref().map_or_else(String::new, |hanging| {
+        let rows = hanging.levels.iter().enumerate().map(|(level, found)| {
+            let dash = || "-".to_owned();
+            let name = plain(&level_text(swept.grid, hanging.factor, level));
+            let delay = found.map_or_else(dash, |(delay, _)| seconds(delay));
+            [name, delay, found.map_or_else(dash, |(_, agree)| percent(agree))]
+        });
+        let header = [&*hanging.factor.to_string(), "median delay", "agree with most"];
+        format!("\n{}", table(header, rows))
+    });
+    let (number, trial) = (step.number, plain(&step.trial));
+    let title = format!("## Step {number} of trial {trial}, at {:.2} s", step.time_s);
+    format!("{title}\n\n{numbers}{hanging}")
 }
 
 /// Settings, what they made of the record, and how many combinations they represent.

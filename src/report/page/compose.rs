@@ -117,7 +117,7 @@ pub(super) fn origin(report: &Report<'_>) -> Vec<Block> {
 }
 
 /// The files that were read.
-pub(super) fn files(sources: &[Source]) -> TextTable {
+pub(crate) fn files(sources: &[Source]) -> TextTable {
     let row = |source: &Source| {
         let path = source.path.display().to_string();
         [path, source.bytes.to_string(), source.sha256.clone()]

@@ -8,7 +8,7 @@ use crate::cli::args::{DataArgs, Format, read_model};
 use crate::cli::console;
 use crate::cli::run::{Study, estimated};
 use crate::cli::typed::quoted;
-use crate::report::columns::extent_table;
+use crate::report::columns::extent;
 use crate::report::estimate::estimate_table;
 use crate::report::improve::improve_text;
 use crate::report::page::document::Report;
@@ -21,8 +21,8 @@ pub(super) fn show_delays(args: &Args, study: &Study<'_>) -> anyhow::Result<()> 
     }
     study.say_notes();
     let joints = estimated(&study.experiment, &study.estimates);
-    let extent = extent_table(study.joints());
-    console::print(&format!("{extent}\n{}\n", estimate_table(&joints, &study.settings)))?;
+    let extent = extent(study.joints().iter());
+    console::print(&format!("{extent}\n\n{}\n", estimate_table(&joints, &study.settings)))?;
     let said = "searching for the effects that the models lack, which takes seconds, or minutes for \
                 a long log; Ctrl-C stops the search and keeps what was found";
     study.verbosity().say("improving", said);
