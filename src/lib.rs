@@ -33,7 +33,7 @@
 //! | a method that finds delays | `src/delay/method/` | `src/delay/method/registry.rs`; a row in `docs/methods.md` |
 //! | a format of logs | `src/experiment/format/` | `src/experiment/format/registry.rs`; where it needs a library, a feature in `Cargo.toml`; a section in `docs/formats.md`; a target in `fuzz/targets/` (its name in `fuzz/Cargo.toml`, `fuzz/run`, `tests/reading/replay.rs`) |
 //! | a field of a command's JSON | the file of the result in `src/report/`; what models have in common in `compare.rs` | |
-//! | a mark in a view of a recording | `src/recording/segment_view.rs` and its neighbours draw; what is shared with the report in `src/figure/` | its path in `src/recording/paths.rs`; a new pane in `src/recording/views/` |
+//! | a mark in a view of a recording | `src/recording/segment_view.rs` and its neighbours draw; what is shared with the report in `src/figure/` | its path in `src/recording/paths.rs`; a new pane in `src/recording/views.rs` |
 //! | a language for exported models | `src/export/`, with its template | `src/export/registry.rs` |
 //! | a command | `src/cli/command/` | `src/cli/program.rs` |
 //!

@@ -9,8 +9,7 @@
 //! - `viewer`: recordings shown while they are made
 //! - `output`: files, tables and recordings
 //! - `failure`, `advice`: what is said of errors, and the option to use
-//! - `unknown`: what is said of words that the program does not know
-//! - `typed`: command lines that are suggested or reported
+//! - `typed`: command lines that are suggested or reported, and words that the program does not know
 //! - `console`: messages, results and progress on the terminal
 
 mod advice;

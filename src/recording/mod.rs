@@ -8,11 +8,11 @@
 //!
 //! Inside, from what others are made of to what is made of them:
 //! - `paths` says where everything lies, `layout` where samples, trials and decisions lie on
-//!   the timelines; `chunk` makes columns of rows with reproducible ids, `layers` and `panels`
-//!   drawings of them on a `canvas`.
-//! - `recorded` and `sweep` are two kinds of recording. One part of the content
-//!   each are `signals`, `decisions`, `verdict`, `segment_view`, `beside`, `place`, `doubt`, `difference`, `overview`,
-//!   `delay_state`, `model`, `revision` and `about`, which `assembly` puts together.
+//!   the timelines; `chunk` makes columns of rows with reproducible ids, `panels` drawings of them
+//!   on a `canvas`.
+//! - `assembly` and `sweep` are two kinds of recording. One part of the content each are `headline`,
+//!   `decisions`, `verdict`, `segment_view`, `difference`, `overview`, `delay_state`, `model`,
+//!   `residual`, `revision` and `about`, which `assembly` puts together.
 //! - `views` says which view shows what: a tree that `blueprint` writes. What lies below the root of
 //!   a drawing is in its view.
 //! - `content` is what all kinds are to `write`, which brings them into a file or a stream,
