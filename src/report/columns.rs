@@ -109,7 +109,7 @@ mod tests {
             Trial::new(label, 0.0, period, input, output).unwrap()
         };
         let joint = Joint::new("boom", [trial("1", 10.0), trial("2", 30.0)]).with_units("V", "deg");
-        let text = extent_table(&[joint]);
+        let text = extent([joint].iter()).to_string();
         let row = text.lines().find(|line| line.contains("boom")).unwrap();
         let cells: Vec<&str> =
             row.trim_matches('│').split("  ").map(str::trim).filter(|c| !c.is_empty()).collect();
