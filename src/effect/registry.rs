@@ -105,6 +105,7 @@ pub(crate) fn find_among(
 
 #[cfg(test)]
 mod tests {
+    use super::super::Stage;
     use super::*;
 
     #[test]
@@ -144,6 +145,21 @@ mod tests {
         let ids = REGISTRY.iter().map(|effect| effect.spec().id);
         let kept: Vec<_> = ids.filter(|id| promised.contains(id)).collect();
         assert_eq!(kept, promised);
+    }
+
+    /// What a command is before it comes to the valve: a bias and rounding may act first in any model.
+    #[test]
+    fn a_bias_and_rounding_may_act_before_all_that_the_valve_does() {
+        let passes = |first: &str, second: &str| {
+            first == second || by_id(first).unwrap().spec().upstream_of.contains(&second)
+        };
+        for effect in REGISTRY.iter().map(|effect| effect.spec()) {
+            match effect.stage {
+                Stage::Input => assert!(passes("input_offset", effect.id), "{}", effect.id),
+                Stage::Spool => assert!(passes("input_quantization", effect.id), "{}", effect.id),
+                _ => {}
+            }
+        }
     }
 
     #[test]

@@ -254,6 +254,18 @@ mod tests {
     }
 
     #[test]
+    fn what_only_the_part_shows_that_was_not_fitted_counts() {
+        let plain = evidence(1000.0, 2);
+        let validation = Squares { sum: 200.0, samples: 400 };
+        let found = Evidence { validation, ..evidence(1000.0, 3) };
+        assert!(found.fisher_p_value(&plain) < 1e-9);
+        // What is lost there counts against what the fit gained.
+        let validation = Squares { sum: 430.0, samples: 400 };
+        let lost = Evidence { validation, ..evidence(980.0, 3) };
+        assert!((lost.fisher_p_value(&plain) - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
     fn the_way_to_a_model_that_does_not_nest_counts_as_a_parameter() {
         // One parameter turns a shift of any size: it meets the larger part of noise in two
         // directions, whose square is beyond 9.21 with probability 0.01.
