@@ -126,9 +126,9 @@ impl Misfit {
     }
 
     /// Whether an effect has a practical consequence with which the error falls from that of
-    /// `worse` to that of `better`: where it takes a part of the misfit, a smaller one where what is left
-    /// without it is as large as the noise and it takes most of that; or where the error without it is beyond
-    /// a few times the noise and it takes a part of what is left, however small a part of the misfit that is.
+    /// `worse` to that of `better`: where it takes a part of the misfit, a smaller one where it takes most of
+    /// what is left without it; or where the error without it is beyond a few times the noise and it takes a
+    /// part of what is left, however small a part of the misfit that is.
     pub(super) fn has_consequence(self, worse: &Errors, better: &Errors) -> bool {
         /// The part of the squared error beyond the noise. Chosen: an eighth of the error.
         const OF_WHAT_IS_LEFT: f64 = 0.25;
