@@ -58,9 +58,21 @@ fn answered(context: &StepContext<'_>, by_lines: Decision, onset: Option<StepOns
     let p_value = onset.as_ref().map(|onset| onset.p_value);
     if let Some(confidence) = settings.confidence {
         decision.test_reaction(context.departed().or(p_value), confidence);
+        let is_accepted = decision.failed().next().is_none();
+        if is_accepted && fine.is_some_and(|fine| could_be_anywhere(fine, decision.hold)) {
+            decision.fail(Condition::NothingHappened, None, None);
+        }
     }
     decision.onset = onset.map(Box::new);
     decision
+}
+
+/// Whether the interval of an onset is all of its hold of so many samples: the reaction is then seen at no
+/// time of it, however unlikely it is that white noise alone bends the output so.
+fn could_be_anywhere(fine: FineDelay, hold: usize) -> bool {
+    /// What comes after an onset, samples: those that show that the output does otherwise.
+    const AFTER: f64 = 2.0;
+    fine.low <= 0.0 && fine.high >= hold as f64 - AFTER
 }
 
 /// `fine` with its interval extended to the onsets of a joint that accelerates gradually from rest:
@@ -71,4 +83,20 @@ fn from_rest(context: &StepContext<'_>, fine: FineDelay) -> FineDelay {
         high: fine.high.max(other.high),
         ..fine
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_interval_that_is_all_of_a_hold_says_nothing_of_the_onset() {
+        let fine = |low, high| FineDelay { delay: 40.0, low, high, confidence: 0.95 };
+        assert!(
+            could_be_anywhere(fine(0.0, 98.2), 100) && could_be_anywhere(fine(-3.0, 120.0), 100)
+        );
+        assert!(
+            !could_be_anywhere(fine(0.5, 99.2), 100) && !could_be_anywhere(fine(0.0, 90.0), 100)
+        );
+    }
 }
