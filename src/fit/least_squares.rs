@@ -111,7 +111,7 @@ fn descended(
     let whole = space.has_jumps().then(|| record.coarser_for(surveyed).unsplit());
     if let Some(whole) = &whole {
         let before = found.problem.free.clone();
-        found = found.onto(whole).across_flats().onto(&training);
+        found = found.across_flats_of(whole);
         if found.problem.free != before {
             found = found.descended(limits);
         }

@@ -74,8 +74,17 @@ impl<'p, 'r> Search<'p, 'r> {
         Self { cost, termination, slopes, ..self }
     }
 
+    /// Moves the parameters with which an effect jumps to their best in the windows of `whole`, fitted or
+    /// not: the part that is fitted may have none of the levels at which it jumps.
+    pub(super) fn across_flats_of(self, whole: &'p FitRecord<'r>) -> Self {
+        let own = self.problem.record;
+        let mut crossed = self.onto(whole).across_flats().onto(own);
+        crossed.cost = crossed.problem.cost();
+        crossed
+    }
+
     /// Moves the parameters with which an effect jumps to their best.
-    pub(super) fn across_flats(mut self) -> Self {
+    fn across_flats(mut self) -> Self {
         /// One may have to wait for another.
         const PASSES: usize = 3;
         for _ in 0..PASSES {

@@ -100,19 +100,14 @@ pub fn rough_survey(
     let coarse = record.for_training().coarser_for(model);
     let _turn = turn::wait_for(coarse.training_samples() * space.free.len());
     let short = coarse.shortened();
-    // Between which levels an effect jumps is chosen on the whole record: few of its steps decide, and the
-    // part that is fitted may have none of them.
+    // Between which levels an effect jumps is chosen on the whole record: few of its steps decide.
     let whole = space.has_jumps().then(|| record.coarser_for(model).unsplit().shortened());
+    let searches = rough(&short, &coarse, model, &space, range).into_iter();
+    let settled = searches.map(|search| whole.iter().fold(search, Search::across_flats_of));
     let place = |search: Search<'_, '_>| {
-        let mut search = search;
-        if let Some(whole) = &whole {
-            search = search.onto(whole).across_flats().onto(&short);
-            search.cost = search.problem.cost();
-        }
         (Survey { model: search.problem.model_now(), cost: search.cost }, search.slopes)
     };
-    let searches = rough(&short, &coarse, model, &space, range);
-    let mut places: Vec<_> = searches.into_iter().map(place).collect();
+    let mut places: Vec<_> = settled.map(place).collect();
     places.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
     Ok(RoughSurvey { places })
 }
