@@ -25,8 +25,8 @@ pub(super) const SIZE: (f32, f32) = (1740.0, 720.0);
 /// Left and right end of the plots of the whole segment.
 const SIDES: (f32, f32) = (120.0, 1000.0);
 
-/// Left and right end of the close-up.
-const CLOSE: (f32, f32) = (1130.0, 1725.0);
+/// Left and right end of the close-up; half of a label of five digits is wider than what is left beside it by 15.
+const CLOSE: (f32, f32) = (1130.0, 1700.0);
 
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(
