@@ -25,7 +25,7 @@ pub(super) const SIZE: (f32, f32) = (1740.0, 720.0);
 /// Left and right end of the plots of the whole segment.
 const SIDES: (f32, f32) = (120.0, 1000.0);
 
-/// Left and right end of the close-up; half of a label of five digits is wider than what is left beside it by 15.
+/// Left and right end of the close-up, beside which there is room for half of a label of five digits.
 const CLOSE: (f32, f32) = (1130.0, 1700.0);
 
 /// Adds the drawings of all segments below `root`/drawing.
